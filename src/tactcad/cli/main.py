@@ -1,0 +1,67 @@
+"""The `tactcad` command: finds the sub-command's module, runs it, turns refusals into exit status.
+
+A sub-command is one module with EXAMPLES (text), configure(parser) and run(args) ->
+exit status; it imports what it needs inside run, so that `tactcad estimate` never pays for the kernel.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+
+from tactcad import __version__
+from tactcad.design.messages import CheckFailure, InputError
+
+COMMANDS = {
+    "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
+    "check": "run every check on a design",
+    "schema": "print every field of a design file with unit, range, default and meaning",
+}
+
+DONE, FAILED, BAD_INPUT = 0, 1, 2
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input."""
+    argv = sys.argv[1:] if argv is None else argv
+    try:
+        return _dispatch(argv)
+    except InputError as error:
+        print(f"tactcad: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except CheckFailure as error:
+        print(f"tactcad: {error}", file=sys.stderr)
+        return FAILED
+    except BrokenPipeError:  # the reader of our output went away, as in `tactcad schema | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    except KeyboardInterrupt:
+        print("tactcad: interrupted; nothing was changed", file=sys.stderr)
+        return 130
+
+
+def _dispatch(argv: list[str]) -> int:
+    if argv and argv[0] in COMMANDS:
+        module = importlib.import_module(f"tactcad.cli.{argv[0]}")
+        parser = argparse.ArgumentParser(
+            prog=f"tactcad {argv[0]}",
+            description=COMMANDS[argv[0]],
+            epilog=f"examples:\n{module.EXAMPLES}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        module.configure(parser)
+        return module.run(parser.parse_args(argv[1:]))
+    parser = argparse.ArgumentParser(
+        prog="tactcad",
+        description="From one text file to a spring-based tactile sensor array.",
+        epilog="commands:\n"
+        + "\n".join(f"  {name:10} {text}" for name, text in COMMANDS.items())
+        + "\n\n`tactcad COMMAND --help` shows a command's options, with examples.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"tactcad {__version__}")
+    parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
+    parser.parse_args(argv[:1])
+    return BAD_INPUT

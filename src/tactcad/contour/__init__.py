@@ -1,0 +1,10 @@
+"""Lines, arcs and closed contours in mm: the truth that every output is made from."""
+
+from .contour import Contour, chain, circle, rectangle
+from .rounded import Corner, rounded_polygon
+from .segment import Arc, Line, Point, Segment
+
+__all__ = [
+    "Arc", "Contour", "Corner", "Line", "Point", "Segment",
+    "chain", "circle", "rectangle", "rounded_polygon",
+]

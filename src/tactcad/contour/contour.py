@@ -1,0 +1,150 @@
+"""A closed chain of exact segments, and what can be measured on it in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+from .segment import Arc, Line, Point, Segment
+
+
+@dataclass(frozen=True)
+class Contour:
+    """Closed, simple chain of segments in mm: each starts exactly where the one before ends.
+
+    Raises ValueError where the chain is open, a segment has no length, or there is none.
+    """
+
+    segments: tuple[Segment, ...]
+
+    def __post_init__(self) -> None:
+        if not self.segments:
+            raise ValueError("a contour needs at least one segment")
+        for before, after in zip((self.segments[-1], *self.segments), self.segments):
+            if before.end != after.start:
+                raise ValueError(f"contour is open: {before.end} is followed by {after.start}")
+            if after.length == 0.0:
+                raise ValueError(f"segment without length at {after.start}")
+
+    def __iter__(self) -> Iterator[Segment]:
+        return iter(self.segments)
+
+    def __len__(self) -> int:
+        return len(self.segments)
+
+    def named(self, name: str) -> Segment:
+        """The one segment of that name. Raises KeyError where there is none or more than one."""
+        found = [s for s in self.segments if s.name == name]
+        if len(found) != 1:
+            raise KeyError(f"{len(found)} segments are named {name!r}")
+        return found[0]
+
+    @property
+    def length(self) -> float:
+        """Length of the whole chain in mm."""
+        return sum(s.length for s in self.segments)
+
+    @property
+    def signed_area(self) -> float:
+        """Area in mm2, positive where the chain runs counter-clockwise."""
+        x0, y0 = self.segments[0].start
+        return sum(_area_and_moments(s, x0, y0)[0] for s in self.segments)
+
+    @property
+    def area(self) -> float:
+        """Enclosed area in mm2."""
+        return abs(self.signed_area)
+
+    @property
+    def centroid(self) -> Point:
+        """Centre of the enclosed area, mm."""
+        x0, y0 = self.segments[0].start
+        rows = [_area_and_moments(s, x0, y0) for s in self.segments]
+        area, mx, my = (sum(row[i] for row in rows) for i in range(3))
+        return (x0 + mx / area, y0 + my / area)
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Bounding box x_min, y_min, x_max, y_max in mm, exact at the arcs' extremes."""
+        points = [p for s in self.segments for p in _extreme_points(s)]
+        xs, ys = zip(*points)
+        return (min(xs), min(ys), max(xs), max(ys))
+
+    @property
+    def ccw(self) -> bool:
+        return self.signed_area > 0.0
+
+    def reversed(self) -> Contour:
+        """The same curve run the other way round."""
+        return Contour(tuple(s.reversed() for s in reversed(self.segments)))
+
+    def as_circle(self) -> tuple[Point, float] | None:
+        """Centre and radius (mm) where the whole contour is one circle, else None."""
+        first = self.segments[0]
+        if not isinstance(first, Arc):
+            return None
+        alike = all(
+            isinstance(s, Arc) and s.centre == first.centre and s.ccw == first.ccw for s in self
+        )
+        return (first.centre, first.radius) if alike else None
+
+
+def circle(centre: Point, diameter: float, name: str = "") -> Contour:
+    """Counter-clockwise circle of two half turns (mm)."""
+    x, y = centre
+    east, west = (x + diameter / 2, y), (x - diameter / 2, y)
+    return Contour((Arc(east, west, centre, True, name), Arc(west, east, centre, True, name)))
+
+
+def rectangle(x0: float, y0: float, x1: float, y1: float) -> Contour:
+    """Counter-clockwise rectangle with corners (x0, y0) and (x1, y1), mm."""
+    return chain([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+
+
+def chain(points: Iterable[Point]) -> Contour:
+    """Closed polygon through the points, in their order (mm)."""
+    corners = list(points)
+    return Contour(tuple(Line(a, b) for a, b in zip(corners, corners[1:] + corners[:1])))
+
+
+def _area_and_moments(s: Segment, x0: float, y0: float) -> tuple[float, float, float]:
+    """Green's theorem: the segment's share of area, and of its first moments about (x0, y0).
+
+    The chord's triangle with (x0, y0), and for an arc the circular segment between chord and arc:
+    area r^2 (w - sin w)/2, its centroid 4 r sin^3(w/2) / (3 (w - sin w)) from the centre (w = sweep).
+    """
+    ax, ay = s.start[0] - x0, s.start[1] - y0
+    bx, by = s.end[0] - x0, s.end[1] - y0
+    area = (ax * by - bx * ay) / 2
+    mx, my = area * (ax + bx) / 3, area * (ay + by) / 3
+    if isinstance(s, Arc):
+        r, w = s.radius, s.sweep
+        cap = r * r * _w_minus_sin(w) / 2
+        # moment of the cap along the bisector, about the arc's centre: r^3 (2/3) sin^3(w/2)
+        bow = 2 / 3 * r**3 * abs(sin(w / 2)) ** 3 * (1 if w > 0 else -1)
+        middle = s.start_angle + w / 2
+        area += cap
+        mx += cap * (s.centre[0] - x0) + bow * cos(middle)
+        my += cap * (s.centre[1] - y0) + bow * sin(middle)
+    return area, mx, my
+
+
+def _w_minus_sin(w: float) -> float:
+    """w - sin(w), by its series where the difference would lose digits."""
+    if abs(w) > 0.5:
+        return w - sin(w)
+    term = total = w**3 / 6
+    for k in range(2, 12):
+        term *= -w * w / ((2 * k) * (2 * k + 1))
+        total += term
+    return total
+
+
+def _extreme_points(s: Segment) -> list[Point]:
+    points = [s.start, s.end]
+    if isinstance(s, Arc):
+        (x, y), r = s.centre, s.radius
+        axes = ((0.0, (x + r, y)), (pi / 2, (x, y + r)), (pi, (x - r, y)), (-pi / 2, (x, y - r)))
+        points += [p for angle, p in axes if s.spans(angle)]
+    return points

@@ -1,0 +1,1 @@
+"""The parameter tree, materials, loading, and the messages of refusal."""

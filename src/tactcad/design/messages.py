@@ -1,0 +1,35 @@
+"""The one way in which bad input is refused: where, which value, what is legal."""
+
+from __future__ import annotations
+
+
+class InputError(ValueError):
+    """Input that cannot be used. Commands print it as one line and exit with status 2.
+
+    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
+    what    what is wrong, one clause without a full stop
+    value   the value found, shown with repr and shortened; leave it out where there is none
+    legal   what would be accepted
+    """
+
+    def __init__(self, where: str, what: str, *, value: object = ..., legal: str = "") -> None:
+        self.where, self.what, self.value, self.legal = where, what, value, legal
+        parts = [f"{where}: {what}"]
+        if value is not ...:
+            parts.append(f"found {shortened(value)}")
+        if legal:
+            parts.append(f"legal: {legal}")
+        super().__init__("; ".join(parts))
+
+
+class CheckFailure(RuntimeError):
+    """A check failed or a request cannot be met. Commands print it and exit with status 1."""
+
+
+def shortened(value: object, most: int = 60) -> str:
+    """repr(value), cut to `most` characters, so that a hostile value cannot flood the terminal."""
+    try:
+        text = repr(value)
+    except RecursionError:
+        text = f"a deeply nested {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."

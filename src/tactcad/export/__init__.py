@@ -1,0 +1,1 @@
+"""Files for the shop and the reviewer, each read back after writing."""

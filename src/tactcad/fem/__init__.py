@@ -1,0 +1,1 @@
+"""Plane and solid finite elements on the mesh of the part's own contour."""

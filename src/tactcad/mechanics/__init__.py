@@ -1,0 +1,1 @@
+"""Flexure mechanics in closed form: lumped pair, beam ladder, strength. numpy only."""

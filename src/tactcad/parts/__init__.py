@@ -1,0 +1,1 @@
+"""One file a part: contour and features, without a CAD kernel."""

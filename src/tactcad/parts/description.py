@@ -1,0 +1,198 @@
+"""What a part is, without a CAD kernel: one stock body, features cut into it, and how it is made.
+
+Solids, cut files, drawings, tool rules, volumes and the bill of materials are all read from this.
+Local frame: an extrusion's contour lies in x, y and its thickness along +z from 0; a revolution's
+profile is (radius, z) and turns about z. All lengths in mm.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import Literal
+
+from tactcad.contour import Contour
+
+Vector = tuple[float, float, float]
+Process = Literal["wire-cut", "milled", "turned", "ground", "bought"]
+
+
+@dataclass(frozen=True)
+class Extrusion:
+    """A contour with through openings, extruded along +z by its thickness (mm)."""
+
+    outer: Contour
+    thickness: float
+    openings: tuple[Contour, ...] = ()
+
+    @property
+    def volume(self) -> float:
+        """mm3"""
+        return self.section_area * self.thickness
+
+    @property
+    def section_area(self) -> float:
+        """Area of the cut section, openings taken off, mm2."""
+        return self.outer.area - sum(c.area for c in self.openings)
+
+    @property
+    def cut_length(self) -> float:
+        """Length of all contours that a wire or a mill has to follow, mm."""
+        return self.outer.length + sum(c.length for c in self.openings)
+
+
+@dataclass(frozen=True)
+class Revolution:
+    """A profile in (radius, z), radius >= 0, turned once about z."""
+
+    profile: Contour
+
+    @property
+    def volume(self) -> float:
+        """mm3, by Pappus: 2 pi times the centroid's radius times the area."""
+        return 2 * pi * self.profile.centroid[0] * self.profile.area
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A round hole from a face into the material, with an optional counterbore.
+
+    `at` is on the face, `axis` the unit direction into the material. `depth` is the length of the
+    full diameter, through the material where through is true. `drill_point` adds the 118 degree
+    cone of a drill below a blind hole. A tapped hole has the tap drill's diameter and names its
+    thread ("M3") and the length of full thread (mm).
+    """
+
+    name: str
+    at: Vector
+    axis: Vector
+    diameter: float
+    depth: float
+    through: bool
+    counterbore: tuple[float, float] | None = None  # diameter, depth
+    thread: str = ""
+    thread_depth: float = 0.0
+    drill_point: bool = False
+    tolerance: str = ""  # "H7" or "+0.006/0"
+
+    @property
+    def volume(self) -> float:
+        """Material taken off, mm3."""
+        r = self.diameter / 2
+        volume = pi * r * r * self.depth
+        if self.counterbore:
+            wide, deep = self.counterbore
+            volume += pi * (wide * wide / 4 - r * r) * deep
+        if self.drill_point:
+            volume += pi * r * r * drill_point_height(self.diameter) / 3
+        return volume
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """A flat-bottomed pocket, or a raised boss: a contour moved along an axis from a face.
+
+    The contour lies in the plane through `at` spanned by `x_axis` and axis x x_axis... so that
+    (x_axis, y_axis, axis) is right-handed with `axis` pointing into the material.
+    """
+
+    name: str
+    at: Vector
+    axis: Vector
+    x_axis: Vector
+    contour: Contour
+    depth: float
+    island: tuple[Contour, ...] = ()  # left standing, as inside an O-ring groove
+
+    @property
+    def volume(self) -> float:
+        """Material taken off, mm3."""
+        return (self.contour.area - sum(c.area for c in self.island)) * self.depth
+
+
+Feature = Hole | Pocket
+
+
+def drill_point_height(diameter: float) -> float:
+    """Height of the cone that a 118 degree drill leaves, mm: (d/2)/tan(59 deg)."""
+    return diameter / 2 * 0.6008606190275604
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a part is made of; density in kg/m3."""
+
+    name: str
+    density: float
+    temper: str = ""
+
+
+@dataclass(frozen=True)
+class Purchase:
+    """How a bought part is ordered. source_verified: its figures were read in the maker's own data."""
+
+    designation: str
+    manufacturer: str = ""
+    mpn: str = ""
+    supplier: str = ""
+    alternates: str = ""
+    source_verified: bool = False
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """A bought part whose shape is read from a STEP file; volume (mm3) as measured on loading."""
+
+    path: str
+    sha256: str
+    volume: float
+
+
+@dataclass(frozen=True)
+class Characteristic:
+    """A dimension that matters: its value with limits (mm), and whether it is a key characteristic."""
+
+    name: str
+    nominal: float
+    upper: float
+    lower: float
+    key: bool = False
+
+
+@dataclass(frozen=True)
+class Part:
+    """One fabricated or bought part.
+
+    `mass_override` (g) is for bought parts whose envelope is not their solid.
+    """
+
+    part_no: str
+    name: str
+    process: Process
+    material: Material
+    body: Extrusion | Revolution | ModelFile
+    features: tuple[Feature, ...] = ()
+    colour: str = "#b0b4ba"  # sRGB
+    finish: str = ""
+    notes: tuple[str, ...] = ()
+    characteristics: tuple[Characteristic, ...] = ()
+    purchase: Purchase | None = None
+    mass_override: float | None = None
+    spares: int = 0
+    tags: frozenset[str] = field(default_factory=frozenset)
+
+    @property
+    def volume(self) -> float:
+        """Closed-form volume, mm3: the stock less its features, which may not overlap."""
+        return self.body.volume - sum(f.volume for f in self.features)
+
+    @property
+    def mass(self) -> float:
+        """Mass in g."""
+        if self.mass_override is not None:
+            return self.mass_override
+        return self.volume * self.material.density * 1e-6
+
+    @property
+    def bought(self) -> bool:
+        return self.process == "bought"

@@ -1,0 +1,1 @@
+"""Placements: which parts stand where, under which designator, with which meant contacts."""

@@ -1,0 +1,83 @@
+"""A scene is a list of placements, not geometry; everything else is read off it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tactcad.parts.description import Part, Vector
+
+Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
+
+UPRIGHT: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A part at a place: scene point = rotation x local point + origin (mm)."""
+
+    designator: str
+    part: Part
+    origin: Vector = (0.0, 0.0, 0.0)
+    rotation: Rotation = UPRIGHT
+
+
+ContactKind = Literal["thread", "press", "touch"]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Two placed parts that are meant to meet.
+
+    thread  a screw in its tapped hole: modelled as an overlap of the thread's depth
+    press   a pin in a hole of its own size: the surfaces coincide
+    touch   faces in contact
+    """
+
+    first: str
+    second: str
+    kind: ContactKind
+
+
+@dataclass(frozen=True)
+class Consumable:
+    """Something that is used up or is not a solid: adhesive, wire, a gauge."""
+
+    part_no: str
+    description: str
+    qty: float
+    unit: str
+    purchase_designation: str = ""
+    manufacturer: str = ""
+    mpn: str = ""
+    supplier: str = ""
+    alternates: str = ""
+    spares: float = 0
+    consumable: bool = True
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Placements with designators that are unique, meant contacts, and what has no solid."""
+
+    name: str
+    placements: tuple[Placement, ...]
+    contacts: tuple[Contact, ...] = ()
+    consumables: tuple[Consumable, ...] = ()
+
+    def __post_init__(self) -> None:
+        names = [p.designator for p in self.placements]
+        if len(set(names)) != len(names):
+            raise ValueError(f"scene {self.name}: designators are not unique")
+        known = {}
+        for p in self.placements:
+            if known.setdefault(p.part.part_no, p.part) != p.part:
+                raise ValueError(f"scene {self.name}: two parts share the number {p.part.part_no}")
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Every part placed, once, in the order of first placement."""
+        return tuple({p.part.part_no: p.part for p in self.placements}.values())
+
+    def count(self, part: Part) -> int:
+        return sum(p.part.part_no == part.part_no for p in self.placements)

@@ -1,0 +1,1 @@
+"""The only maker of solids: from a part's description to the CAD kernel's shape."""

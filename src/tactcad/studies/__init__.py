@@ -1,0 +1,1 @@
+"""Published data, validation, fits, speed against accuracy."""
