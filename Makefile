@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check review bench nightly clean
+.PHONY: help environment export test check nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -17,7 +17,9 @@ environment:
 	@packaging/environment.sh
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
-	@for design in $(DESIGNS); do $(BIN)/tactcad export $$design || exit; done
+	@status=0; \
+	for design in $(DESIGNS); do $(BIN)/tactcad export $$design || status=1; done; \
+	exit $$status
 
 test: environment ## every test but the long ones
 	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS)
@@ -27,12 +29,6 @@ check: environment ## style, and every check of every design: all failures are p
 	$(BIN)/ruff check || status=1; \
 	for design in $(DESIGNS); do $(BIN)/tactcad check $$design || status=1; done; \
 	exit $$status
-
-review: export ## open the exports with other people's programs: FreeCAD, ezdxf
-	@packaging/review.sh
-
-bench: environment ## export times against a plain script, one after the other
-	$(BIN)/python benchmarks/export.py
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

@@ -63,11 +63,12 @@ echo "make: creating .venv with Python $version: some 100 packages at their pinn
 rm -f "$stamp"
 rm -rf .venv
 "$python" -m venv .venv
-pip() { .venv/bin/python -m pip --disable-pip-version-check --quiet "$@"; }
-pip install --no-deps ./packaging/ocp-shim
-pip install --no-deps -r requirements/pins.txt
-pip install --no-deps --editable .
-pip check
+pip() { .venv/bin/python -m pip --disable-pip-version-check "$@"; }
+install() { pip install -qq --no-deps "$@"; } # -qq: errors only
+install ./packaging/ocp-shim
+install -r requirements/pins.txt
+install --editable .
+broken=$(pip check) || { echo "make: $broken" >&2; exit 1; }
 key .venv/bin/python >"$stamp.new"
 mv "$stamp.new" "$stamp"
 echo "make: .venv is complete"
