@@ -266,3 +266,11 @@ def test_the_file_of_another_part_is_seen(tmp_path):
     made = part(OUTLINES["rounded"])
     other = replace(made, body=Extrusion(rounded(0.1, 0.2, 1.0 + 1e-6), 3.0))
     assert check_dxf(written(tmp_path, other), made)
+
+
+@pytest.mark.parametrize("keep", [0.0, 0.3, 0.9])
+def test_a_truncated_file_is_seen(tmp_path, keep):
+    made = part(OUTLINES["rounded"])
+    path = written(tmp_path, made)
+    os.truncate(path, int(path.stat().st_size * keep))
+    assert check_dxf(path, made)

@@ -121,12 +121,15 @@ def _set_extents(drawing: Drawing, box: tuple[float, float, float, float]) -> No
 def read_dxf(path: str | Path) -> CutFile:
     """Read a cut file whose entities follow its contours head to tail.
 
-    Raises ValueError where there is anything but LINE, ARC and CIRCLE, where a chain is open, or where
-    entities do not follow each other.
+    Raises ValueError where the file is no DXF, where there is anything but LINE, ARC and CIRCLE, where a
+    chain is open, or where entities do not follow each other.
     """
     import ezdxf
 
-    drawing = ezdxf.readfile(path)
+    try:
+        drawing = ezdxf.readfile(path)
+    except (ezdxf.DXFError, OSError) as error:
+        raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
     if others:
