@@ -42,12 +42,16 @@ class Contact:
 
 @dataclass(frozen=True)
 class Scene:
-    """Placements with designators that are unique, meant contacts, and what has no solid."""
+    """Placements with designators that are unique, meant contacts, and what has no solid.
+
+    `cover` names what is taken off to look inside.
+    """
 
     name: str
     placements: tuple[Placement, ...]
     contacts: tuple[Contact, ...] = ()
     supplies: tuple[Supply, ...] = ()
+    cover: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         names = [p.designator for p in self.placements]
