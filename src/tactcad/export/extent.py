@@ -57,3 +57,13 @@ def _cross(a: Vector, b: Vector) -> Vector:
 def _unit(a: Vector) -> Vector:
     size = _dot(a, a) ** 0.5
     return (a[0] / size, a[1] / size, a[2] / size)
+
+
+def part_box(part: Part) -> tuple[Vector, Vector]:
+    """Least and largest corner of an extruded or revolved part in its own frame, mm, exact."""
+    body = part.body
+    if isinstance(body, Extrusion):
+        x0, y0, x1, y1 = body.outer.box
+        return (x0, y0, 0.0), (x1, y1, body.thickness)
+    _, z0, r, z1 = body.profile.box
+    return (-r, -r, z0), (r, r, z1)

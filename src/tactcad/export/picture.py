@@ -20,6 +20,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Vector
+from tactcad.scenes.scene import Placement
 
 from .extent import projected_box
 
@@ -54,6 +55,7 @@ BOTTOM = View("bottom", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 # a part's own frame: contour in x, y, thickness along z
 SIDE = View("side", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 OBLIQUE = View("oblique", (0.7, 0.5, 1.4), (0.0, 1.0, 0.0))
+VIEWS = {view.name: view for view in (ABOVE, BELOW, FRONT, BOTTOM, SIDE, OBLIQUE)}
 
 
 @dataclass(frozen=True)
@@ -109,7 +111,7 @@ def svg(drawn: Drawing, title: str, description: str) -> bytes:
     return "\n".join(lines).encode()
 
 
-def check_picture(data: bytes, placements: Sequence, view: View) -> None:
+def check_picture(data: bytes, placements: Sequence[Placement], view: View) -> None:
     """Raise CheckFailure unless the written picture spans what the placements' descriptions project to."""
     text = data.decode()
     points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]

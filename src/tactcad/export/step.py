@@ -13,7 +13,6 @@ from pathlib import Path
 
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
-from OCP.gp import gp_Trsf
 from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
@@ -27,13 +26,13 @@ from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.scenes.scene import Placement, Scene
+from tactcad.solids.place import location
 
 from .step_text import Header, canonical
 
@@ -61,7 +60,7 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     top = shape_tool.NewShape()
     _name(top, header.name)
     for p in scene.placements:
-        _name(shape_tool.AddComponent(top, prototypes[p.part.part_no], _location(p)), p.designator)
+        _name(shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)), p.designator)
     shape_tool.UpdateAssemblies()
     data = _written(document, header)
     _check_scene(data, scene, header.name)
@@ -88,13 +87,6 @@ def _name(label: TDF_Label, name: str) -> None:
 def _rgba(colour: str) -> Quantity_ColorRGBA:
     r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
     return Quantity_ColorRGBA(Quantity_Color(r, g, b, Quantity_TOC_sRGB))  # the kernel keeps linear RGB
-
-
-def _location(p: Placement) -> TopLoc_Location:
-    t = gp_Trsf()
-    (a, b, c), (x, y, z) = p.rotation, p.origin
-    t.SetValues(*a, x, *b, y, *c, z)
-    return TopLoc_Location(t)
 
 
 def _written(document: TDocStd_Document, header: Header) -> bytes:

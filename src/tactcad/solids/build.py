@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-from build123d import Axis, Edge, Face, Location, Plane, Solid, Vector, Wire
+from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
 
@@ -118,10 +118,3 @@ def _pocket_tool(pocket: Pocket) -> Solid:
     if face.normal_at().dot(axis) < 0:
         face = -face
     return Solid.extrude(face, axis * (OUTSIDE + pocket.depth))
-
-
-def location(origin: tuple[float, float, float], rotation: tuple) -> Location:
-    """The build123d location of a placement (rows of `rotation` turn local into scene directions)."""
-    x_dir = Vector(*(row[0] for row in rotation))
-    z_dir = Vector(*(row[2] for row in rotation))
-    return Location(Plane(Vector(*origin), x_dir=x_dir, z_dir=z_dir))
