@@ -31,7 +31,9 @@ Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x 
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
-ROWS = 2  # across the hinge strip of one half, on the coarsest mesh
+ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
+MOUTH = 2  # least elements under a fillet, on the coarsest mesh
+COLUMN = 0.6  # longest element along hinge and fillet, in hinge thicknesses, on the coarsest mesh
 TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
 
 
@@ -139,26 +141,27 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
     fillets = [(b, b.high_fillet if upper else b.low_fillet) for b in (shape.arm, shape.body)]
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
-    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, density)]
+    column = COLUMN * shape.thickness
+    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, column, density)]
     for block, fillet in fillets:
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
         direction = 1.0 if block is shape.arm else -1.0
         root = _Root(
             strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
-            end=abs(block.end - centre), height=face, square_height=min(heights),
+            end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
         )
         grids += [grid * (direction, 1.0) for grid in root.grids(density)]
     cells = np.concatenate([_cells(grid) for grid in grids])
     return cells * (arm_direction, sign) + (centre, middle)
 
 
-def _strip(to_arm: float, to_body: float, height: float, density: int) -> list[Grid] | Grid:
+def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
     """The hinge between the fillets' ends, x from -to_body to to_arm; without elements where they meet."""
     length = to_arm + to_body
     if length <= 1e-9:
         return np.empty((1, 1, 2))
-    columns = max(1, ceil(length / (1.2 * height))) * density
+    columns = max(1, ceil(length / column)) * density
     x = np.linspace(-to_body, to_arm, 2 * columns + 1)
     z = np.linspace(0.0, height, 2 * ROWS * density + 1)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
@@ -174,6 +177,7 @@ class _Root:
     end: float
     height: float
     square_height: float  # lesser height of the halves that share the mid-line
+    column: float  # longest element along the fillet
 
     def grids(self, density: int) -> list[Grid]:
         reach = self.end - self.wall
@@ -187,7 +191,7 @@ class _Root:
         ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
 
         strip_end = self.wall - self.radius
-        columns = max(1, min(4, ceil(pi / 2.0 * self.radius / (1.2 * self.strip_height)))) * density
+        columns = max(MOUTH, ceil(pi / 2.0 * self.radius / self.column)) * density
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
         arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
