@@ -128,10 +128,10 @@ def reference_contour(s: HingeSection) -> Contour:
 
 
 def cut_element(contour: Contour, clamp_x: float, load_x: float) -> HingeShape:
-    """The part's contour between clamp edge and load line (mm), without what stands out at the load line.
+    """The part's contour between clamp edge and load line (mm), without what stands out of its faces there.
 
-    The pad beyond the arm's faces is left out, as in the reference designs. Raises CheckFailure naming
-    what the hinge model cannot follow.
+    Pad, stop land and the rear body's corner fillet are left out, as in the reference designs. Raises
+    CheckFailure naming what the hinge model cannot follow.
     """
     try:
         piece = between(contour, min(clamp_x, load_x), max(clamp_x, load_x), ("end", "end"))
@@ -234,7 +234,10 @@ def _slot_above(arc: Arc) -> bool:
 
 
 def _require_same(outer: Contour, shape: HingeShape) -> None:
-    """The contour must be the shape's outline, but for a pad that stands out at the load line."""
+    """The contour must be the shape's outline, but for what stands out of its faces at a cut.
+
+    That is pad and stop land at the load line, and the fillet of the rear body's corner at the clamp edge.
+    """
     middle = (shape.arm.high_fillet or shape.arm.low_fillet).wall
     pieces = {"arm": shape.arm, "body": shape.body}
     x0, _, x1, _ = outer.box
@@ -247,9 +250,8 @@ def _require_same(outer: Contour, shape: HingeShape) -> None:
             real = between(outer, *span)
         except ValueError:
             raise CheckFailure(f"the {name} of the element is not one piece") from None
-        if name == "arm":
-            for face, keep in ((block.low, "above"), (block.high, "below")):
-                real = _without_pad(real, face, keep, block.end)
+        for face, keep in ((block.low, "above"), (block.high, "below")):
+            real = _without_pad(real, face, keep, block.end, name)
         if abs(real.area - between(drawn, *span).area) > SAME_AREA * drawn.area or \
                 abs(real.length - between(drawn, *span).length) > SAME_AREA * drawn.length:
             raise CheckFailure(
@@ -258,11 +260,12 @@ def _require_same(outer: Contour, shape: HingeShape) -> None:
             )
 
 
-def _without_pad(contour: Contour, face: float, keep: str, load_x: float) -> Contour:
+def _without_pad(contour: Contour, face: float, keep: str, end_x: float, name: str) -> Contour:
+    """What lies inside the block's face; beyond it only what stands at the cut itself may be left out."""
     beyond = cut(contour, "y", face, "below" if keep == "above" else "above")
-    if any(min(abs(c.box[0] - load_x), abs(c.box[2] - load_x)) > ON_LINE_MM for c in beyond):
-        raise CheckFailure("something stands out of the arm between slot and load line")
+    if any(min(abs(c.box[0] - end_x), abs(c.box[2] - end_x)) > ON_LINE_MM for c in beyond):
+        raise CheckFailure(f"something stands out of the {name} between slot and cut")
     parts = cut(contour, "y", face, keep)
     if len(parts) != 1:
-        raise CheckFailure("the arm is not one piece")
+        raise CheckFailure(f"the {name} is not one piece")
     return parts[0]
