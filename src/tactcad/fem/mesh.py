@@ -195,7 +195,8 @@ class _Root:
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
         arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
-        floor = _edge((strip_end, 0.0), (self.wall + mouth, 0.0), u)
+        # opposite the arc's points near the strip, so that the thinnest elements are not sheared
+        floor = np.stack([strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1)
         left = _edge((strip_end, 0.0), (strip_end, self.strip_height), np.linspace(0.0, 1.0, 2 * rows + 1))
         grids = [_coons(floor, arc, left, ring)]
 

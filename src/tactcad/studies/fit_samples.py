@@ -28,6 +28,7 @@ WIDE = {
     "poisson": (0.15, 0.45), "width": (1.0, 10.0),
 }
 LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block any more
+FILLET_RATIO = (0.15, 6.0)  # r/t
 FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
 WIDE_SHARE = 0.4
 
@@ -113,7 +114,7 @@ def _possible(row: dict[str, float]) -> bool:
     return (
         2.0 * row["fillet_radius"] <= row["hinge_length"]
         and min(row["arm_height"], row["body_height"]) >= LEAST_HEIGHT * depth
-        and row["fillet_radius"] >= 0.1 * row["hinge_thickness"]
+        and FILLET_RATIO[0] <= row["fillet_radius"] / row["hinge_thickness"] <= FILLET_RATIO[1]
         and reach >= row["arm_height"] / 2.0
         and row["body_length"] >= 0.2 * row["body_height"]
     )
