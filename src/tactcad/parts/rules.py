@@ -388,10 +388,14 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
             "clamp.end_plate_height", f"the {hold.length:g} mm set screw does not engage the carrier as it should",
             c.end_plate_height, "leave it out, to have it derived",
         )
+    needed = layout.clamp_edge - layout.hold_down_x
+    if d.element.seat_length < needed - SAME:
+        yield (
+            "element.seat_length", "the set screws press beside the ledge of the longest arm", d.element.seat_length,
+            f"at least {needed:g} mm",
+        )
     if layout.stop_plate_width < 1.0:
         yield ("clamp.stop_plate_gap", "leaves no stop plate between the end plates", c.stop_plate_gap, f"less than {(layout.stack - 1) / 2:g} mm")
-    if layout.stop_plate_top > d.element.rear_height + 100:
-        yield ("clamp.stop_plate_thickness", "out of proportion", c.stop_plate_thickness, "less")
 
 
 def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
