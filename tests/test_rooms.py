@@ -51,7 +51,7 @@ def imports(tree: ast.AST, module: str, is_package: bool) -> set[str]:
 class _WithoutAnnotationImports(ast.NodeTransformer):
     """Drops what stands under `if TYPE_CHECKING`, which never runs."""
 
-    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:  # noqa: N802
+    def visit_If(self, node: ast.If) -> ast.AST | list[ast.stmt]:
         self.generic_visit(node)
         return node.orelse if ast.unparse(node.test) == "TYPE_CHECKING" else node
 

@@ -8,8 +8,8 @@ from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.parts.description import Part
-from tactcad.solids.measure import measure
 from tactcad.solids.explore import subshapes
+from tactcad.solids.measure import measure
 
 from .finding import Finding
 

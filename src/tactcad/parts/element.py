@@ -1,4 +1,4 @@
-"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
+r"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
 
       stop land                                      +-------------------------+ rear_height
         ___                          ledge           |  o        O        o    |
@@ -11,7 +11,7 @@
 
 from __future__ import annotations
 
-from tactcad.contour import Corner, Contour, circle, rounded_polygon
+from tactcad.contour import Contour, Corner, circle, rounded_polygon
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
@@ -145,4 +145,4 @@ def sheet_material(design: Design) -> Material:
 def shortest(value: float) -> str:
     """A length as in part numbers: 4.0 is "4", 4.25 is "4.25"; equal text means equal value."""
     text = repr(float(value))
-    return text[:-2] if text.endswith(".0") else text
+    return text.removesuffix(".0")

@@ -27,7 +27,7 @@ class HingeShape:
     """One element's hinge and arm (mm): thickness t, slot length l, fillet radius r, arm height h."""
 
     t: float
-    l: float  # noqa: E741 - the field's and the paper's letter
+    l: float
     r: float
     h: float
 
@@ -103,7 +103,7 @@ class Layout:
         """[element]'s hinge, with what [element.override.NUMBER] changes."""
         e = self.design.element
         own = e.override.get(number)
-        pick = lambda name: getattr(e, name) if not own or getattr(own, name) is None else getattr(own, name)  # noqa: E731
+        pick = lambda name: getattr(e, name) if not own or getattr(own, name) is None else getattr(own, name)
         return HingeShape(
             t=pick("hinge_thickness"), l=pick("hinge_length"), r=pick("fillet_radius"), h=pick("arm_height")
         )

@@ -47,8 +47,8 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:  # noqa: E741, N803
+def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
-    K = float(ladder.stiffness(section, "solid"))  # noqa: N806 - raises CheckFailure out of range
+    K = float(ladder.stiffness(section, "solid"))
     deflection = yield_strength * b * t**2 / (6 * L) / K
     return fraction * deflection * a / L
