@@ -103,7 +103,11 @@ class Layout:
         """[element]'s hinge, with what [element.override.NUMBER] changes."""
         e = self.design.element
         own = e.override.get(number)
-        pick = lambda name: getattr(e, name) if not own or getattr(own, name) is None else getattr(own, name)
+
+        def pick(name: str) -> float:
+            changed = getattr(own, name) if own else None
+            return getattr(e, name) if changed is None else changed
+
         return HingeShape(
             t=pick("hinge_thickness"), l=pick("hinge_length"), r=pick("fillet_radius"), h=pick("arm_height")
         )
