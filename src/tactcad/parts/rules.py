@@ -16,6 +16,7 @@ from tactcad.design.tree import Design
 from .fasteners import LEAST_GRIP, carrier_screw, clamping
 from .layout import END_PLATE_WEB, SUNK, ElementPlace, Layout
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement, tapped_depth
+from .rigs.rules import RIG_RULES
 from .stop_gap import land_room, stop_gap
 
 # Below this, two lengths written in decimals are the same length (mm).
@@ -455,5 +456,6 @@ RULES: dict[str, Rule] = {
         carrier_holes_apart,
     )
 }
+RULES |= RIG_RULES
 # Rules whose breach would make later ones fail for the same reason, or not computable.
 STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "estimator_holds"})

@@ -13,15 +13,20 @@ from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .scene import Pose, Scene
 
-# Scene name -> the design's table that it needs, "" for none.
-NEEDS = {"array": ""}
+# Scene name -> the design's tables that it needs.
+NEEDS: dict[str, tuple[str, ...]] = {
+    "array": (),
+    "calibration": ("calibration",),
+    "sample-stiffness": ("calibration", "sample", "cart", "holder"),
+    "grasping": ("grasping", "sample", "cart", "holder"),
+}
 
 
 def scene_names(design: Design) -> tuple[str, ...]:
     """Names of the scenes that this design has."""
-    return tuple(name for name, table in NEEDS.items() if not table or getattr(design, table) is not None)
+    return tuple(name for name, tables in NEEDS.items() if all(getattr(design, t) is not None for t in tables))
 
 
 def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
@@ -33,6 +38,8 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
     return tuple(name for name in names if not wanted or name in wanted)
 
 
-def make_scene(design: Design, name: str) -> Scene:
-    """The scene of that name (one of scene_names) of a design that keeps every rule."""
-    return getattr(importlib.import_module(f"tactcad.scenes.{name}"), name)(design)
+def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
+    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or another."""
+    own = name.replace("-", "_")
+    make = getattr(importlib.import_module(f"tactcad.scenes.{own}"), own)
+    return make(design) if pose is None else make(design, pose)

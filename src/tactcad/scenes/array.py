@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from tactcad.design.tree import Design
 from tactcad.parts import plates
 from tactcad.parts.consumables import array_supplies
+from tactcad.parts.deflected import deflected_element
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.fasteners import carrier_screw, clamping
-from tactcad.parts.layout import Layout
+from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.library import dowels, screws
 
 from .scene import Contact, Placement, Rotation, Scene
@@ -24,10 +28,13 @@ AGAINST_Y: Rotation = ROW[1]  # local z runs along -y
 DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
 
 
-def array(design: Design) -> Scene:
-    """Scene `array` of a design; elements are E1, E2, ... by number."""
+def array(design: Design, deflected: Mapping[int, float] = MappingProxyType({})) -> Scene:
+    """Scene `array` of a design; elements are E1, E2, ... by number.
+
+    `deflected` gives pads' deflections (mm) by element number, where a rig presses them.
+    """
     layout = Layout(design)
-    build = _Builder(layout)
+    build = _Builder(layout, deflected)
     build.stack()
     build.plates()
     build.clamping()
@@ -40,8 +47,8 @@ def array(design: Design) -> Scene:
 class _Builder:
     """Collects placements and contacts in assembly order."""
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    def __init__(self, layout: Layout, deflected: Mapping[int, float]) -> None:
+        self.layout, self.deflected = layout, deflected
         self.placements: list[Placement] = []
         self.contacts: list[Contact] = []
         self.on_ledge: list[str] = []
@@ -54,6 +61,10 @@ class _Builder:
     def touch(self, first: str, second: str) -> None:
         self.contacts.append(Contact(first, second, "touch"))
 
+    def _element(self, place: ElementPlace) -> Part:
+        deflection = self.deflected.get(place.number, 0.0)
+        return deflected_element(self.layout, place, deflection) if deflection else element(self.layout, place)
+
     def stack(self) -> None:
         """Elements and blanks, a spacer before, between and after them, row by row."""
         layout = self.layout
@@ -62,7 +73,7 @@ class _Builder:
         blank = plates.blank(layout)
         standing: dict[tuple[int, int], tuple[str, Part]] = {}
         for place in layout.elements:
-            standing[place.row, place.index] = (place.designator, element(layout, place))
+            standing[place.row, place.index] = (place.designator, self._element(place))
         for number, (row, i) in enumerate(layout.blanks(), start=1):
             standing[row, i] = (f"BL{number}", blank)
         self.ends: dict[int, tuple[str, str]] = {}

@@ -1,0 +1,58 @@
+"""Statics of the rigs: does the cart tip, does the vacuum hold, does the overload stop hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, inf
+
+Point = tuple[float, float]
+
+
+def inside_by(polygon: Sequence[Point], point: Point) -> float:
+    """Distance (mm) of a point from the nearest side of a convex counter-clockwise polygon; negative outside."""
+    distances = []
+    for (x0, y0), (x1, y1) in zip(polygon, [*polygon[1:], polygon[0]]):
+        length = hypot(x1 - x0, y1 - y0)
+        distances.append(((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / length)
+    return min(distances)
+
+
+def tipping_margin(contacts: Sequence[Point], half: float) -> float:
+    """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the contacts, mm.
+
+    `contacts` is the convex polygon of the wheels, counter-clockwise. A vertical load inside it leaves every wheel
+    pressed, however large it is; the cart's own weight only helps. The square's corners are its worst places.
+    """
+    return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
+
+
+def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
+    """Horizontal force (N) at `height` (mm) over the wheels that would lift one, with `load` (N) down at `at` and
+    the cart's own weight (N) in its middle; inf where height is 0."""
+    if height == 0:
+        return inf
+    moments = []
+    for side, p in enumerate(contacts):
+        pair = [p, contacts[(side + 1) % len(contacts)]]
+        moments.append(_side(pair, at) * load + _side(pair, (0.0, 0.0)) * weight)
+    return min(moments) / height
+
+
+def _side(pair: Sequence[Point], point: Point) -> float:
+    (x0, y0), (x1, y1) = pair
+    return ((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / hypot(x1 - x0, y1 - y0)
+
+
+def holding_force(vacuum: float, area: float) -> float:
+    """Force (N) with which a vacuum (kPa below air) holds on an area (mm2): F = p A."""
+    return vacuum * 1e-3 * area
+
+
+def stop_shares(stiffness: float, load: float, gap: float, load_arm: float, arm: float) -> tuple[float, float]:
+    """What hinge and stop carry (N at the pad) when `load` comes down on one element.
+
+    The pad moves until the tip closes its gap: deflection g L/a, hinge force K g L/a at most; the stop's
+    share is the rest.
+    """
+    hinge = min(load, stiffness * gap * load_arm / arm)
+    return hinge, load - hinge
