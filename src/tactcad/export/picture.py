@@ -33,7 +33,7 @@ MARGIN = 2.0  # mm around the drawing
 # Exact removal costs the square of the number of shapes (measured: 45 take 0.3 s, 110 take 2 s, 2000 hours),
 # removal on triangles about its first power.
 EXACT_UP_TO = 64
-MESH_LINEAR, MESH_ANGULAR = 0.05, 0.2  # mm, radians: finer than a line is wide at 1:1
+MESH_LINEAR, MESH_ANGULAR = 0.05, 0.35  # mm, radians: 18 chords a circle, for pictures of a hundred parts and more
 SAME_EXTENT = 0.05  # mm between the picture's extent and the one projected from the descriptions
 
 
