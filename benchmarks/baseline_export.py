@@ -14,9 +14,9 @@ import hashlib
 import json
 import math
 import sys
-import xml.etree.ElementTree as ElementTree
 from collections import Counter
 from pathlib import Path
+from xml.etree import ElementTree
 
 import ezdxf
 from build123d import (
