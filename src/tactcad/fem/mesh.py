@@ -30,6 +30,7 @@ from .shape import Block, Fillet, HingeShape
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
+SLIVER = 1e-5  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
@@ -142,13 +143,17 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
     column = COLUMN * shape.thickness
-    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, column, density)]
-    for block, fillet in fillets:
+    # a straight part shorter than rounding of coordinates would be a sliver: the fillets meet instead
+    straight = [abs(f.wall - centre) - f.radius for _, f in fillets]
+    straight = [length if length > SLIVER * shape.thickness else 0.0 for length in straight]
+    grids = [_strip(*straight, sign * strip_height, column, density)] if sum(straight) > 0.0 else []
+    for (block, fillet), length in zip(fillets, straight):
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
         direction = 1.0 if block is shape.arm else -1.0
         root = _Root(
-            strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
+            strip_height=sign * strip_height, radius=abs(fillet.wall - centre) - length,
+            wall=abs(fillet.wall - centre),
             end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
         )
         grids += [grid * (direction, 1.0) for grid in root.grids(density)]
@@ -157,11 +162,8 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
 
 
 def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
-    """The hinge between the fillets' ends, x from -to_body to to_arm; without elements where they meet."""
-    length = to_arm + to_body
-    if length <= 1e-9:
-        return np.empty((1, 1, 2))
-    columns = max(1, ceil(length / column)) * density
+    """The hinge between the fillets' ends, x from -to_body to to_arm."""
+    columns = ceil((to_arm + to_body) / column) * density
     x = np.linspace(-to_body, to_arm, 2 * columns + 1)
     z = np.linspace(0.0, height, 2 * ROWS * density + 1)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
@@ -268,6 +270,5 @@ def _share(edge: Grid) -> NDArray[np.float64]:
 
 def _cells(grid: Grid) -> NDArray[np.float64]:
     """(n, 3, 3, 2) elements of a block's node grid."""
-    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2] \
-        if min(grid.shape[:2]) >= 3 else np.empty((0, 0, 2, 3, 3))
+    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2]
     return np.moveaxis(windows.reshape(-1, 2, 3, 3), 1, -1)

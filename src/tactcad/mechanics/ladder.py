@@ -19,6 +19,7 @@ COMPLIANCE = {
     "solid": solid.compliance,
 }
 CLOSED_FORMS = tuple(COMPLIANCE)
+WITH_ROOTS = ("plane", "solid")
 FINITE_ELEMENTS = ("fem-plane", "fem-solid")
 RUNGS = CLOSED_FORMS + FINITE_ELEMENTS
 DEFAULT_RUNG = "solid"

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from collections.abc import Callable
+from importlib.resources.abc import Traversable
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,3 +122,34 @@ def _possible(row: dict[str, float]) -> bool:
         and reach >= row["arm_height"] / 2.0
         and row["body_length"] >= 0.2 * row["body_height"]
     )
+
+
+def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Columns:
+    """Finite-element results of every design beside its parameters; solids for the first `solids` of them.
+
+    Missing results are NaN. `report` gets a line of progress now and then.
+    """
+    s, count = section(columns), len(columns["two_sided"])
+    rows = []
+    for i in range(count):
+        one = s.rows(i)
+        rows.append(plane_results(one) | (solid_results(one) if i < solids else {}))
+        if (i + 1) % 50 == 0:
+            report(f"{i + 1} of {count} designs")
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return columns | {name: np.array([row.get(name, math.nan) for row in rows]) for name in names}
+
+
+def write(columns: Columns, path: Path) -> None:
+    """One line a design, eight digits."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        for row in zip(*columns.values()):
+            writer.writerow("" if math.isnan(v) else f"{v:.8g}" for v in row)
+
+
+def load(path: Path | Traversable) -> Columns:
+    """The columns that `write` wrote."""
+    rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
