@@ -84,7 +84,7 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
     """The same as scikit-fem's mesh."""
     corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
     points, cells = _merged(corners)
-    linear = MeshQuad(points.T, cells.T)
+    linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
     dofs = Dofs(linear, ElementQuad2())
     nodes = np.empty((2, dofs.N))
     for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
@@ -110,7 +110,7 @@ def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
     places = np.rint(2 * element.doflocs).astype(int)
     corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
     points, index = _merged(corners)
-    linear = MeshHex(points.T, index.T)
+    linear = MeshHex(np.ascontiguousarray(points.T), np.ascontiguousarray(index.T))
     dofs = Dofs(linear, element)
     nodes = np.empty((3, dofs.N))
     for local, (u, v, w) in enumerate(places):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable
+from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
@@ -53,7 +54,7 @@ def draw(count: int, seed: int) -> Columns:
         row["two_sided"] = float(len(rows) % 2)
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
 
 
 def draw_box(count: int, seed: int) -> Columns:
@@ -64,7 +65,7 @@ def draw_box(count: int, seed: int) -> Columns:
         row = {k: rng.uniform(*v) for k, v in BOX.items()} | {"two_sided": float(len(rows) % 2)}
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
 
 
 def section(columns: Columns) -> HingeSection:
@@ -106,6 +107,11 @@ def solid_results(s: HingeSection) -> dict[str, float]:
         "width_factor": plane.compliance / solid.compliance,
         "mid_grid_ratio": means[0] / means[1], "mid_peak_ratio": peaks[0] / peaks[1],
     }
+
+
+def _as_written(rows: list[dict[str, float]]) -> Columns:
+    """Columns with the digits that `write` keeps, so that elements are solved for what the file says."""
+    return {k: np.array([float(f"{row[k]:.8g}") for row in rows]) for k in rows[0]}
 
 
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
@@ -153,3 +159,9 @@ def load(path: Path | Traversable) -> Columns:
     """The columns that `write` wrote."""
     rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
     return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+
+
+def shipped() -> dict[str, Columns]:
+    """The samples that the shipped constants were fitted on, and those held out."""
+    data = resources.files(__package__) / "data"
+    return {"fitted": load(data / "ladder-samples.csv"), "held out": load(data / "ladder-heldout.csv")}
