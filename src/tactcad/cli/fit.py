@@ -13,21 +13,22 @@ from tactcad.design.messages import InputError
 
 EXAMPLES = """\
   tactcad fit --out fit                      # samples, constants and report, about half an hour on one core
-  tactcad fit --out fit --solids 20 --samples 60 --held-out 20
+  tactcad fit --out fit --solids 40 --samples 60 --held-out 20 --held-out-solids 4
   tactcad fit --out fit --reuse              # constants again from the samples that lie in fit/
   tactcad fit --out fit --shipped-samples    # the shipped constants again from the shipped samples
 """
 
 SEEDS = {"fitted": 20261121, "held out": 31415}
+LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 4}  # more data than constants
 FILES = {"fitted": "ladder-samples.csv", "held out": "ladder-heldout.csv"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for samples and ladder.json")
-    parser.add_argument("--samples", type=int, default=1600, help="designs that are fitted (default 1600)")
-    parser.add_argument("--solids", type=int, default=600, help="of them with solid elements too (default 600)")
-    parser.add_argument("--held-out", type=int, default=400, help="designs kept out of the fit (default 400)")
-    parser.add_argument("--held-out-solids", type=int, default=150, help="of them with solid elements (default 150)")
+    parser.add_argument("--samples", type=int, default=1200, help="designs that are fitted (default 1200)")
+    parser.add_argument("--solids", type=int, default=400, help="of them with solid elements too (default 400)")
+    parser.add_argument("--held-out", type=int, default=300, help="designs kept out of the fit (default 300)")
+    parser.add_argument("--held-out-solids", type=int, default=120, help="of them with solid elements (default 120)")
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--reuse", action="store_true", help="take the samples that lie in DIR")
     source.add_argument("--shipped-samples", action="store_true", help="take the samples that come with the program")
@@ -37,9 +38,10 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.studies import fit_samples
     from tactcad.studies.fit import fit
 
-    for option in ("samples", "held_out"):
-        if getattr(args, option) < 2:
-            raise InputError(f"--{option.replace('_', '-')}", "too few", value=getattr(args, option), legal="at least 2")
+    for option, least in LEAST.items():
+        if getattr(args, option) < least:
+            raise InputError(f"--{option.replace('_', '-')}", "too few", value=getattr(args, option),
+                             legal=f"at least {least}")
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     if args.shipped_samples:
@@ -54,7 +56,8 @@ def run(args: argparse.Namespace) -> int:
     result = fit(tables["fitted"], tables["held out"], _today(), SEEDS)
     (out / "ladder.json").write_text(json.dumps(result, indent=1) + "\n", "utf-8")
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
-        worst = {name: errors[name]["max"] for name in ("plane, against plane elements", "solid, against solid elements")}
+        rungs = ("plane, against plane elements", "solid, against solid elements")
+        worst = {name: errors[name]["max"] for name in rungs}
         print(f"{side}-sided, held out: " + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items()))
     print(f"{out / 'ladder.json'} written")
     return 0

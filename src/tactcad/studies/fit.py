@@ -188,7 +188,7 @@ def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]
     if side == "one":
         found["peak strain on the flat face"] = strain.face_factor(s, data["face"]["one"]) / rows["flat_peak"] - 1.0
     form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
-    found["mean strain under a grid"] = np.concatenate([
+    found["mean strain under a grid"] = np.concatenate([np.empty(0)] + [
         form(section(r), grid * r["hinge_length"], data["grid"][side], sum(plane.root_lengths(section(r), root)) / 2.0)
         / r[f"grid_{grid:g}"] - 1.0
         for grid, r in _grid_cases(rows, side).items()
@@ -197,8 +197,10 @@ def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]
     return {name: _summary(e) for name, e in found.items()}
 
 
-def _summary(error: Array) -> dict[str, float]:
+def _summary(error: Array) -> dict[str, float | None]:
     e = error[np.isfinite(error)]
+    if not len(e):
+        return {"rms": None, "max": None, "n": 0}
     return {"rms": _digits(np.sqrt(np.mean(e * e)), 3), "max": _digits(np.abs(e).max(), 3), "n": len(e)}
 
 
