@@ -163,7 +163,7 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
 
 def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
     """The hinge between the fillets' ends, x from -to_body to to_arm."""
-    columns = ceil((to_arm + to_body) / column) * density
+    columns = _count((to_arm + to_body) / column) * density
     x = np.linspace(-to_body, to_arm, 2 * columns + 1)
     z = np.linspace(0.0, height, 2 * ROWS * density + 1)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
@@ -193,7 +193,7 @@ class _Root:
         ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
 
         strip_end = self.wall - self.radius
-        columns = max(MOUTH, ceil(pi / 2.0 * self.radius / self.column)) * density
+        columns = max(MOUTH, _count(pi / 2.0 * self.radius / self.column)) * density
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
         arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
@@ -214,11 +214,11 @@ class _Root:
         grids += [_coons(foot, diagonal, ring[: rows + 1], right), _coons(diagonal, wall, ring[rows:], top)]
 
         if reach > side_x * (1.0 + 1e-12):
-            columns = max(1, ceil((reach - side_x) / side_z)) * density
+            columns = _count((reach - side_x) / side_z) * density
             x = np.linspace(self.wall + side_x, self.end, 2 * columns + 1)
             grids.append(np.stack(np.meshgrid(x, right[:, 1], indexing="ij"), axis=-1))
         if self.height > side_z * (1.0 + 1e-12):
-            tall = max(1, ceil((self.height - side_z) / side_x)) * density
+            tall = _count((self.height - side_z) / side_x) * density
             z = np.linspace(side_z, self.height, 2 * tall + 1)
             grids.append(np.stack(np.meshgrid(top[::-1, 0], z, indexing="ij"), axis=-1))
             if reach > side_x * (1.0 + 1e-12):
@@ -239,6 +239,11 @@ class _Root:
         return reach, tall
 
 
+def _count(lengths: float) -> int:
+    """Elements for that many element lengths, the same however the last digits were rounded."""
+    return max(1, ceil(lengths - 1e-6))
+
+
 def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
     start, end = np.asarray(start), np.asarray(end)
     return start + u[:, None] * (end - start)
@@ -246,7 +251,7 @@ def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
     """0 to 1 in steps that grow geometrically from about step/length."""
-    rings = max(1, round(log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
+    rings = max(1, round(1e-9 + log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
     rate = rings * log(GROWTH)
     return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
 
