@@ -93,19 +93,8 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
 
 
 def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
-    """The plane mesh swept over half the width, from the mid-plane y = 0 to the free side; axes x, z, y.
-
-    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
-    """
-    first = SIDE_LAYER * mesh.shape.thickness
-    y = half_width * (1.0 - _graded(half_width, first, density)[::-1])
-    layers = len(y) // 2
-    n = len(mesh.cells)
-    cells = np.empty((layers, n, 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
-    cells[..., :2] = mesh.cells[None, :, :, :, None]
-    for k in range(layers):
-        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
-    cells = cells.reshape(-1, 3, 3, 3, 3)
+    """The plane mesh swept over half the width as scikit-fem's mesh; axes x, z, y."""
+    cells = swept(mesh, half_width, density)
     element = ElementHex2()
     places = np.rint(2 * element.doflocs).astype(int)
     corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
@@ -116,6 +105,20 @@ def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
     for local, (u, v, w) in enumerate(places):
         nodes[:, dofs.element_dofs[local]] = cells[:, u, v, w].T
     return MeshHex2(nodes, linear.t)
+
+
+def swept(mesh: PlaneMesh, half_width: float, density: int) -> NDArray[np.float64]:
+    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index, from y = 0 to the free side.
+
+    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    """
+    y = half_width * (1.0 - _graded(half_width, SIDE_LAYER * mesh.shape.thickness, density)[::-1])
+    layers = len(y) // 2
+    cells = np.empty((layers, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(layers):
+        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
+    return cells.reshape(-1, 3, 3, 3, 3)
 
 
 def _merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
