@@ -8,7 +8,7 @@ import math
 from dataclasses import asdict
 
 from tactcad.design.messages import InputError
-from tactcad.mechanics.ladder import DEFAULT_RUNG, RUNGS
+from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, RUNGS
 
 EXAMPLES = """\
   tactcad estimate
@@ -54,14 +54,16 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--out", "goes with --batch only", value=args.out)
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
-    from tactcad.studies.array_estimate import estimate
+    from tactcad.studies.array_estimate import compare_uncut, estimate
 
     design = load(args.design or "macro-array")
-    rows = [asdict(row) for row in estimate(Layout(design), args.model, args.force)]
+    layout = Layout(design)
+    rows = [asdict(row) for row in estimate(layout, args.model, args.force)]
+    uncut = asdict(compare_uncut(layout)) if args.model in FINITE_ELEMENTS else None
     if args.json:
-        print(json.dumps(_document(design, args.model, rows), indent=2))
+        print(json.dumps(_document(design, args.model, rows, uncut), indent=2))
     else:
-        print(_report(design, args.model, rows))
+        print(_report(design, args.model, rows, uncut))
     return 0
 
 
@@ -80,16 +82,17 @@ def _batch(args: argparse.Namespace) -> int:
     return 0
 
 
-def _document(design, model: str, rows: list[dict]) -> dict:
-    return {
+def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+    document = {
         "design": design.name, "revision": design.design.revision, "model": model,
         "alloy": design.material.alloy, "force_N": rows[0]["force"],
         "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
         "elements": rows,
     }
+    return document | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design, model: str, rows: list[dict]) -> str:
+def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
     first = rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
@@ -99,6 +102,12 @@ def _report(design, model: str, rows: list[dict]) -> str:
     plastic = [str(row["number"]) for row in rows if not row["elastic"]]
     if plastic:
         lines.append(f"invalid: above yield at this force, so strain and stress are not given: no. {', '.join(plastic)}")
+    if uncut:
+        lines.append(
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between its spacers, plane stress: "
+            f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model cut at load line "
+            "and clamp edge"
+        )
     if model in ("plane", "solid"):
         lines.append(_spread(design, first))
     return "\n".join(lines)

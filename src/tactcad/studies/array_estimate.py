@@ -120,3 +120,30 @@ def _estimates(
             yield_deflection=yield_force / float(K[i]), rated_force=min(force, yield_force / safety),
         ))
     return rows
+
+
+@dataclass(frozen=True)
+class UncutComparison:
+    """Plane-stress stiffness (N/mm) of one element's whole contour, and of the model cut from it."""
+
+    number: int
+    uncut: float
+    model: float
+
+
+def compare_uncut(layout: Layout) -> UncutComparison:
+    """The element with the shortest arm, whose pad and ledge weigh most: with pad, land and holes, held
+    between its spacers and pressed evenly on the pad, against the arm cut off at the load line."""
+    from tactcad.fem.convergence import converged_plane
+    from tactcad.fem.shape import cut_element
+    from tactcad.fem.uncut import uncut_compliance
+
+    place = min(layout.elements, key=lambda p: p.arm)
+    d, part = layout.design, element(layout, place)
+    shape = cut_element(part.body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
+    material = d.material.youngs_modulus, d.material.poisson, d.sheet.thickness
+    compliance = uncut_compliance(
+        part.body.outer, part.body.openings, shape, (layout.clamp_edge, *layout.spacer_z),
+        (layout.pad_inner, layout.pad_outer, -d.element.pad_height), *material,
+    )
+    return UncutComparison(place.number, 1.0 / compliance, converged_plane(shape, *material).stiffness)
