@@ -17,6 +17,9 @@ from tactcad.design.messages import CheckFailure, InputError
 COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
+    "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
+    "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
+    "fit": "make the finite-element samples and fit the closed forms' constants on them",
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
 
