@@ -1,0 +1,30 @@
+"""The fitted constants, read from the file that `tactcad fit` writes; never typed in."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from importlib import resources
+
+import numpy as np
+
+from .section import Array
+
+
+@lru_cache(maxsize=1)
+def ladder_data() -> dict:
+    """data/ladder.json as written by the fit."""
+    return json.loads(resources.files(__package__).joinpath("data/ladder.json").read_text("utf-8"))
+
+
+def by_sides(group: str, two_sided: Array) -> dict[str, Array | float]:
+    """Constants of a group ("root", "width", ...) for each design's notch form.
+
+    Plain floats where all designs have one form, so that the common case costs no array.
+    """
+    table = ladder_data()[group]
+    if np.all(two_sided):
+        return table["two"]
+    if not np.any(two_sided):
+        return table["one"]
+    return {k: np.where(two_sided, table["two"][k], table["one"][k]) for k in table["two"]}

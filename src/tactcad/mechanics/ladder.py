@@ -1,0 +1,70 @@
+"""The closed-form rungs by name: stiffness of many designs at once, or a refusal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.design.messages import CheckFailure
+
+from . import beams, friction, plane, solid, validity
+from .section import Array, HingeSection
+
+COMPLIANCE = {
+    "short": beams.short_hinge,
+    "beam": beams.beam,
+    "section": beams.section_integral,
+    "plane": plane.compliance,
+    "solid": solid.compliance,
+}
+CLOSED_FORMS = tuple(COMPLIANCE)
+FINITE_ELEMENTS = ("fem-plane", "fem-solid")
+RUNGS = CLOSED_FORMS + FINITE_ELEMENTS
+DEFAULT_RUNG = "solid"
+
+BLOCK = 8192  # designs evaluated together: their intermediate arrays stay in the second-level cache
+
+
+@dataclass(frozen=True)
+class Result:
+    """Stiffness (N/mm, NaN where refused), and why refused ("" where not), for each design."""
+
+    stiffness: Array
+    valid: np.ndarray
+    reason: np.ndarray
+
+
+def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
+    """Tip stiffness of every design by a closed-form rung; a design out of its range gets NaN and a reason."""
+    reason = validity.reasons(s, rung)
+    valid = reason == ""
+    stiffness = np.full(s.shape, np.nan)
+    stiffness[valid] = _stiffness(s.rows(valid.reshape(-1)), rung)
+    return Result(stiffness, valid, reason)
+
+
+def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
+    """Tip stiffness in N/mm, friction at the pad included. Raises CheckFailure where any is out of range."""
+    require_range(s, rung)
+    return _stiffness(s, rung)
+
+
+def require_range(s: HingeSection, rung: str) -> None:
+    """Raises CheckFailure with the first broken rule, and which design breaks it."""
+    for name, mask in validity.broken_rules(s, rung).items():
+        where = f" (design {np.flatnonzero(mask)[0] + 1} of {mask.size})" if mask.size > 1 else ""
+        raise CheckFailure(f"rung {rung} does not reach this design: {name}{where}")
+
+
+def _stiffness(s: HingeSection, rung: str) -> Array:
+    compliance = COMPLIANCE[rung]
+    size = int(np.prod(s.shape))
+    if size <= BLOCK:
+        return np.broadcast_to(friction.factor(s) / compliance(s), s.shape)
+    result = np.empty(size)
+    for start in range(0, size, BLOCK):
+        block = slice(start, start + BLOCK)
+        part = s.rows(block)
+        result[block] = friction.factor(part) / compliance(part)
+    return result.reshape(s.shape)

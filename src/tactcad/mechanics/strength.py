@@ -1,0 +1,65 @@
+"""When the hinge yields or tires, and what force and deflection it may be given."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactcad.design.materials import Alloy
+
+from . import ladder, strain
+from .section import Array, HingeSection
+
+SAFETY_AGAINST_YIELD = 1.5  # of the rated force, by the project's rule
+
+
+def yield_force(s: HingeSection, alloy: Alloy) -> Array:
+    """Force at which the fillet's surface reaches the yield strength, N."""
+    return alloy.yield_strength / strain.peak_stress(s, 1.0)
+
+
+def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:
+    """Force at which the gauge face reaches the yield strength, N."""
+    return alloy.yield_strength / strain.face_stress(s, 1.0)
+
+
+def deflection_at_yield(s: HingeSection, alloy: Alloy, rung: str = ladder.DEFAULT_RUNG) -> Array:
+    """Tip deflection at which the fillet yields, mm. Raises CheckFailure out of the rung's range."""
+    return yield_force(s, alloy) / ladder.stiffness(s, rung)
+
+
+def yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
+    """Yield strength over the fillet's stress; below 1 the hinge does not stay elastic."""
+    return yield_force(s, alloy) / force
+
+
+def face_yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
+    """Yield strength over the gauge face's stress."""
+    return face_yield_force(s, alloy) / force
+
+
+def rated_force(s: HingeSection, alloy: Alloy, requested) -> Array:
+    """The lesser of the requested force and yield/1.5, N."""
+    return np.minimum(requested, yield_force(s, alloy) / SAFETY_AGAINST_YIELD)
+
+
+def elastic(s: HingeSection, alloy: Alloy, force) -> np.ndarray:
+    """Whether the hinge's stress stays at or below yield; where not, its strain is not a number to report."""
+    return np.asarray(strain.peak_stress(s, force) <= alloy.yield_strength)
+
+
+def surface_factor(tensile_strength: float) -> float:
+    """Marin's factor of a machined surface, k_a = 4.51 S_ut^-0.265, at most 1 (Shigley, Table 6-2).
+
+    Fitted on steels; for a wire-cut aluminium surface no better published figure was found.
+    """
+    return min(1.0, 4.51 * tensile_strength**-0.265)
+
+
+def goodman_factor(s: HingeSection, alloy: Alloy, force) -> Array:
+    """Safety against fatigue at 5e8 cycles under a force between 0 and `force`, by Goodman's line.
+
+    1/n = sigma_a/(k_a S_f) + sigma_m/S_u, sigma_a = sigma_m = half the fillet's peak stress.
+    """
+    ultimate = alloy.tensile_strength or alloy.yield_strength
+    half = strain.peak_stress(s, force) / 2.0
+    return 1.0 / (half / (surface_factor(ultimate) * alloy.fatigue_strength) + half / ultimate)
