@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import fdtrc
 
 from tactcad.mechanics import ladder, lumped
 from tactcad.studies.array import ArrayModel
@@ -104,6 +105,7 @@ class Figure7:
     model_rms: float  # of R about equation (2) with the supported stiffness
     line_parameters: int
     model_parameters: int
+    p_lines: float  # probability that the lines fit so much better by chance (F test)
 
 
 def figure_7(study: Table2Study) -> Figure7:
@@ -118,4 +120,11 @@ def figure_7(study: Table2Study) -> Figure7:
     curve = lambda r: lumped.deflection_ratio(r, k[:, None], k[:, None] / axis[None, :])  # noqa: E731
     return Figure7(k, relative, R, axis, curve(study.reference_printed), curve(K_r), K_r,
                    np.array([p[0] for p in lines]), float(((R - straight) ** 2).mean() ** 0.5),
-                   float(((R - model) ** 2).mean() ** 0.5), 2 * len(k), 1)
+                   float(((R - model) ** 2).mean() ** 0.5), 2 * len(k), 1, _chance(R, straight, model, 2 * len(k)))
+
+
+def _chance(R: np.ndarray, straight: np.ndarray, model: np.ndarray, parameters: int) -> float:
+    """F test of the lines against a model with one parameter, which they do not contain: a guide, not a proof."""
+    lines, one = ((R - straight) ** 2).sum(), ((R - model) ** 2).sum()
+    extra, rest = parameters - 1, R.size - parameters
+    return float(fdtrc(extra, rest, max(one - lines, 0.0) / extra / (lines / rest)))

@@ -11,7 +11,9 @@ import numpy as np
 
 from tactcad.mechanics import gauge_signal, ladder, lumped
 from tactcad.studies.array import ArrayModel
+from tactcad.studies.grasp_figures import elements_in_parallel
 from tactcad.studies.published import Published
+from tactcad.studies.reference_stiffness import Table2Study
 from tactcad.studies.residuals import matched, solve
 
 
@@ -32,6 +34,23 @@ class Explanation:
 
 
 @dataclass(frozen=True)
+class Reading:
+    """What the reference element would have shown if one account of Table 2 were true; least and largest over the samples.
+
+    The whole load is the one that deflects the softest element by the largest deflection that the paper prints.
+    """
+
+    name: str
+    stiffness: float
+    load: float  # N
+    weights: float  # added ones that make this load
+    deflection: tuple[float, float]  # um, as the paper would have printed it
+    signal: tuple[float, float]  # V, with Table 1's K_v
+    deflection_agrees: bool  # overlaps the printed range
+    signal_agrees: bool
+
+
+@dataclass(frozen=True)
 class ReferenceElement:
     """Signals V, deflections um, K_v V/mm, forces N."""
 
@@ -44,10 +63,8 @@ class ReferenceElement:
     deflection: tuple[float, float]
     implied_k_v: tuple[float, float]  # least/least, most/most
     deflection_from_signal: tuple[float, float]  # with the printed K_v
-    force_printed: tuple[float, float]  # printed deflections x printed K
-    force_supported: tuple[float, float]  # printed deflections x supported K_r
-    load_printed: tuple[float, float]  # whole grasping force that gives these deflections, least and most
-    load_supported: tuple[float, float]
+    softest_k_v: tuple[float, float]  # V/mm: largest printed signal over largest printed deflection, and Table 1's
+    readings: tuple[Reading, ...]  # by account of Table 2
     gain: float  # V per strain, from the other elements
     scatter: float  # of ln K_v about it
     explanations: tuple[Explanation, ...]
@@ -60,8 +77,10 @@ class ReferenceElement:
         return min(self.explanations, key=lambda e: abs(e.miss_per_deflection) + abs(e.miss_per_force))
 
 
-def study(data: Published, array: ArrayModel, supported: float, rung: str = "solid") -> ReferenceElement:
+def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "solid") -> ReferenceElement:
     """Everything about Table 2's reference element, whichever it is."""
+    supported = table2.supported.value[0]
+    factor = table2.fit("R times a factor").value[0]
     here, s = matched(data, array)
     t1, figure = data.table1, data.figure
     own = int(np.flatnonzero(here == data.reference)[0])
@@ -80,8 +99,10 @@ def study(data: Published, array: ArrayModel, supported: float, rung: str = "sol
         float(k_v[own]), signal, deflection,
         tuple(v / d * 1e3 for v, d in zip(signal, deflection)),
         tuple(v / k_v[own] * 1e3 for v in signal),
-        tuple(d * K[own] * 1e-3 for d in deflection), tuple(d * supported * 1e-3 for d in deflection),
-        _load(data, array, K[own], deflection), _load(data, array, supported, deflection),
+        (figure["softest_signal_most"] / figure["softest_deflection_most"] * 1e3, float(k_v[np.argmin(K)])),
+        tuple(_reading(data, array, name, K_r, share, k_v[own], deflection, signal)
+              for name, K_r, share in (("as printed", K[own], 1.0), ("softer reference element", supported, 1.0),
+                                       ("deflection scale of the reference element off", K[own], factor))),
         gain, scatter, _explanations(section, array, printed, gain, nominal, rung),
         _from_k_v("hinge_thickness", section, array, k_v[own] / gain, scatter, rung),
         _from_k_v("load_arm", section, array, k_v[own] / gain, scatter, rung),
@@ -93,17 +114,22 @@ def _twin(number: np.ndarray, arm: np.ndarray, K: np.ndarray, own: int, nominal:
     return int(number[min(same, key=lambda i: abs(np.log(K[i] / nominal)))]) if same else None
 
 
-def _load(data: Published, array: ArrayModel, K_r: float, deflection: tuple[float, float]) -> tuple[float, float]:
-    """Grasping force (N) at which the reference element deflects so, over all of Table 2's samples."""
-    from tactcad.studies.grasp_figures import elements_in_parallel
-
+def _reading(data: Published, array: ArrayModel, name: str, K_r: float, factor: float, k_v: float,
+             deflection: tuple[float, float], signal: tuple[float, float]) -> Reading:
+    """factor: the reference element's true deflection over the printed one, which is what R is off by."""
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()
     K[reference] = K_r
-    x = data.table2.object_stiffness.value
-    d = lumped.element_deflection(K[:, None], x[None, :], 1.0)
-    per_deflection = (K[:, None] * d).sum(0) / d[reference]
-    return float(per_deflection.min() * deflection[0] * 1e-3), float(per_deflection.max() * deflection[1] * 1e-3)
+    d = lumped.element_deflection(K[:, None], data.table2.object_stiffness.value[None, :], 1.0)
+    per_newton = d / (K[:, None] * d).sum(0)
+    softest = int(np.argmin(data.table1.stiffness.value))
+    load = data.figure["softest_deflection_most"] * 1e-3 / per_newton[softest].max()
+    true = per_newton[reference] * load
+    shown = (float(true.min() / factor * 1e3), float(true.max() / factor * 1e3))
+    volts = (float(true.min() * k_v), float(true.max() * k_v))
+    overlap = lambda a, b: bool(a[0] <= b[1] and b[0] <= a[1])  # noqa: E731
+    return Reading(name, float(K_r), float(load), float((load - array.rig.moving_weight) / array.rig.weight), shown, volts,
+                   overlap(shown, deflection), overlap(volts, signal))
 
 
 def _explanations(s, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import html
 import json
+import re
 from dataclasses import dataclass
 from math import isfinite, isinf, isnan
 
@@ -100,6 +101,11 @@ def sig(value: float, digits: int = 3) -> str:
     return f"{rounded:.{decimals}f}".replace("-", "−")
 
 
+def exact(value: float) -> str:
+    """A printed number as it was printed, but for zeros at its end."""
+    return f"{value:g}".replace("-", "−")
+
+
 def percent(value: float, digits: int = 2) -> str:
     """A ratio in per cent."""
     return f"{sig(value * 100, digits)} %"
@@ -186,7 +192,7 @@ def _list(items: tuple[str, ...]) -> str:
 
 def _table(t: Table) -> str:
     e = html.escape
-    text = [any(isinstance(row[i], str) for row in t.rows) for i in range(len(t.columns))]
+    text = [any(_wordy(row[i]) for row in t.rows) for i in range(len(t.columns))]
     head = "".join(
         f"<th{' class=text' if text[i] else ''}>{e(name)}{f'<small>{e(unit)}</small>' if unit else ''}</th>"
         for i, (name, unit) in enumerate(t.columns)
@@ -194,6 +200,12 @@ def _table(t: Table) -> str:
     rows = "".join("<tr>" + "".join(_cell(c, text[i]) for i, c in enumerate(row)) + "</tr>" for row in t.rows)
     note = f"<p class=note>{e(t.note)}</p>" if t.note else ""
     return f"<h3>{e(t.title)}</h3><div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
+
+
+def _wordy(cell: object) -> bool:
+    """Whether a cell is words, not a number with its sign, unit or interval."""
+    value = cell.value if isinstance(cell, Marked) else cell
+    return isinstance(value, str) and bool(value) and not re.match(r"[+−±–×∞]? ?[\d∞–]*[\d.]*", value)[0]
 
 
 def _cell(cell: object, text: bool) -> str:

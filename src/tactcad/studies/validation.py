@@ -48,7 +48,7 @@ def validate(data: Published, array: ArrayModel) -> Report:
     own = table1_check.check(data)
     ratios = reference_stiffness.study(data)
     supported = ratios.supported.value[0]
-    reference = reference_element.study(data, array, supported)
+    reference = reference_element.study(data, array, ratios)
     six = grasp_figures.figure_6(data, array, supported, rng)
     seven = grasp_figures.figure_7(ratios)
     effects = budget.budget(data, array, ratios)
@@ -60,7 +60,7 @@ def validate(data: Published, array: ArrayModel) -> Report:
         table1_page.page(own, data),
         table2_page.page(ratios, data, K, reference),
         grasp_page.page(six, seven, array),
-        reference_page.page(reference, array, supported),
+        reference_page.page(reference),
         budget_page.page(effects),
         inversion_page.page(inverted),
     )

@@ -7,7 +7,7 @@ import numpy as np
 from tactcad.studies import drawing as d
 from tactcad.studies.array import ArrayModel
 from tactcad.studies.gain import GainFit
-from tactcad.studies.report import Figure, Marked, Section, Table, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, percent, sig, signed_percent
 
 
 def page(g: GainFit, array: ArrayModel) -> Section:
@@ -47,9 +47,9 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
 
 def _by_element(g: GainFit) -> Table:
     rows = tuple(
-        (int(n), g.arm[i], g.strain_per_deflection[i] * 100, g.measured[i],
+        (int(n), exact(g.arm[i]), g.strain_per_deflection[i] * 100, exact(g.measured[i]),
          Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i],
-         signed_percent(np.expm1(g.residual[i])), g.measured_per_force[i], g.signal_per_force[i], g.signal_at_most[i],
+         signed_percent(np.expm1(g.residual[i])), exact(g.measured_per_force[i]), g.signal_per_force[i], g.signal_at_most[i],
          percent(g.nonlinearity[i]), g.resolution[i] * 1e3)
         for i, n in enumerate(g.element)
     )

@@ -5,31 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from tactcad.studies import drawing as d
-from tactcad.studies.array import ArrayModel
 from tactcad.studies.reference_element import Explanation, ReferenceElement
 from tactcad.studies.report import Figure, Marked, Section, Table, interval, listed, percent, sig
 
 
-def page(e: ReferenceElement, array: ArrayModel, supported: float) -> Section:
+def page(e: ReferenceElement) -> Section:
     return Section(
         "reference", f"The reference element, no. {e.element}",
         "Its printed signals and deflections do not match its printed K_v. What could explain its stiffness, and what would each explanation do to K_v?",
-        findings(e, array, supported), (_ranges(e, supported), _explanations(e)), (_plot(e),), e,
+        findings(e), (_ranges(e), _accounts(e), _explanations(e)), (_plot(e),), e,
     )
 
 
-def available(array: ArrayModel) -> tuple[float, float]:
-    """Least and largest grasping force of the design's rig, N."""
-    return array.rig.moving_weight, array.rig.moving_weight + array.rig.weight * array.rig.weights
-
-
-def findings(e: ReferenceElement, array: ArrayModel, supported: float) -> tuple[str, ...]:
-    return (_ranges_said(e), _loads(e, array, supported), *_explained(e))
+def findings(e: ReferenceElement) -> tuple[str, ...]:
+    return (_ranges_said(e), _loads(e), *_explained(e))
 
 
 def _ranges_said(e: ReferenceElement) -> str:
     low, high = min(e.implied_k_v), max(e.implied_k_v)
-    head = (f"The printed signals of {interval(*e.signal)} V and deflections of {interval(*e.deflection)} µm go with a K_v of {interval(low, high)} V/mm; ")
+    head = (f"The printed signals of {_printed(e.signal)} V and deflections of {_printed(e.deflection)} µm go with a K_v of {interval(low, high)} V/mm; ")
     if low <= e.printed_k_v <= high:
         return head + f"Table 1's {e.printed_k_v:g} V/mm lies within."
     factor = e.printed_k_v / high if e.printed_k_v > high else low / e.printed_k_v
@@ -37,17 +31,29 @@ def _ranges_said(e: ReferenceElement) -> str:
             f"signals would mean {interval(*e.deflection_from_signal)} µm.")
 
 
-def _loads(e: ReferenceElement, array: ArrayModel, supported: float) -> str:
-    least, most = available(array)
-    fits = [low <= most and least <= high for low, high in (e.load_supported, e.load_printed)]
-    text = (f"The printed deflections would need grasping forces of {interval(*e.load_supported)} N with K_r = {sig(supported)} N/mm, and of "
-            f"{interval(*e.load_printed)} N with the printed {e.stiffness:g}; the rig goes from {least:g} to {most:.4g} N (moving weight and "
-            f"{array.rig.weights} added weights, a number that the paper does not give). ")
-    if fits == [True, False]:
-        return text + "Only the supported stiffness is within its reach: a second sign for it, independent of K_v."
-    if fits == [False, True]:
-        return text + "Only the printed stiffness is within its reach."
-    return text + ("Both are within its reach." if all(fits) else "Neither is within its reach.")
+def _printed(pair: tuple[float, float]) -> str:
+    return f"{pair[0]:g} to {pair[1]:g}"
+
+
+def _loads(e: ReferenceElement) -> str:
+    """Which account of Table 2 the printed deflections and signals go with."""
+    first = e.readings[0]
+    text = (f"The softest element's largest deflection fixes the grasping force at about {sig(first.load)} N (about {first.weights:.0f} added weights; "
+            "the paper does not give their number). At that load ")
+    said = []
+    for r in e.readings:
+        said.append(f"'{r.name}' predicts {interval(*r.deflection)} µm and {interval(*r.signal, 2)} V")
+    text += listed(said) + f", where {_printed(e.deflection)} µm and {_printed(e.signal)} V are printed. "
+    both = [r.name for r in e.readings if r.deflection_agrees and r.signal_agrees]
+    only = {r.name: ("deflections" if r.deflection_agrees else "signals") for r in e.readings if r.deflection_agrees != r.signal_agrees}
+    if both:
+        text += f"Only {listed(repr(n) for n in both)} overlaps both printed ranges"
+        text += f"; {listed(f'{n!r} only the {what}' for n, what in only.items())}." if only else "."
+    elif only:
+        text += f"None overlaps both printed ranges; {listed(f'{n!r} the {what}' for n, what in only.items())}."
+    else:
+        text += "None overlaps either printed range."
+    return text
 
 
 def _explained(e: ReferenceElement) -> list[str]:
@@ -71,22 +77,29 @@ def _explained(e: ReferenceElement) -> list[str]:
 
 
 def _size(x: Explanation) -> str:
-    return f"{x.size:+.3g} mm" if x.unit == "mm" else f"factor {sig(x.size)}"
+    return f"{x.size:+.2f} mm".replace("-", "−") if x.unit == "mm" else f"factor {sig(x.size)}"
 
 
-def _ranges(e: ReferenceElement, supported: float) -> Table:
+def _ranges(e: ReferenceElement) -> Table:
     rows = (
         ("printed signal, V", *e.signal),
         ("printed deflection, µm", *e.deflection),
         ("K_v that they imply, V/mm", *e.implied_k_v),
         (f"deflection by Table 1's K_v of {e.printed_k_v:g} V/mm, µm", *e.deflection_from_signal),
-        (f"force on it, printed K of {e.stiffness:g} N/mm, N", *e.force_printed),
-        (f"force on it, supported K of {sig(supported)} N/mm, N", *e.force_supported),
-        ("whole grasping force for these deflections, printed K, N", *e.load_printed),
-        ("whole grasping force for these deflections, supported K, N", *e.load_supported),
     )
     return Table("Printed ranges of the reference element", (("", ""), ("least", ""), ("largest", "")), rows,
-                 "Grasping force: all elements in parallel on one sample, least and largest over Table 2's samples.")
+                 f"For the softest element the text's largest signal and deflection imply {sig(e.softest_k_v[0])} V/mm, where Table 1 has "
+                 f"{sig(e.softest_k_v[1])}.")
+
+
+def _accounts(e: ReferenceElement) -> Table:
+    pick = lambda text, agrees: text if agrees else Marked(text)  # noqa: E731
+    rows = tuple((r.name, r.stiffness, r.load, f"{r.weights:.1f}", pick(interval(*r.deflection), r.deflection_agrees),
+                  pick(interval(*r.signal), r.signal_agrees)) for r in e.readings)
+    return Table("What the reference element would have shown under each account of Table 2",
+                 (("account", ""), ("K_r", "N/mm"), ("load", "N"), ("added weights", ""), ("deflection as printed", "µm"), ("signal by K_v", "V")), rows,
+                 f"All elements in parallel on one sample, range over Table 2's samples; printed: {_printed(e.deflection)} µm, {_printed(e.signal)} V. "
+                 "Marked: no overlap with the printed range.")
 
 
 def _explanations(e: ReferenceElement) -> Table:
@@ -111,7 +124,7 @@ def _plot(e: ReferenceElement) -> Figure:
         ax.axvline(e.printed_k_v, color=d.RED, ls="--", lw=2)
         ax.annotate(f"printed: {e.printed_k_v:g}", (e.printed_k_v, len(y) - 0.45), (6, 0), textcoords="offset points", color=d.RED)
         ax.axvspan(min(e.implied_k_v), max(e.implied_k_v), color=d.ORANGE, alpha=0.35, lw=0)
-        ax.annotate("printed signals over\nprinted deflections", (max(e.implied_k_v), -0.35), (6, 0), textcoords="offset points", fontsize=9.5)
+        ax.annotate("printed signals over\nprinted deflections", (max(e.implied_k_v), len(y) - 0.62), (6, 0), textcoords="offset points", fontsize=9.5)
         ax.set_yticks(y, [x.name for x in e.explanations])
         ax.set_ylim(-0.6, len(y) - 0.05)
         ax.set_xlim(0)

@@ -6,7 +6,7 @@ import numpy as np
 
 from tactcad.studies import drawing as d
 from tactcad.studies.array import ArrayModel
-from tactcad.studies.report import Figure, Marked, Section, Table, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, percent, sig, signed_percent
 from tactcad.studies.residuals import WIRE_TOLERANCE, Residuals
 
 SMALL_FACTOR = 0.05  # a common factor within this is called none
@@ -81,7 +81,7 @@ def _equal_arms(r: Residuals) -> list[str]:
 
 def _rungs(r: Residuals) -> Table:
     rows = tuple(
-        (int(n), r.arm[i], r.measured[i], *(values[i] for values in r.predicted.values()),
+        (int(n), exact(r.arm[i]), exact(r.measured[i]), *(values[i] for values in r.predicted.values()),
          signed_percent(np.expm1(r.residual[i])))
         for i, n in enumerate(r.element)
     )
@@ -100,10 +100,10 @@ def _explained(r: Residuals, array: ArrayModel) -> Table:
     for i, n in enumerate(r.element):
         dt, dl = r.thickness_change[i] * 1e3, r.load_arm_change[i]
         rows.append((
-            int(n), r.arm[i], r.measured[i],
+            int(n), exact(r.arm[i]), exact(r.measured[i]),
             interval(*r.band_cut[:, i]), "outside" if r.outside(r.band_cut)[i] else "inside",
             interval(*r.band_pad[:, i]), "outside" if r.outside(r.band_pad)[i] else "inside",
-            _mark(f"{dt:+.1f}", abs(dt) > WIRE_TOLERANCE["1 pass"] * 1e3), _mark(f"{dl:+.2f}", not abs(dl) <= r.pad_half),
+            _mark(f"{dt:+.1f}".replace("-", "−"), abs(dt) > WIRE_TOLERANCE["1 pass"] * 1e3), _mark(f"{dl:+.2f}".replace("-", "−"), not abs(dl) <= r.pad_half),
         ))
     wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
     return Table(
@@ -129,9 +129,10 @@ def _bands(r: Residuals) -> Figure:
         ax.hlines(r.predicted[r.rung][order], x - 0.31, x + 0.31, color=d.BLACK, lw=1.6, label=f"predicted, rung {r.rung}")
         ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
         for i, k in zip(x, order):
-            ax.annotate(f"{r.measured[k]:g}", (i, r.measured[k]), (11, -3), textcoords="offset points", fontsize=9.5, color=d.RED)
+            ax.annotate(f"{r.measured[k]:g}", (i + 0.31, r.measured[k]), (4, -3), textcoords="offset points", fontsize=9.5, color=d.RED)
         ax.set_yscale("log")
         d.log_ticks(ax.yaxis, (5, 10, 20, 40, 80))
+        ax.set_ylim(min(pad[0].min(), r.measured.min()) * 0.85, max(pad[1].max(), r.measured.max()) * 1.15)
         ax.set_xticks(x, [f"no. {r.element[k]}\na = {r.arm[k]:g} mm" for k in order])
         ax.set_xlim(-0.6, len(x) - 0.2)
         ax.set_ylabel("stiffness K, N/mm")

@@ -6,7 +6,7 @@ import numpy as np
 
 from tactcad.studies import drawing as d
 from tactcad.studies.published import Published
-from tactcad.studies.report import Figure, Marked, Section, Table, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, sig, signed_percent
 from tactcad.studies.table1_check import Product, Table1Check
 
 
@@ -24,8 +24,8 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
     agrees = s.line_low <= cell <= s.line_high
     found = [
         _product("K × deflection", "the printed force", c.force, c.element,
-                 "the lines do not pass through zero (the intercepts are not printed)"),
-        _product("|K_v| × deflection", "the printed signal", c.signal, c.element, "the same"),
+                 "a line that does not pass through zero would do that (the intercepts are not printed)"),
+        _product("|K_v| × deflection", "the printed signal", c.signal, c.element, "again an intercept would do that"),
         _product("K_v/K from its two columns", "the printed K_v/K", c.ratio, c.element, "one of the three is misprinted"),
         f"With {cell:g} N/mm in series, the printed deflections and forces add up to travels of {interval(s.travel.min(), s.travel.max(), 4)} "
         f"µm, not {travel:g}. Deflection against force over all elements is a line of {sig(s.line_stiffness)} N/mm in series "
@@ -67,10 +67,11 @@ def _product(name: str, against: str, p: Product, element: np.ndarray, reason: s
 def _products(c: Table1Check) -> Table:
     def cells(p: Product, i: int) -> tuple:
         shown = signed_percent(p.difference[i])
-        return (p.printed[i], p.computed[i], Marked(shown) if p.beyond_rounding[i] else shown, "±" + percent(p.rounding[i]))
+        shown = f"{shown} (± {sig(p.rounding[i] * 100, 2)} %)"
+        return (exact(p.printed[i]), p.computed[i], Marked(shown) if p.beyond_rounding[i] else shown)
 
     rows = tuple((int(n), *cells(c.force, i), *cells(c.signal, i), *cells(c.ratio, i)) for i, n in enumerate(c.element))
-    head = lambda name, unit: ((f"{name} printed", unit), ("from columns", unit), ("difference", ""), ("rounding", ""))  # noqa: E731
+    head = lambda name, unit: ((f"{name} printed", unit), ("from columns", unit), ("difference", "(rounding)"))  # noqa: E731
     return Table("Products and ratios of Table 1's own columns",
                  (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")), rows,
                  "Marked: more than the rounding of the printed figures allows.")
@@ -79,7 +80,7 @@ def _products(c: Table1Check) -> Table:
 def _series(c: Table1Check, data: Published) -> Table:
     s = c.series
     rows = tuple(
-        (int(n), data.table1.deflection.value[i], data.table1.force.value[i], s.travel[i], f"{s.nearest_step[i]:.0f}",
+        (int(n), exact(data.table1.deflection.value[i]), exact(data.table1.force.value[i]), f"{s.travel[i]:.1f}", f"{s.nearest_step[i]:.0f}",
          s.stiffness_at_full_travel[i])
         for i, n in enumerate(c.element)
     )
@@ -98,7 +99,8 @@ def _plot(c: Table1Check, data: Published) -> Figure:
         left.plot(force, s.line_travel - force / s.line_stiffness * 1e3, "-", color=d.BLACK, lw=1.8,
                   label=f"fitted: {s.line_travel:.0f} µm, {s.line_stiffness:.3g} N/mm")
         left.plot(t.force.value, t.deflection.value, "o", color=d.RED, ms=8, mec="white")
-        shift = {int(n): (8, 4) for n in c.element}
+        by_force = np.argsort(t.force.value)
+        shift = {int(c.element[i]): ((7, 5), (-9, -17))[place % 2] for place, i in enumerate(by_force)}
         for n, x, y in zip(c.element, t.force.value, t.deflection.value):
             left.annotate(f"{n}", (x, y), shift[int(n)], textcoords="offset points", fontsize=10)
         left.set_xlim(0, force[1] * 1.03)
@@ -115,7 +117,7 @@ def _plot(c: Table1Check, data: Published) -> Figure:
                            label=name)
         right.axvline(0, color=d.BLACK, lw=1)
         right.set_yticks(y, [f"no. {n}" for n in c.element])
-        right.set_ylim(-0.6, len(y) + 1.1)
+        right.set_ylim(-0.6, len(y) - 0.4)
         right.set_xlabel("difference, % (bars: what rounding allows)")
-        right.legend(loc="upper center", ncols=3, fontsize=9, columnspacing=1, handletextpad=0.4)
+        right.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncols=3, fontsize=9, columnspacing=1, handletextpad=0.4)
         return Figure("table1", d.svg(figure, "table1"), "Left: deflection against force. Right: relations between Table 1's columns.")

@@ -60,7 +60,7 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
 
 
 def findings(s: Table2Study, data: Published, who: tuple[Witness, ...]) -> tuple[str, ...]:
-    return (_implied(s), _equation(s), *_supported(s), _alternatives(s), _other_witnesses(s, who), *_consequences(s, data))
+    return (_implied(s), _equation(s), *_supported(s), _alternatives(s), _left_over(s), _other_witnesses(s, who), *_consequences(s, data))
 
 
 def _implied(s: Table2Study) -> str:
@@ -117,8 +117,20 @@ def _alternatives(s: Table2Study) -> str:
         text += f"{listed(f'{_said(f)} (scatter {percent(f.rms)})' for f in worse)} fits worse. "
     both = next(f for f in s.fits if f.model == "K_r free, R times a factor")
     wide = both.high[0] / both.low[0] > USABLE
+    text = text[:1].upper() + text[1:]
     return text + ("With K_r and a factor on R both free, neither is determined." if wide
                    else f"With both free, K_r = {sig(both.value[0])} ({interval(both.low[0], both.high[0])}) N/mm.")
+
+
+def _left_over(s: Table2Study) -> str:
+    """Whether the residuals of the best one-parameter stiffness run with the sample."""
+    by_sample = np.exp(np.log(s.ratio / (s.supported.value[0] + s.object_printed) * (s.measuring[:, None] + s.object_printed)).mean(0))
+    soft, stiff = int(np.argmin(s.object_printed)), int(np.argmax(s.object_printed))
+    drift = by_sample[soft] / by_sample[stiff]
+    if abs(np.log(drift)) < s.supported.rms:
+        return "What is left over does not run with the sample's stiffness."
+    return (f"What is left over runs with the sample: measured R over equation (2) goes from {sig(by_sample[stiff])} on the stiffest to "
+            f"{sig(by_sample[soft])} on the softest. The lumped pair has no term for that.")
 
 
 def _said(f: Fit) -> str:
