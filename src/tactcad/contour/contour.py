@@ -65,6 +65,11 @@ class Contour:
         return (x0 + mx / area, y0 + my / area)
 
     @property
+    def product_moment(self) -> float:
+        """Integral of x y over the enclosed area, mm4 (the area counted positive)."""
+        return sum(_product_moment(s) for s in self.segments) * (1.0 if self.ccw else -1.0)
+
+    @property
     def box(self) -> tuple[float, float, float, float]:
         """Bounding box x_min, y_min, x_max, y_max in mm, exact at the arcs' extremes."""
         points = [p for s in self.segments for p in _extreme_points(s)]
@@ -128,6 +133,33 @@ def _area_and_moments(s: Segment, x0: float, y0: float) -> tuple[float, float, f
         mx += cap * (s.centre[0] - x0) + bow * cos(middle)
         my += cap * (s.centre[1] - y0) + bow * sin(middle)
     return area, mx, my
+
+
+def _product_moment(s: Segment) -> float:
+    """Green's theorem: the integral of x^2 y/2 dy along the segment (its curl is x y).
+
+    Exact: a cubic in the line's parameter, and a trigonometric polynomial on the arc.
+    """
+    if isinstance(s, Line):
+        (x0, y0), (x1, y1) = s.start, s.end
+        dy = y1 - y0
+        return dy / 24 * (y0 * (3 * x0 * x0 + 2 * x0 * x1 + x1 * x1) + y1 * (x0 * x0 + 2 * x0 * x1 + 3 * x1 * x1))
+    (a, b), r = s.centre, s.radius
+    first, last = s.start_angle, s.start_angle + s.sweep
+
+    def antiderivative(w: float) -> float:
+        # integrand (a + r c)^2 (b + r s) r c / 2 with c = cos w, s = sin w
+        c, n = cos(w), sin(w)
+        i_c = n
+        i_cc = w / 2 + n * c / 2
+        i_ccc = n - n**3 / 3
+        i_cs = n * n / 2
+        i_ccs = -(c**3) / 3
+        i_cccs = -(c**4) / 4
+        return r / 2 * (b * (a * a * i_c + 2 * a * r * i_cc + r * r * i_ccc)
+                        + r * (a * a * i_cs + 2 * a * r * i_ccs + r * r * i_cccs))
+
+    return antiderivative(last) - antiderivative(first)
 
 
 def _w_minus_sin(w: float) -> float:

@@ -7,7 +7,7 @@ profile is (radius, z) and turns about z. All lengths in mm.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import pi
 from typing import Literal
 
@@ -31,6 +31,13 @@ class Extrusion:
         return self.section_area * self.thickness
 
     @property
+    def moment(self) -> Vector:
+        """Volume times centre, mm4."""
+        sections = [(self.outer, 1.0), *((c, -1.0) for c in self.openings)]
+        mx, my = (sum(sign * c.area * c.centroid[i] for c, sign in sections) for i in (0, 1))
+        return (mx * self.thickness, my * self.thickness, self.volume * self.thickness / 2)
+
+    @property
     def section_area(self) -> float:
         """Area of the cut section, openings taken off, mm2."""
         return self.outer.area - sum(c.area for c in self.openings)
@@ -51,6 +58,11 @@ class Revolution:
     def volume(self) -> float:
         """mm3, by Pappus: 2 pi times the centroid's radius times the area."""
         return 2 * pi * self.profile.centroid[0] * self.profile.area
+
+    @property
+    def moment(self) -> Vector:
+        """Volume times centre, mm4: 2 pi times the profile's integral of r z."""
+        return (0.0, 0.0, 2 * pi * self.profile.product_moment)
 
 
 @dataclass(frozen=True)
@@ -87,13 +99,26 @@ class Hole:
             volume += pi * r * r * drill_point_height(self.diameter) / 3
         return volume
 
+    @property
+    def moment(self) -> Vector:
+        """Volume times centre of what is taken off, mm4."""
+        r = self.diameter / 2
+        depth_moment = pi * r * r * self.depth**2 / 2
+        if self.counterbore:
+            wide, deep = self.counterbore
+            depth_moment += pi * (wide * wide / 4 - r * r) * deep**2 / 2
+        if self.drill_point:
+            height = drill_point_height(self.diameter)
+            depth_moment += pi * r * r * height / 3 * (self.depth + height / 4)
+        return _along(self.at, self.axis, self.volume, depth_moment)
+
 
 @dataclass(frozen=True)
 class Pocket:
-    """A flat-bottomed pocket, or a raised boss: a contour moved along an axis from a face.
+    """A flat-bottomed pocket: a contour moved along an axis from a face into the material.
 
-    The contour lies in the plane through `at` spanned by `x_axis` and axis x x_axis... so that
-    (x_axis, y_axis, axis) is right-handed with `axis` pointing into the material.
+    The contour lies in the plane through `at` spanned by x_axis and y_axis = axis x x_axis, so that
+    (x_axis, y_axis, axis) is right-handed; axis points into the material.
     """
 
     name: str
@@ -109,8 +134,26 @@ class Pocket:
         """Material taken off, mm3."""
         return (self.contour.area - sum(c.area for c in self.island)) * self.depth
 
+    @property
+    def moment(self) -> Vector:
+        """Volume times centre of what is taken off, mm4."""
+        sections = [(self.contour, 1.0), *((c, -1.0) for c in self.island)]
+        mx, my = (sum(sign * c.area * c.centroid[i] for c, sign in sections) * self.depth for i in (0, 1))
+        y_axis = _cross(self.axis, self.x_axis)
+        base = _along(self.at, self.axis, self.volume, self.volume * self.depth / 2)
+        return tuple(b + mx * u + my * v for b, u, v in zip(base, self.x_axis, y_axis))
+
 
 Feature = Hole | Pocket
+
+
+def _along(at: Vector, axis: Vector, volume: float, depth_moment: float) -> Vector:
+    """Moment of a body on the axis from `at`: volume x at + depth_moment x axis."""
+    return tuple(volume * p + depth_moment * a for p, a in zip(at, axis))
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def drill_point_height(diameter: float) -> float:
@@ -179,12 +222,17 @@ class Part:
     purchase: Purchase | None = None
     mass_override: float | None = None
     spares: int = 0
-    tags: frozenset[str] = field(default_factory=frozenset)
 
     @property
     def volume(self) -> float:
         """Closed-form volume, mm3: the stock less its features, which may not overlap."""
         return self.body.volume - sum(f.volume for f in self.features)
+
+    @property
+    def centre(self) -> Vector:
+        """Centre of mass in the part's own frame, mm, in closed form. A model file has none."""
+        taken = [f.moment for f in self.features]
+        return tuple((m - sum(t[i] for t in taken)) / self.volume for i, m in enumerate(self.body.moment))
 
     @property
     def mass(self) -> float:

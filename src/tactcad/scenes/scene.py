@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from tactcad.parts.consumables import Supply
 from tactcad.parts.description import Part, Vector
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
@@ -40,30 +41,17 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Consumable:
-    """Something that is used up or is not a solid: adhesive, wire, a gauge."""
-
-    part_no: str
-    description: str
-    qty: float
-    unit: str
-    purchase_designation: str = ""
-    manufacturer: str = ""
-    mpn: str = ""
-    supplier: str = ""
-    alternates: str = ""
-    spares: float = 0
-    consumable: bool = True
-
-
-@dataclass(frozen=True)
 class Scene:
-    """Placements with designators that are unique, meant contacts, and what has no solid."""
+    """Placements with designators that are unique, meant contacts, and what has no solid.
+
+    `cover` names what is taken off to look inside.
+    """
 
     name: str
     placements: tuple[Placement, ...]
     contacts: tuple[Contact, ...] = ()
-    consumables: tuple[Consumable, ...] = ()
+    supplies: tuple[Supply, ...] = ()
+    cover: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         names = [p.designator for p in self.placements]

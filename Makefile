@@ -1,0 +1,39 @@
+# `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
+.DEFAULT_GOAL := help
+.PHONY: help environment export test check nightly clean
+
+BIN := .venv/bin
+DESIGNS := $(sort $(wildcard hardware/*.toml))
+WORKERS ?= 2
+
+# one thread a process: the tests run side by side, and results do not depend on the number of cores
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+environment:
+	@packaging/environment.sh
+
+export: environment ## write the files of every design in hardware/ to exports/<design>/
+	@status=0; \
+	for design in $(DESIGNS); do $(BIN)/tactcad export $$design || status=1; done; \
+	exit $$status
+
+test: environment ## every test but the long ones
+	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS)
+
+check: environment ## style, and every check of every design: all failures are printed, then it fails
+	@status=0; \
+	$(BIN)/ruff check || status=1; \
+	for design in $(DESIGNS); do $(BIN)/tactcad check $$design || status=1; done; \
+	exit $$status
+
+nightly: environment ## the long tests
+	$(BIN)/python -m pytest -m nightly
+
+clean: ## remove the environment, caches and exports; exports/golden stays
+	rm -rf .venv .venv.lock .cache .pytest_cache .ruff_cache .hypothesis build
+	find src tests benchmarks packaging -name __pycache__ -prune -exec rm -rf {} +
+	find exports -mindepth 1 -maxdepth 1 ! -name golden ! -name README.md -exec rm -rf {} +

@@ -1,0 +1,42 @@
+"""tactcad export [DESIGN] [--scene NAME]... [--out DIR] [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict
+
+EXAMPLES = """\
+  tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
+  tactcad export soft-tissue --out /tmp/soft  another design, to a folder of your choice
+  tactcad export my/design.toml --scene array one scene only
+
+The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    from tactcad.design.load import DEFAULT_DESIGN
+
+    parser.add_argument(
+        "design", nargs="?", default=DEFAULT_DESIGN, metavar="DESIGN",
+        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
+    )
+    parser.add_argument(
+        "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.design.load import read
+    from tactcad.export.pipeline import export
+    from tactcad.scenes import chosen_scenes
+
+    from .progress import progress
+
+    design = read(args.design)
+    done = export(design, chosen_scenes(design, args.scene), args.out or f"exports/{design.name}", progress())
+    if args.json:
+        print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
+    return 0

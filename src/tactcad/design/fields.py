@@ -1,0 +1,156 @@
+"""What a field of the design file is: unit, legal range, default, meaning; and reading one value."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+from .messages import InputError
+
+REQUIRED = object()
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number in `unit`, between low and high, both legal unless low_open."""
+
+    unit: str
+    low: float
+    high: float
+    meaning: str
+    low_open: bool = False
+
+    @property
+    def legal(self) -> str:
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{'more than' if self.low_open else 'from'} {self.low:g} to {self.high:g}{unit}"
+
+    def read(self, value: Any, where: str) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise InputError(where, "not a number", value=value, legal=self.legal)
+        if isinstance(value, float) and not isfinite(value):
+            raise InputError(where, "not a finite number", value=value, legal=self.legal)
+        if not self.low <= value <= self.high or (self.low_open and value == self.low):
+            raise InputError(where, "out of range", value=value, legal=self.legal)
+        return float(value)
+
+    def schema(self) -> dict:
+        low = "exclusiveMinimum" if self.low_open else "minimum"
+        return {"type": "number", low: self.low, "maximum": self.high}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words."""
+
+    options: tuple[str, ...]
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return "one of " + ", ".join(repr(o) for o in self.options)
+
+    def read(self, value: Any, where: str) -> str:
+        if not isinstance(value, str) or value not in self.options:
+            raise InputError(where, "unknown choice", value=value, legal=self.legal)
+        return value
+
+    def schema(self) -> dict:
+        return {"type": "string", "enum": list(self.options)}
+
+
+@dataclass(frozen=True)
+class Text:
+    """One line of text that matches `pattern` whole."""
+
+    pattern: str
+    legal: str
+    meaning: str
+    unit: str = ""
+
+    def read(self, value: Any, where: str) -> str:
+        if not isinstance(value, str) or not re.fullmatch(self.pattern, value):
+            raise InputError(where, "not usable text", value=value, legal=self.legal)
+        return value
+
+    def schema(self) -> dict:
+        return {"type": "string", "pattern": f"^(?:{self.pattern})$"}
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """A list of numbers, each as `item`, `least` to `most` of them."""
+
+    item: Number
+    least: int
+    most: int
+    meaning: str
+
+    @property
+    def unit(self) -> str:
+        return self.item.unit
+
+    @property
+    def legal(self) -> str:
+        return f"a list of {self.least} to {self.most} numbers, each {self.item.legal}"
+
+    def read(self, value: Any, where: str) -> tuple[float, ...]:
+        if not isinstance(value, list):
+            raise InputError(where, "not a list", value=value, legal=self.legal)
+        if not self.least <= len(value) <= self.most:
+            raise InputError(where, f"a list of {len(value)}", legal=self.legal)
+        return tuple(self.item.read(v, f"{where}[{i}]") for i, v in enumerate(value))
+
+    def schema(self) -> dict:
+        return {
+            "type": "array",
+            "items": self.item.schema(),
+            "minItems": self.least,
+            "maxItems": self.most,
+        }
+
+
+@dataclass(frozen=True)
+class Rows:
+    """One or two rows of numbers; a third row is refused with the reason."""
+
+    row: Numbers
+    meaning: str
+
+    @property
+    def unit(self) -> str:
+        return self.row.unit
+
+    @property
+    def legal(self) -> str:
+        return f"one or two rows, each {self.row.legal}"
+
+    def read(self, value: Any, where: str) -> tuple[tuple[float, ...], ...]:
+        if not isinstance(value, list) or not value:
+            raise InputError(where, "not a list of rows", value=value, legal=self.legal)
+        if len(value) > 2:
+            raise InputError(
+                where,
+                f"{len(value)} rows cannot lie in one plane: the pads of a third row would lie "
+                "inside the arms of the second",
+                legal=self.legal,
+            )
+        return tuple(self.row.read(v, f"{where}[{i}]") for i, v in enumerate(value))
+
+    def schema(self) -> dict:
+        return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
+
+
+Spec = Number | Choice | Text | Numbers | Rows
+
+
+def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:
+    """A dataclass field read by `spec`. `derived` says how a default of None is filled in."""
+    metadata = {"spec": spec, "derived": derived}
+    if default is REQUIRED:
+        return dataclasses.field(metadata=metadata)
+    return dataclasses.field(default=default, metadata=metadata)

@@ -1,0 +1,235 @@
+"""From a TOML file to a Design, field by field, or to one clear message."""
+
+from __future__ import annotations
+
+import dataclasses
+import datetime
+import difflib
+import math
+import tomllib
+import typing
+from pathlib import Path
+from typing import Any
+
+from .fields import Number
+from .materials import ALLOYS
+from .messages import InputError
+from .tree import Design, Element, Hinge, Stop
+
+# A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
+MOST_BYTES = 1_000_000
+
+DEFAULT_DESIGN = "macro-array"
+
+
+def read(source: str | Path) -> Design:
+    """The design in a file, or the one of that name in hardware/, field by field.
+
+    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call.
+    Raises InputError where the file is missing or not a design, or a value is not legal.
+    """
+    path = find(source)
+    return parse(_text(path), str(path))
+
+
+def find(source: str | Path) -> Path:
+    """The design file that `source` names: a path (it has a '/' or ends in .toml), or a name in hardware/."""
+    text = str(source)
+    if isinstance(source, Path) or "/" in text or text.endswith(".toml"):
+        return Path(text)
+    for folder in _hardware_folders():
+        if (folder / f"{text}.toml").is_file():
+            return folder / f"{text}.toml"
+    known = names()
+    raise InputError(
+        "DESIGN", "no design of that name in hardware/", value=text,
+        legal=f"a path ending in .toml, or one of {', '.join(known)}" if known else "a path ending in .toml",
+    )
+
+
+def names() -> list[str]:
+    """Names of the designs in hardware/, sorted."""
+    return sorted({p.stem for folder in _hardware_folders() for p in folder.glob("*.toml")})
+
+
+def _hardware_folders() -> list[Path]:
+    """hardware/ where the command runs; in a checkout, also the project's own."""
+    here, checkout = Path("hardware"), Path(__file__).parents[3] / "hardware"
+    if checkout.is_dir() and not (here.is_dir() and here.samefile(checkout)):
+        return [here, checkout]
+    return [here]
+
+
+def _text(path: Path) -> str:
+    try:
+        if not path.is_file():
+            problem = "not a file" if path.exists() else "no such file"
+            raise InputError(str(path), problem, legal="a design file (TOML)")
+        with path.open("rb") as stream:
+            data = stream.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(str(path), f"cannot be read: {reason}") from None
+    if len(data) > MOST_BYTES:
+        raise InputError(str(path), "larger than a design can be", legal=f"at most {MOST_BYTES} bytes")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise InputError(f"{path}:{line}", "not UTF-8 text", value=data[error.start : error.end]) from None
+
+
+def parse(text: str, where: str) -> Design:
+    """Read a design from TOML text; `where` names it in messages. Rules between fields are not tried."""
+    try:
+        table = tomllib.loads(text.replace("\r\n", "\n"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(where, f"not TOML: {error}") from None
+    except RecursionError:
+        raise InputError(where, "nested too deeply for a design file", legal="tables at most 3 deep") from None
+    except ValueError as error:  # an impossible date, or an integer of thousands of digits
+        raise InputError(where, f"not TOML: {error}") from None
+    return from_table(table)
+
+
+def from_table(table: dict[str, Any]) -> Design:
+    """Read a design from the nested dict that TOML gives."""
+    sections = {f.name: f for f in dataclasses.fields(Design)}
+    for name, value in table.items():
+        if name not in sections:
+            raise _unknown(name, list(sections))
+        if not isinstance(value, dict):
+            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
+    values = {}
+    for name, section in sections.items():
+        if name == "origin":
+            continue
+        kind = _SECTION_TYPES[name]
+        if name not in table and section.default is dataclasses.MISSING:
+            raise InputError(name, "missing table", legal=f"a table [{name}]")
+        if name not in table and section.default is None:
+            continue  # a rig that this design does not have
+        values[name] = _section(kind, table.get(name, {}), name)
+    design = Design(**_with_alloy(values), origin={})
+    return dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
+
+
+_SECTION_TYPES = {
+    # a rig's table is `Kind | None`; the kind is its first argument
+    name: (typing.get_args(hint) or (hint,))[0]
+    for name, hint in typing.get_type_hints(Design).items()
+}
+
+
+def _section(kind: type, table: dict[str, Any], path: str) -> Any:
+    fields = {f.name: f for f in dataclasses.fields(kind)}
+    for name in table:
+        if name not in fields:
+            raise _unknown(f"{path}.{name}", [f"{path}.{n}" for n in fields])
+    values = {}
+    for name, f in fields.items():
+        where = f"{path}.{name}"
+        if name not in table:
+            if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING:
+                raise InputError(where, "missing", legal=f.metadata["spec"].legal)
+        elif kind is Element and name == "override":
+            values[name] = _overrides(table[name], where)
+        elif kind is Stop and name == "gaps":
+            values[name] = _gaps(table[name], where, f.metadata["spec"])
+        else:
+            value = table[name]
+            if isinstance(value, datetime.date) and not isinstance(value, datetime.datetime):
+                value = value.isoformat()
+            values[name] = f.metadata["spec"].read(value, where)
+    return kind(**values)
+
+
+def _overrides(table: Any, where: str) -> dict[int, Hinge]:
+    if not isinstance(table, dict):
+        raise InputError(where, "not a table", value=table, legal=f"tables [{where}.N], N an element number")
+    overrides = {}
+    for key, value in table.items():
+        if not (key.isascii() and key.isdigit() and 1 <= len(key) <= 4 and key == str(int(key))):
+            raise InputError(f"{where}.{key}", "not an element number", legal="1 and up")
+        if not isinstance(value, dict):
+            raise InputError(f"{where}.{key}", "not a table", value=value)
+        overrides[int(key)] = _section(Hinge, value, f"{where}.{key}")
+    return dict(sorted(overrides.items()))
+
+
+def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
+    if not isinstance(table, dict):
+        raise InputError(where, "not a table", value=table, legal=spec.meaning)
+    gaps = {}
+    for key, value in table.items():
+        try:
+            arm = float(key)
+        except ValueError:
+            arm = math.nan
+        if not (math.isfinite(arm) and arm > 0):
+            raise InputError(f"{where}.{key}", "not an arm length", value=key, legal="arm lengths in mm")
+        gaps[arm] = spec.read(value, f"{where}.{key}")
+    return dict(sorted(gaps.items()))
+
+
+def _with_alloy(values: dict[str, Any]) -> dict[str, Any]:
+    """Fill in [material] from the alloy's table where the file says nothing."""
+    material = values["material"]
+    alloy = ALLOYS[material.alloy]
+    missing = {
+        f.name: float(getattr(alloy, f.name))
+        for f in dataclasses.fields(material)
+        if getattr(material, f.name) is None
+    }
+    return {**values, "material": dataclasses.replace(material, **missing)}
+
+
+def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:
+    """[origin]: the source of a value by its path, as "element.pad_length" or nested tables."""
+    flat: dict[str, str] = {}
+    stack = [("", table)]
+    while stack:
+        prefix, node = stack.pop()
+        for key, value in node.items():
+            path = f"{prefix}{key}"
+            if isinstance(value, dict):
+                stack.append((f"{path}.", value))
+            elif isinstance(value, str):
+                flat[path] = value
+            else:
+                raise InputError(f"origin.{path}", "not text", value=value, legal="where the value is from")
+    known = paths(design)
+    for path in flat:
+        if path not in known:
+            raise _unknown(f"origin.{path}", [f"origin.{p}" for p in known])
+    return dict(sorted(flat.items()))
+
+
+def paths(design: Design) -> dict[str, Any]:
+    """Every value of a design by its dotted path, as in messages and in [origin]."""
+    flat: dict[str, Any] = {}
+
+    def add(prefix: str, value: Any) -> None:
+        if dataclasses.is_dataclass(value):
+            for f in dataclasses.fields(value):
+                add(f"{prefix}.{f.name}", getattr(value, f.name))
+        elif isinstance(value, dict):
+            for key, item in value.items():
+                add(f"{prefix}.{key:g}" if isinstance(key, float) else f"{prefix}.{key}", item)
+        else:
+            flat[prefix] = value
+
+    for f in dataclasses.fields(Design):
+        if f.name != "origin":
+            add(f.name, getattr(design, f.name))
+    return flat
+
+
+def _unknown(path: str, known: list[str]) -> InputError:
+    near = difflib.get_close_matches(path[:200], known, n=1)
+    shown = path if len(path) <= 80 else path[:77] + "..."
+    shown = shown.encode("unicode_escape").decode("ascii")
+    hint = f"did you mean {near[0]}?" if near else "see `tactcad schema`"
+    return InputError(shown, "unknown field", legal=hint)

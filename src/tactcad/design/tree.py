@@ -1,0 +1,317 @@
+"""The parameter tree: one frozen dataclass a table of the design file.
+
+Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between
+the rows along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the
+object. A default of None is derived from other fields (design/layout.py says how).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from .fields import Choice, Number, Numbers, Rows, Text, given
+from .materials import ALLOYS
+
+_LINE = r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,80}"
+_line = lambda meaning: Text(_LINE, "one line of 1 to 80 printable characters", meaning)  # noqa: E731
+
+
+@dataclass(frozen=True)
+class Identity:
+    """[design]: who made which revision of what."""
+
+    name: str = given(
+        Text(
+            r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
+            "1 to 40 of a-z, 0-9 and '-', not first or last '-'",
+            "short name: folder, part numbers and file names start with it",
+        )
+    )
+    title: str = given(_line("title on drawings"))
+    revision: str = given(Text(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
+    date: str = given(
+        Text(
+            r"[0-9]{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12][0-9]|3[01])",
+            "YYYY-MM-DD",
+            "date of issue; the only date in any output",
+        )
+    )
+    author: str = given(_line("creator, for the title block"))
+    organisation: str = given(_line("legal owner, for the title block"))
+
+
+@dataclass(frozen=True)
+class Material:
+    """[material]: the sheet that the elements are cut from."""
+
+    alloy: str = given(Choice(tuple(ALLOYS), "alloy and temper of the sheet"))
+    youngs_modulus: float | None = given(
+        Number("MPa", 1e3, 1e6, "Young's modulus"), None, "the alloy's value"
+    )
+    poisson: float | None = given(Number("", 0.0, 0.49, "Poisson's ratio"), None, "the alloy's value")
+    density: float | None = given(Number("kg/m3", 500, 25000, "density"), None, "the alloy's value")
+    yield_strength: float | None = given(
+        Number("MPa", 1, 5000, "0.2 % proof stress"), None, "the alloy's value"
+    )
+    fatigue_strength: float | None = given(
+        Number("MPa", 1, 5000, "fatigue strength, R = -1, 5e8 cycles"), None, "the alloy's value"
+    )
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """[sheet]"""
+
+    thickness: float = given(Number("mm", 0.1, 20, "sheet thickness = width of every element"))
+
+
+@dataclass(frozen=True)
+class Array:
+    """[array]: which elements stand where."""
+
+    row_arms: tuple[tuple[float, ...], ...] = given(
+        Rows(
+            Numbers(Number("mm", 0.1, 100, "arm length"), 1, 500, "arm lengths of a row"),
+            "arm lengths, hinge centre to the arm's tip, row by row; elements are numbered in this order",
+        )
+    )
+    pitch: float = given(Number("mm", 0.2, 50, "distance of neighbouring pads along a row"))
+    row_pitch: float = given(Number("mm", 0.1, 50, "distance of facing pads' centres across the rows"))
+    spacer: float | None = given(
+        Number("mm", 0.05, 30, "spacer thickness"), None, "pitch - sheet thickness"
+    )
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """[element.override.N]: what one element may have otherwise; None keeps [element]'s value."""
+
+    hinge_thickness: float | None = given(Number("mm", 0.005, 5, "hinge thickness t"), None)
+    hinge_length: float | None = given(Number("mm", 0.01, 50, "slot length l"), None)
+    fillet_radius: float | None = given(Number("mm", 0.005, 25, "slot fillet radius r"), None)
+    arm_height: float | None = given(Number("mm", 0.05, 50, "arm height h"), None)
+
+
+@dataclass(frozen=True)
+class Element:
+    """[element]: the side view that the wire cuts."""
+
+    hinge_thickness: float = given(Number("mm", 0.005, 5, "hinge thickness t"))
+    hinge_length: float = given(
+        Number("mm", 0.01, 50, "slot length l, corner fillets included, along the arm")
+    )
+    fillet_radius: float = given(Number("mm", 0.005, 25, "radius r of the slot's corner fillets"))
+    arm_height: float = given(Number("mm", 0.05, 50, "arm height h over the flat face"))
+    body_height: float = given(Number("mm", 0.05, 50, "thickness Hb of the body in front of the clamp"))
+    pad_length: float = given(Number("mm", 0.05, 50, "contact pad's length along the arm"))
+    pad_height: float = given(Number("mm", 0.01, 50, "how far the pad stands out of the flat face"))
+    sides: str = given(
+        Choice(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
+    )
+    pad_root_radius: float = given(Number("mm", 0.005, 10, "fillet between pad and flat face"), 0.3)
+    corner_radius: float = given(
+        Number("mm", 0.005, 5, "radius of the remaining inside corners, for the wire"), 0.3
+    )
+    seat_length: float = given(
+        Number("mm", 0.1, 20, "ledge of the element with the longest arm, slot to clamp edge"), 1.96
+    )
+    rear_length: float = given(Number("mm", 1, 200, "clamped rear body, clamp edge to rear end"), 18.1)
+    rear_height: float = given(Number("mm", 0.2, 100, "height of the rear body over the flat face"), 8.0)
+    recess_offset: float = given(
+        Number("mm", 0, 100, "wire recess of the flat face starts this far behind the clamp edge"), 1.6
+    )
+    recess_depth: float = given(Number("mm", 0.01, 20, "depth of the wire recess"), 0.8)
+    override: dict[int, Hinge] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Holes:
+    """[holes]: through every element, spacer and end plate; in line for all arm lengths."""
+
+    height: float = given(Number("mm", 0.1, 100, "hole centres over the flat face"), 4.7)
+    screw_offsets: tuple[float, ...] = given(
+        Numbers(Number("mm", 0.1, 200, "x"), 1, 8, "clamping screws behind the clamp edge"), (4.1, 14.1)
+    )
+    dowel_offsets: tuple[float, ...] = given(
+        Numbers(Number("mm", 0.1, 200, "x"), 1, 4, "dowels behind the clamp edge"), (9.1,)
+    )
+    dowel_hole: float = given(
+        Number("mm", 0.2, 20, "dowel hole in elements and spacers, slide fit, lower limit"), 3.012
+    )
+    dowel_hole_upper: float = given(Number("mm", 0.001, 0.1, "its upper deviation; lower is 0"), 0.006)
+    web: float = given(Number("mm", 0.1, 20, "least material around a hole"), 1.5)
+
+
+@dataclass(frozen=True)
+class Clamp:
+    """[clamp]: spacers, end plates, stop plate, carrier and their fasteners."""
+
+    screw: str = given(Choice(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
+    dowel: str = given(Choice(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
+    plate_alloy: str = given(Choice(tuple(ALLOYS), "end plates and carrier"), "6061-T6")
+    end_plate_thickness: float = given(Number("mm", 2, 40, "end plate along the row"), 8.0)
+    end_plate_bottom: float = given(
+        Number("mm", 0, 50, "end plates start this far over the flat face: clear of the object"), 0.5
+    )
+    end_plate_height: float | None = given(
+        Number("mm", 4, 100, "end plate along z"),
+        None,
+        "so that a standard set screw reaches from the carrier to the stop plate",
+    )
+    end_plate_margin: float = given(Number("mm", 0, 20, "end plate beyond the elements' rear end"), 0.5)
+    spacer_bottom: float = given(Number("mm", 0, 50, "spacers start this far over the flat face"), 0.9)
+    spacer_drop: float = given(Number("mm", 0, 20, "spacers end this far below the rear body's top"), 0.1)
+    stop_plate_thickness: float = given(Number("mm", 0.5, 20, "stop plate"), 4.0)
+    stop_plate_gap: float = given(Number("mm", 0.05, 5, "stop plate to rear bodies and end plates"), 0.4)
+    hold_down_pitch: float = given(
+        Number("mm", 5, 200, "largest distance of the set screws that hold the stop plate down"), 40.0
+    )
+    carrier_thickness: float = given(Number("mm", 2, 40, "carrier plate"), 6.0)
+    carrier_margin: float = given(Number("mm", 0, 20, "carrier beyond the end plates"), 2.0)
+    carrier_screw_offset: float = given(
+        Number("mm", 0.5, 200, "carrier screws behind the clamp edge"), 10.6
+    )
+    mount_thread: str = given(Choice(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
+    mount_pitch_y: float = given(Number("mm", 5, 200, "distance of these threads along the row"), 32.0)
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """[gauge]: the strain gauge at each hinge."""
+
+    resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
+    factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
+    grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
+    grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
+    grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
+    carrier_arm_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the pad"), 1.2)
+    carrier_body_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the clamp"), 2.8)
+    carrier_width: float = given(Number("mm", 0.01, 20, "carrier across the element"), 1.5)
+    carrier_modulus: float = given(Number("MPa", 0, 2e5, "Young's modulus of backing and adhesive"), 3000.0)
+    carrier_conductivity: float = given(Number("W/(m K)", 0.01, 50, "of backing and adhesive"), 0.2)
+    foil_thickness: float = given(Number("mm", 0, 0.1, "grid foil"), 0.005)
+    foil_modulus: float = given(Number("MPa", 0, 5e5, "Young's modulus of the foil"), 162000.0)
+    foil_coverage: float = given(Number("", 0, 1, "share of the grid's area that is metal"), 0.5)
+    resistance_per_kelvin: float = given(Number("1/K", -0.01, 0.01, "on a free gauge"), -17e-6)
+
+
+@dataclass(frozen=True)
+class Readout:
+    """[readout]: quarter bridge, amplifier and converter."""
+
+    excitation: float = given(Number("V", 0.01, 20, "bridge supply while reading"), 2.7)
+    gain: float = given(Number("", 1, 10000, "amplifier gain"), 100.0)
+    supply_positive: float = given(Number("V", 1, 30, "amplifier supply"), 5.0)
+    supply_negative: float = given(Number("V", -30, 0, "amplifier supply"), -5.0)
+    headroom: float = given(Number("V", 0, 5, "output stays this far inside the supplies"), 1.5)
+    bridge_offset: float = given(Number("", -0.1, 0.1, "dR/R of the unloaded bridge"), 0.0)
+    noise: float = given(Number("V", 0, 1, "rms of one sample at the amplifier's output"), 0.0005)
+    adc_bits: float = given(Number("", 1, 32, "converter resolution"), 16.0)
+    adc_range: float = given(Number("V", 0.01, 30, "converter's range, plus and minus"), 5.0)
+    samples: float = given(Number("", 1, 1e6, "samples averaged for a reading"), 10.0)
+    on_time: float = given(Number("s", 1e-6, 100, "bridge powered for one reading"), 0.005)
+    period: float = given(Number("s", 1e-5, 1e5, "time between readings"), 1.0)
+    reference_mismatch: float = given(
+        Number("", 0, 1, "share of self-heating that the reference gauges do not cancel"), 0.2
+    )
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """[tolerance]: plus and minus, taken as two standard deviations; on drawings and in the budget."""
+
+    hinge_thickness: float = given(Number("mm", 1e-4, 0.1, "hinge thickness"), 0.005)
+    hinge_length: float = given(Number("mm", 1e-4, 0.5, "slot length"), 0.02)
+    load_arm: float = given(Number("mm", 1e-4, 1, "pad edges, and element in its clamp"), 0.05)
+    sheet_thickness: float = given(Number("mm", 1e-4, 1, "sheet thickness"), 0.1)
+    arm_height: float = given(Number("mm", 1e-4, 0.5, "arm height"), 0.02)
+    pad_height: float = given(Number("mm", 1e-4, 0.5, "pad height over the dowel hole"), 0.01)
+    tilt: float = given(Number("degree", 0, 5, "array against object"), 0.1)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """[calibration]: the set-up that measures each element's stiffness."""
+
+    load_cell_stiffness: float = given(Number("N/mm", 0.01, 1e6, "force sensor's own stiffness"), 57.04)
+    load_cell_range: float = given(Number("N", 0.001, 1e5, "force sensor's range"), 5.0)
+    load_cell_resolution: float = given(Number("N", 0, 100, "force sensor's resolution"), 0.001)
+    step: float = given(Number("mm", 1e-5, 1, "micrometer step"), 0.025)
+    travel: float = given(Number("mm", 1e-4, 10, "whole displacement"), 0.150)
+    micrometer_resolution: float = given(Number("mm", 0, 0.1, "micrometer's resolution"), 0.0005)
+    friction: float = given(Number("", 0, 1, "friction between tip and pad"), 0.2)
+    load_point: float = given(Number("mm", 0, 1, "uncertainty of the load point along the arm"), 0.02)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """[sample]: the rubber sample."""
+
+    thickness: float = given(Number("mm", 0.1, 100, "sample thickness"), 6.0)
+    poisson: float = given(Number("", 0, 0.4999, "Poisson's ratio"), 0.49)
+    stiffness: float = given(Number("N/mm", 1e-6, 1e6, "stiffness under one pad"), 3.85)
+
+
+@dataclass(frozen=True)
+class Grasping:
+    """[grasping]: array on a vertical axis over the sample, loaded by weights."""
+
+    moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), 3.235)
+    weight: float = given(Number("N", 1e-4, 1e3, "one added weight"), 0.980665)
+    weights: float = given(Number("", 0, 1000, "how many weights are added"), 10.0)
+
+
+@dataclass(frozen=True)
+class Stop:
+    """[stop]: the overload stop: a land at each tip under the stop plate."""
+
+    land_length: float = given(Number("mm", 0.05, 20, "stop land along the arm, from the tip"), 1.0)
+    yield_fraction: float = given(
+        Number("", 0.1, 0.95, "gap as a fraction of the nominal deflection at yield"), 0.70
+    )
+    tolerance: float = given(Number("mm", 0.001, 0.1, "tolerance of the gap, plus and minus"), 0.015)
+    gaps: dict[float, float] | None = field(
+        default=None,
+        metadata={
+            "spec": Number("mm", 0.001, 5, "gap by arm length, a table: \"4\" = 0.13"),
+            "derived": "from the estimator: yield_fraction of the deflection at yield, by 0.01 mm",
+        },
+    )
+
+
+@dataclass(frozen=True)
+class Rating:
+    """[rating]: loads that the design is rated for."""
+
+    force: float = given(Number("N", 1e-6, 1e4, "force asked of each element at its pad"), 2.0)
+    yield_factor: float = given(Number("", 1, 10, "safety factor against yield"), 1.5)
+    overload_force: float = given(
+        Number("N", 1e-6, 1e5, "whole moving weight on one element: the stop must carry it"), 13.04
+    )
+    friction: float = given(Number("", 0, 0.9, "friction between pad and object"), 0.0)
+
+
+@dataclass(frozen=True)
+class Design:
+    """A whole design file."""
+
+    design: Identity
+    material: Material
+    sheet: Sheet
+    array: Array
+    element: Element
+    holes: Holes = Holes()
+    clamp: Clamp = Clamp()
+    gauge: Gauge = Gauge()
+    stop: Stop = Stop()
+    rating: Rating = Rating()
+    readout: Readout = Readout()
+    tolerance: Tolerance = Tolerance()
+    calibration: Calibration | None = None
+    sample: Sample | None = None
+    grasping: Grasping | None = None
+    origin: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return self.design.name

@@ -1,0 +1,277 @@
+"""The cut file of a wire-cut part, written from its contours and read back.
+
+AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities
+follow each contour head to tail; openings come before the outline, as they are cut, since the part drops
+with the last cut. The file holds the nominal contour: wire compensation belongs to the machine.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from itertools import combinations
+from math import degrees, dist, isclose
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad.contour import Arc, Contour, Line, Point, Segment, circle
+from tactcad.parts.description import Extrusion, Hole, Part
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.entities import DXFEntity
+
+LAYER = "CUT"
+CLOSED_MM = 1e-6  # a chain with a larger gap is open
+ARC_END_MM = 1e-9  # an end computed from a written arc may differ by rounding only
+MILLIMETRES, METRIC = 4, 1
+
+
+@dataclass(frozen=True)
+class CutFile:
+    """What a cut file holds: closed contours in mm, as read, and what surrounds them.
+
+    `gap` is the largest distance (mm) between the end of one entity and the start of the next.
+    """
+
+    outer: Contour
+    openings: tuple[Contour, ...]
+    entities: tuple[tuple[str, Segment], ...]  # type and geometry, in file order
+    layers: frozenset[str]
+    version: str
+    insunits: int
+    measurement: int
+    gap: float
+    flat: bool  # everything on Z = 0, seen from +Z
+
+    @property
+    def area(self) -> float:
+        """Area inside the outline less the openings, mm2."""
+        return self.outer.area - sum(c.area for c in self.openings)
+
+    @property
+    def cut_length(self) -> float:
+        return self.outer.length + sum(c.length for c in self.openings)
+
+
+def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
+    """Outline and openings of an extruded part, its through holes along the thickness included.
+
+    Raises TypeError where the part is not an extrusion.
+    """
+    if not isinstance(part.body, Extrusion):
+        raise TypeError(f"{part.part_no} is not an extrusion: it has no one section to cut")
+    holes = tuple(
+        circle(f.at[:2], f.diameter, f.name)
+        for f in part.features
+        if isinstance(f, Hole) and f.through and f.axis[:2] == (0.0, 0.0)
+    )
+    return part.body.outer, part.body.openings + holes
+
+
+def dxf_bytes(part: Part) -> bytes:
+    """The cut file of a wire-cut part; the same bytes in every process, time zone and home."""
+    import ezdxf
+
+    earlier = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True  # no dates, no random GUIDs
+    try:
+        drawing = ezdxf.new("R2000")
+        drawing.header["$INSUNITS"] = MILLIMETRES
+        drawing.header["$MEASUREMENT"] = METRIC
+        drawing.layers.add(LAYER, color=7)
+        outer, openings = section(part)
+        for contour in (*openings, outer):
+            _add(drawing, contour)
+        _set_extents(drawing, outer.box)
+        text = io.StringIO(newline="\n")
+        drawing.write(text)
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = earlier
+    return drawing.encode(text.getvalue())
+
+
+def _add(drawing: Drawing, contour: Contour) -> None:
+    """Append a contour's entities to the model space, head to tail."""
+    space, on_layer = drawing.modelspace(), {"layer": LAYER}
+    if round_one := contour.as_circle():
+        centre, radius = round_one
+        space.add_circle(_clean(centre), radius, dxfattribs=on_layer)
+        return
+    for s in contour:
+        if isinstance(s, Line):
+            space.add_line(_clean(s.start), _clean(s.end), dxfattribs=on_layer)
+        else:
+            first, last = (s.start_angle, s.end_angle) if s.ccw else (s.end_angle, s.start_angle)
+            angles = degrees(first) % 360.0, degrees(last) % 360.0  # DXF arcs run counter-clockwise
+            space.add_arc(_clean(s.centre), s.radius, *angles, dxfattribs=on_layer)
+
+
+def _clean(point: Point) -> Point:
+    """Without negative zeros, which would write one point in two ways."""
+    return (point[0] + 0.0, point[1] + 0.0)
+
+
+def _set_extents(drawing: Drawing, box: tuple[float, float, float, float]) -> None:
+    lower, upper = (box[0], box[1], 0.0), (box[2], box[3], 0.0)
+    drawing.modelspace().reset_extents(lower, upper)
+    drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
+
+
+def read_dxf(path: str | Path) -> CutFile:
+    """Read a cut file whose entities follow its contours head to tail.
+
+    Raises ValueError where the file is no DXF, where there is anything but LINE, ARC and CIRCLE, where a
+    chain is open, or where entities do not follow each other.
+    """
+    import ezdxf
+
+    try:
+        drawing = ezdxf.readfile(path)
+    except (ezdxf.DXFError, OSError) as error:
+        raise ValueError(f"not readable as DXF: {error}") from error
+    read = [_segment(entity) for entity in drawing.modelspace()]
+    others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
+    if others:
+        raise ValueError(f"{others} entities outside the model space")
+    chains, gap = _chains([s for _, s in read])
+    if not chains:
+        raise ValueError("the file is empty")
+    outer = max(chains, key=lambda c: c.area)
+    return CutFile(
+        outer=outer,
+        openings=tuple(c for c in chains if c is not outer),
+        entities=tuple(read),
+        layers=frozenset(entity.dxf.layer for entity in drawing.modelspace()),
+        version=drawing.dxfversion,
+        insunits=drawing.header.get("$INSUNITS", 0),
+        measurement=drawing.header.get("$MEASUREMENT", 0),
+        gap=gap,
+        flat=all(_is_flat(entity) for entity in drawing.modelspace()),
+    )
+
+
+def _segment(entity: DXFEntity) -> tuple[str, Segment]:
+    """Type and geometry of one entity; a circle is an arc that ends where it starts."""
+    kind, data = entity.dxftype(), entity.dxf
+    if kind == "LINE":
+        return kind, Line((data.start.x, data.start.y), (data.end.x, data.end.y))
+    if kind == "ARC":
+        ends = entity.start_point, entity.end_point
+        return kind, Arc(*((p.x, p.y) for p in ends), (data.center.x, data.center.y), ccw=True)
+    if kind == "CIRCLE":
+        centre, east = (data.center.x, data.center.y), (data.center.x + data.radius, data.center.y)
+        return kind, Arc(east, east, centre, ccw=True)
+    raise ValueError(f"entity {data.handle} is a {kind}; only LINE, ARC and CIRCLE may be in a cut file")
+
+
+def _is_flat(entity: DXFEntity) -> bool:
+    data = entity.dxf
+    points = (data.start, data.end) if entity.dxftype() == "LINE" else (data.center,)
+    upright = tuple(data.get("extrusion", (0.0, 0.0, 1.0))) == (0.0, 0.0, 1.0)
+    return upright and data.get("thickness", 0.0) == 0.0 and all(p.z == 0.0 for p in points)
+
+
+def _chains(segments: list[Segment]) -> tuple[list[Contour], float]:
+    """Closed contours of segments that follow each other, and the largest gap between neighbours."""
+    contours: list[Contour] = []
+    chain: list[Segment] = []
+    largest = 0.0
+    for s in segments:
+        if not chain and s.start == s.end and s.length > 0:
+            contours.append(Contour((s,)))
+            continue
+        if len(chain) == 1 and isinstance(chain[0], Arc) and not _follows(chain[0].end, s):
+            chain[0] = chain[0].reversed()  # an arc in a file has no direction; the next entity gives it
+        if chain:
+            turned = _turned_to_follow(chain[-1].end, s)
+            largest = max(largest, dist(chain[-1].end, turned.start))
+            s = turned
+        chain.append(s)
+        if len(chain) > 1 and dist(s.end, chain[0].start) <= CLOSED_MM:
+            largest = max(largest, dist(s.end, chain[0].start))
+            contours.append(_snapped(chain))
+            chain = []
+    if chain:
+        raise ValueError(f"the chain that starts at {chain[0].start} is open")
+    return contours, largest
+
+
+def _follows(end: Point, s: Segment) -> bool:
+    return dist(end, s.start) <= CLOSED_MM or (isinstance(s, Arc) and dist(end, s.end) <= CLOSED_MM)
+
+
+def _turned_to_follow(end: Point, s: Segment) -> Segment:
+    """The segment in the direction in which it starts at `end`; only arcs may be turned."""
+    if not _follows(end, s):
+        raise ValueError(f"the chain is open: {end} is followed by {s.start}")
+    return s if dist(end, s.start) <= CLOSED_MM else s.reversed()
+
+
+def _snapped(chain: list[Segment]) -> Contour:
+    """A contour with shared ends: where an arc meets a line, the line's written end holds."""
+    joints = []
+    for before, after in zip([chain[-1], *chain], chain):
+        joints.append(after.start if isinstance(after, Line) else before.end)
+    ends = [*joints[1:], joints[0]]
+    return Contour(
+        tuple(
+            Line(a, b) if isinstance(s, Line) else Arc(a, b, s.centre, s.ccw)
+            for s, a, b in zip(chain, joints, ends)
+        )
+    )
+
+
+def check_dxf(path: str | Path, part: Part) -> list[str]:
+    """What is wrong with a written cut file against the part that it was made from; empty where nothing is."""
+    try:
+        file = read_dxf(path)
+    except ValueError as error:
+        return [str(error)]
+    wrong = []
+    if file.version != "AC1015":
+        wrong.append(f"version {file.version} instead of AC1015")
+    if (file.insunits, file.measurement) != (MILLIMETRES, METRIC):
+        wrong.append(f"$INSUNITS={file.insunits} $MEASUREMENT={file.measurement} are not metric millimetres")
+    if file.layers != {LAYER}:
+        wrong.append(f"layers {sorted(file.layers)} instead of {LAYER} alone")
+    if not file.flat:
+        wrong.append("something lies off Z=0")
+    if file.gap > ARC_END_MM:
+        wrong.append(f"neighbours are {file.gap:.3g} mm apart")
+    wrong += _short_or_double(file)
+    return wrong + _differences(file, *section(part))
+
+
+def _short_or_double(file: CutFile) -> list[str]:
+    segments = [s for _, s in file.entities]
+    short = [f"entity without length at {s.start}" for s in segments if s.length <= CLOSED_MM]
+    double = [f"two equal entities at {a.start}" for a, b in combinations(segments, 2) if _same(a, b)]
+    return short + double
+
+
+def _same(a: Segment, b: Segment) -> bool:
+    """Whether two segments are the same curve, in either direction."""
+    if isinstance(a, Line) != isinstance(b, Line):
+        return False
+    ends = max(dist(a.start, b.start), dist(a.end, b.end))
+    turned = max(dist(a.start, b.end), dist(a.end, b.start))
+    return min(ends, turned) <= CLOSED_MM and dist(a.at(0.5), b.at(0.5)) <= CLOSED_MM
+
+
+def _differences(file: CutFile, outer: Contour, openings: tuple[Contour, ...]) -> list[str]:
+    """Contours of the file against those of the part, pair by pair: count, area, length and box."""
+    if len(file.openings) != len(openings):
+        return [f"{len(file.openings)} openings instead of {len(openings)}"]
+    wrong = []
+    for name, read, made in (
+        ("outline", file.outer, outer),
+        *((f"opening {i}", read, made) for i, (read, made) in enumerate(zip(file.openings, openings), 1)),
+    ):
+        for what in ("area", "length"):
+            a, b = getattr(read, what), getattr(made, what)
+            if not isclose(a, b, rel_tol=1e-9):
+                wrong.append(f"{what} of the {name} is {a!r} instead of {b!r}")
+        if max(abs(a - b) for a, b in zip(read.box, made.box)) > ARC_END_MM:
+            wrong.append(f"box of the {name} is {read.box} instead of {made.box}")
+    return wrong

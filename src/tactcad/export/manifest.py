@@ -1,0 +1,129 @@
+"""manifest.json: every file of an export with its digest, and every part in numbers."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+NAME = "manifest.json"
+SCHEMA = "tactcad-manifest-1"
+KINDS = ("step-part", "step-assembly", "dxf", "bom", "picture", "drawing", "inspection", "report")
+
+
+@dataclass(frozen=True)
+class FileRecord:
+    """One file: path below the export's folder with "/", what it is, the part it shows ("" for a whole scene)."""
+
+    path: str
+    kind: str
+    part_no: str
+    revision: str
+    sha256: str
+
+
+@dataclass(frozen=True)
+class PartRecord:
+    """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` None where nothing is wire-cut.
+
+    `box_mm` is ((x, y, z) least, (x, y, z) largest).
+    """
+
+    part_no: str
+    name: str
+    process: str
+    qty: int
+    volume_mm3: float
+    area_mm2: float
+    mass_g: float
+    centre_mm: tuple[float, float, float]
+    box_mm: tuple[tuple[float, float, float], tuple[float, float, float]]
+    cut_length_mm: float | None
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """What an export holds. `inputs` is what it was made from (inputs.Inputs.as_json)."""
+
+    design: str
+    revision: str
+    files: tuple[FileRecord, ...]
+    parts: tuple[PartRecord, ...]
+    inputs: Mapping[str, Any] = field(default_factory=dict)
+
+
+def sha256_of(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def manifest_bytes(manifest: Manifest) -> bytes:
+    """The manifest as JSON text. Raises ValueError where a number is not finite."""
+    record = {"schema": SCHEMA, **asdict(manifest)}
+    return (json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """The manifest of an export's folder. Raises ValueError where it is absent, damaged, or of another schema."""
+    try:
+        record = json.loads((folder / NAME).read_bytes())
+        if record.pop("schema") != SCHEMA:
+            raise ValueError(f"its schema is not {SCHEMA}")
+        files = tuple(FileRecord(**row) for row in record.pop("files"))
+        parts = tuple(_part(row) for row in record.pop("parts"))
+        return Manifest(files=files, parts=parts, **record)
+    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        raise ValueError(f"{folder / NAME} cannot be used: {error}") from error
+
+
+def _part(row: dict[str, Any]) -> PartRecord:
+    low, high = row["box_mm"]
+    return PartRecord(**{**row, "centre_mm": tuple(row["centre_mm"]), "box_mm": (tuple(low), tuple(high))})
+
+
+def check_manifest(folder: Path) -> list[str]:
+    """What is wrong with an export's folder against its manifest; empty where nothing is.
+
+    Every file named is there with its digest, nothing else is, and every part number is known.
+    """
+    try:
+        manifest = read_manifest(folder)
+    except ValueError as error:
+        return [str(error)]
+    named = [file.path for file in manifest.files]
+    there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
+    wrong = [f"{path}: listed twice" for path in sorted(set(named)) if named.count(path) > 1]
+    wrong += [f"{path}: not in the manifest" for path in sorted(there - set(named) - {NAME})]
+    parts = {part.part_no for part in manifest.parts}
+    for file in manifest.files:
+        wrong += _file_faults(folder, file, parts)
+    return wrong + _part_faults(manifest.parts)
+
+
+def _file_faults(folder: Path, file: FileRecord, parts: set[str]) -> list[str]:
+    path = PurePosixPath(file.path)
+    if path.is_absolute() or ".." in path.parts or not path.parts:
+        return [f"{file.path}: leads out of the folder"]
+    wrong = [] if file.kind in KINDS else [f"{file.path}: kind {file.kind!r} is none of {', '.join(KINDS)}"]
+    if file.part_no and file.part_no not in parts:
+        wrong.append(f"{file.path}: part {file.part_no!r} is not listed")
+    try:
+        same = sha256_of((folder / path).read_bytes()) == file.sha256
+    except OSError as error:
+        return [*wrong, f"{file.path}: {error.strerror}"]
+    return wrong if same else [*wrong, f"{file.path}: its content has changed"]
+
+
+def _part_faults(parts: Sequence[PartRecord]) -> list[str]:
+    """Numbers that cannot be: a part without volume, surface or mass, or a centre outside its box."""
+    numbers = [part.part_no for part in parts]
+    wrong = [f"part {n} is listed twice" for n in sorted(set(numbers)) if numbers.count(n) > 1]
+    for part in parts:
+        positive = (part.qty, part.volume_mm3, part.area_mm2, part.mass_g)
+        low, high = part.box_mm
+        inside = all(a < c < b for a, c, b in zip(low, part.centre_mm, high))
+        if not (inside and all(v > 0 for v in positive)):
+            wrong.append(f"part {part.part_no}: its numbers cannot be true")
+    return wrong

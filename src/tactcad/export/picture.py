@@ -1,0 +1,160 @@
+"""Hidden-line pictures (SVG) of placed solids, from the kernel's exact hidden-line removal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import ceil, hypot
+
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.BRepLib import BRepLib
+from OCP.GCPnts import GCPnts_QuasiUniformDeflection
+from OCP.GeomAbs import GeomAbs_Line
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.HLRAlgo import HLRAlgo_Projector
+from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
+from OCP.TopAbs import TopAbs_EDGE
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS, TopoDS_Shape
+
+from tactcad.design.messages import CheckFailure
+from tactcad.parts.description import Vector
+from tactcad.scenes.scene import Placement
+
+from .extent import projected_box
+
+Polyline = tuple[tuple[float, float], ...]
+
+# Curves are drawn as chords that stay this close (mm); at 1:1 a hundredth of a line's width.
+CHORD = 0.01
+MARGIN = 2.0  # mm around the drawing
+SAME_EXTENT = 0.05  # mm between the picture's extent and the one projected from the descriptions
+
+
+@dataclass(frozen=True)
+class View:
+    """Eye direction (from the object to the eye) and the direction that points up in the picture."""
+
+    name: str
+    eye: Vector
+    up: Vector
+
+    @property
+    def right(self) -> Vector:
+        (ux, uy, uz), (ex, ey, ez) = self.up, self.eye
+        r = (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex)
+        size = hypot(*r)
+        return (r[0] / size, r[1] / size, r[2] / size)
+
+
+ABOVE = View("above", (1.0, -1.4, 1.0), (0.0, 0.0, 1.0))
+BELOW = View("below", (1.0, -1.4, -1.0), (0.0, 0.0, 1.0))
+FRONT = View("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+BOTTOM = View("bottom", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+# a part's own frame: contour in x, y, thickness along z
+SIDE = View("side", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
+OBLIQUE = View("oblique", (0.7, 0.5, 1.4), (0.0, 1.0, 0.0))
+VIEWS = {view.name: view for view in (ABOVE, BELOW, FRONT, BOTTOM, SIDE, OBLIQUE)}
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Visible lines in the picture plane (mm, y up): sharp edges, and smooth ones between tangent faces."""
+
+    sharp: tuple[Polyline, ...]
+    smooth: tuple[Polyline, ...]
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """x_min, y_min, x_max, y_max of everything drawn, mm."""
+        xs, ys = zip(*(p for line in self.sharp + self.smooth for p in line))
+        return (min(xs), min(ys), max(xs), max(ys))
+
+
+def drawing(shapes: Iterable[TopoDS_Shape], view: View) -> Drawing:
+    """What is seen of the placed shapes from the view's eye, in canonical order."""
+    algorithm = HLRBRep_Algo()
+    for shape in shapes:
+        algorithm.Add(shape)
+    axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right))
+    algorithm.Projector(HLRAlgo_Projector(axes))
+    algorithm.Update()
+    algorithm.Hide()
+    result = HLRBRep_HLRToShape(algorithm)
+    sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
+    return Drawing(tuple(sorted(sharp)), tuple(sorted(_polylines(result.Rg1LineVCompound()))))
+
+
+def svg(drawn: Drawing, title: str, description: str) -> bytes:
+    """The drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white."""
+    x0, y0, x1, y1 = drawn.box
+    left, top = x0 - MARGIN, y1 + MARGIN
+    width, height = x1 - x0 + 2 * MARGIN, y1 - y0 + 2 * MARGIN
+    # a picture smaller than a hand is shown enlarged; its lines keep their share of the width
+    scale = max(1.0, ceil(120 / max(width, height)))
+    pen = 0.35 / scale
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width * scale:.2f}mm" height="{height * scale:.2f}mm" '
+        f'viewBox="0 0 {width:.3f} {height:.3f}">',
+        f"<title>{_escaped(title)}</title>",
+        f"<desc>{_escaped(description)}</desc>",
+        f'<rect width="{width:.3f}" height="{height:.3f}" fill="#ffffff"/>',
+        '<g fill="none" stroke-linecap="round" stroke-linejoin="round">',
+        f'<path class="smooth" stroke="#8a929b" stroke-width="{pen * 0.4:.4f}" d="{_path(drawn.smooth, left, top)}"/>',
+        f'<path class="sharp" stroke="#10161d" stroke-width="{pen:.4f}" d="{_path(drawn.sharp, left, top)}"/>',
+        "</g>",
+        "</svg>",
+        "",
+    ]
+    return "\n".join(lines).encode()
+
+
+def check_picture(data: bytes, placements: Sequence[Placement], view: View) -> None:
+    """Raise CheckFailure unless the written picture spans what the placements' descriptions project to."""
+    text = data.decode()
+    points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]
+    if not points:
+        raise CheckFailure(f"picture {view.name}: nothing is drawn")
+    xs, ys = zip(*points)
+    drawn = (max(xs) - min(xs), max(ys) - min(ys))
+    x0, y0, x1, y1 = projected_box(placements, view.right, view.eye)
+    for got, meant, name in ((drawn[0], x1 - x0, "width"), (drawn[1], y1 - y0, "height")):
+        if abs(got - meant) > SAME_EXTENT:
+            raise CheckFailure(f"picture {view.name}: {name} {got:.3f} mm drawn, {meant:.3f} mm expected")
+
+
+def _polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
+    if compound is None or compound.IsNull():
+        return []
+    BRepLib.BuildCurves3d_s(compound)
+    explorer, lines = TopExp_Explorer(compound, TopAbs_EDGE), []
+    while explorer.More():
+        lines.append(_polyline(BRepAdaptor_Curve(TopoDS.Edge_s(explorer.Current()))))
+        explorer.Next()
+    return [line for line in lines if len(line) > 1]
+
+
+def _polyline(curve: BRepAdaptor_Curve) -> Polyline:
+    first, last = curve.FirstParameter(), curve.LastParameter()
+    if curve.GetType() == GeomAbs_Line:
+        points = [curve.Value(first), curve.Value(last)]
+    else:
+        sampled = GCPnts_QuasiUniformDeflection(curve, CHORD, first, last)
+        points = [sampled.Value(i) for i in range(1, sampled.NbPoints() + 1)]
+    rounded = [(round(p.X(), 3) + 0.0, round(p.Y(), 3) + 0.0) for p in points]
+    kept = tuple(p for i, p in enumerate(rounded) if i == 0 or p != rounded[i - 1])
+    return min(kept, kept[::-1])
+
+
+def _path(lines: Sequence[Polyline], left: float, top: float) -> str:
+    parts = []
+    for line in lines:
+        points = [f"{x - left:.3f},{top - y:.3f}" for x, y in line]
+        parts.append("M" + "L".join(points))
+    return "".join(parts)
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -1,0 +1,184 @@
+"""What an export consists of: for each file what it is made from, and how it is made and checked.
+
+Nothing here runs until a file is really needed: the kernel is imported inside the makers.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.scenes.scene import Placement, Scene
+
+from .cache import Cache
+from .inputs import digest
+from .step_text import Header
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+    from .picture import View
+
+
+@dataclass(frozen=True)
+class Product:
+    """One file of an export: path below its folder, kind and part number for the manifest, what it depends
+    on, and the function that makes its bytes and has checked them."""
+
+    path: str
+    kind: str
+    part_no: str
+    key: str
+    make: Callable[[], bytes]
+
+
+class Shapes:
+    """The kernel's shapes of parts, each built at most once: from memory, from the cache, or anew."""
+
+    def __init__(self, cache: Cache, made_by: str) -> None:
+        self.cache, self.made_by = cache, made_by
+        self.built: list[str] = []
+        self._known: dict[str, TopoDS_Shape] = {}
+
+    def of(self, part: Part) -> TopoDS_Shape:
+        """The part's shape in its own frame."""
+        if part.part_no not in self._known:
+            from tactcad.solids.bytes import from_bytes
+
+            key = f"shape {self.made_by} {digest(part)}"
+            # always through the text, so that a shape from the cache and one just built give equal files
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, partial(self._built, part)))
+        return self._known[part.part_no]
+
+    def _built(self, part: Part) -> bytes:
+        from tactcad.solids.build import build
+        from tactcad.solids.bytes import to_bytes
+
+        self.built.append(part.part_no)
+        return to_bytes(build(part).wrapped)
+
+
+def header(design: Design, name: str, description: str) -> Header:
+    d = design.design
+    return Header(name, description, d.revision, d.date, d.author, d.organisation)
+
+
+def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
+    """STEP, DXF where a wire cuts the part, and a picture where it is made here."""
+    head = header(design, part.part_no, part.name)
+    revision = design.design.revision
+    made = []
+
+    def product(path: str, kind: str, make: Callable[[], bytes], *depends: object) -> None:
+        key = digest((kind, shapes.made_by, part, head, *depends))
+        made.append(Product(path, kind, part.part_no, key, make))
+
+    product(f"step/{part.part_no}_{revision}.step", "step-part", lambda: _part_step(part, shapes, head))
+    if part.process == "wire-cut":
+        product(f"dxf/{part.part_no}_{revision}.dxf", "dxf", lambda: _part_dxf(part))
+    if not part.bought:
+        placement = (Placement(part.part_no, part),)
+        view = "oblique"
+        product(
+            f"pictures/{part.part_no}.svg", "picture",
+            lambda: _picture(placement, view, shapes, part.name, f"{part.part_no} revision {revision}"), view,
+        )
+    return made
+
+
+def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+    """The assembly as STEP, and its pictures: from above, from below, and opened."""
+    name = f"{design.name}-{scene.name}"
+    revision = design.design.revision
+    head = header(design, name, f"{design.design.title}: {scene.name}")
+    products = [
+        Product(
+            f"step/{name}_{revision}.step", "step-assembly", "", digest(("step-assembly", shapes.made_by, scene, head)),
+            lambda: _scene_step(scene, shapes, head),
+        )
+    ]
+    opened = tuple(p for p in scene.placements if p.designator not in scene.cover)
+    for label, view, placements in (
+        ("above", "above", scene.placements), ("below", "below", scene.placements), ("open", "above", opened),
+    ):
+        text = f"{design.design.title}: {scene.name}, {'cover taken off' if label == 'open' else 'from ' + label}"
+        products.append(
+            Product(
+                f"pictures/{name}-{label}.svg", "picture", "",
+                digest(("picture", shapes.made_by, placements, view, text, head)),
+                partial(_picture, placements, view, shapes, text, f"{name} revision {revision}"),
+            )
+        )
+    return products
+
+
+def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
+    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed forms."""
+    key = f"facts {shapes.made_by} {digest(part)}"
+    return json.loads(cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
+
+
+def _measured(part: Part, shapes: Shapes) -> dict:
+    from tactcad.solids.measure import measure
+
+    facts = measure(shapes.of(part))
+    if not isinstance(part.body, ModelFile):
+        off = max(abs(a - b) for a, b in zip(facts["centre"], part.centre))
+        if off > 1e-6:
+            raise CheckFailure(f"{part.part_no}: centre of mass is {off:.3g} mm from the description's")
+        if isinstance(part.body, Extrusion | Revolution):
+            _compare_box(part, facts["box"])
+    return facts
+
+
+def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
+    from .extent import part_box
+
+    off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
+    if off > 1e-6:
+        raise CheckFailure(f"{part.part_no}: bounding box is {off:.3g} mm from the description's")
+
+
+def _part_step(part: Part, shapes: Shapes, head: Header) -> bytes:
+    from .step import part_step
+
+    return part_step(part, shapes.of(part), head)
+
+
+def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
+    from .step import scene_step
+
+    return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)
+
+
+def _part_dxf(part: Part) -> bytes:
+    from . import dxf
+
+    data = dxf.dxf_bytes(part)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "written.dxf"
+        path.write_bytes(data)
+        wrong = dxf.check_dxf(path, part)
+    if wrong:
+        raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
+    return data
+
+
+def _picture(placements: Sequence[Placement], view: str, shapes: Shapes, title: str, description: str) -> bytes:
+    from tactcad.solids.place import placed_shape
+
+    from . import picture
+
+    eye: View = picture.VIEWS[view]
+    placed = [placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in placements]
+    data = picture.svg(picture.drawing(placed, eye), title, description)
+    picture.check_picture(data, placements, eye)
+    return data

@@ -1,0 +1,233 @@
+"""STEP files (AP214, mm): one product a single part, and assemblies with shared prototypes.
+
+In an assembly the product of a part carries its part number, each instance its reference designator.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import isclose
+from pathlib import Path
+
+from OCP.BRepCheck import BRepCheck_Analyzer
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.Message import Message
+from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
+from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from tactcad.design.messages import CheckFailure
+from tactcad.parts.description import Part
+from tactcad.scenes.scene import Placement, Scene
+from tactcad.solids.place import location
+
+from .step_text import Header, canonical
+
+# What was written and what is read agree within these: a share of the volume, and mm of a place.
+VOLUME_AGREES = 1e-6
+PLACE_AGREES = 1e-7
+
+
+def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
+    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back otherwise."""
+    document, shape_tool = _document()
+    _add_prototype(document, shape_tool, part, shape)
+    data = _written(document, header)
+    _check_part(data, part)
+    return data
+
+
+def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header) -> bytes:
+    """A scene as an assembly named after header.name; shapes are by part number, each in its own frame.
+
+    Raises CheckFailure where the file does not read back to the same names, places and volumes.
+    """
+    document, shape_tool = _document()
+    prototypes = {p.part_no: _add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
+    top = shape_tool.NewShape()
+    _name(top, header.name)
+    for p in scene.placements:
+        _name(shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)), p.designator)
+    shape_tool.UpdateAssemblies()
+    data = _written(document, header)
+    _check_scene(data, scene, header.name)
+    return data
+
+
+def _document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
+    document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+    return document, XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+
+
+def _add_prototype(document: TDocStd_Document, tool: XCAFDoc_ShapeTool, part: Part, shape: TopoDS_Shape) -> TDF_Label:
+    label = tool.AddShape(shape, False)
+    _name(label, part.part_no)
+    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    colours.SetColor(label, _rgba(part.colour), XCAFDoc_ColorSurf)
+    return label
+
+
+def _name(label: TDF_Label, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+
+
+def _rgba(colour: str) -> Quantity_ColorRGBA:
+    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return Quantity_ColorRGBA(Quantity_Color(r, g, b, Quantity_TOC_sRGB))  # the kernel keeps linear RGB
+
+
+def _written(document: TDocStd_Document, header: Header) -> bytes:
+    _silence()
+    writer = STEPCAFControl_Writer()
+    writer.SetColorMode(True)
+    writer.SetNameMode(True)
+    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
+    Interface_Static.SetCVal_s("write.step.unit", "MM")
+    # without parameter curves: planes, cylinders and cones need none, and the file is a third smaller
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
+    writer.Transfer(document, STEPControl_AsIs)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "kernel.step"
+        if writer.Write(str(path)) != IFSelect_RetDone:
+            raise OSError("the kernel could not write its STEP file to the temporary folder")
+        text = path.read_text("latin-1")
+    return canonical(text, header).encode("latin-1")
+
+
+def _silence() -> None:
+    """The kernel reports every transfer on standard output, which belongs to our own messages."""
+    messenger = Message.DefaultMessenger_s()
+    for printer in list(messenger.Printers()):
+        messenger.RemovePrinter(printer)
+
+
+# --- reading back ---
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One component as read: designator, product name, 3 x 4 matrix (row major)."""
+
+    designator: str
+    product: str
+    matrix: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are valid."""
+
+    name: str
+    instances: tuple[Instance, ...]
+    solids: Mapping[str, tuple[float, ...]]
+    valid: bool
+
+
+def read_assembly(data: bytes) -> Assembly:
+    """Names, places and volumes in a STEP file. Raises CheckFailure where it cannot be read."""
+    _silence()
+    document, tool = _document()
+    reader = STEPCAFControl_Reader()
+    reader.SetNameMode(True)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "written.step"
+        path.write_bytes(data)
+        if reader.ReadFile(str(path)) != IFSelect_RetDone or not reader.Transfer(document):
+            raise CheckFailure("the written STEP file cannot be read back")
+    free = TDF_LabelSequence()
+    tool.GetFreeShapes(free)
+    if free.Length() != 1:
+        raise CheckFailure(f"the STEP file has {free.Length()} top-level shapes instead of one")
+    top = free.Value(1)
+    parts = TDF_LabelSequence()
+    XCAFDoc_ShapeTool.GetComponents_s(top, parts)
+    instances, products = [], {}
+    for i in range(1, parts.Length() + 1):
+        component, prototype = parts.Value(i), TDF_Label()
+        XCAFDoc_ShapeTool.GetReferredShape_s(component, prototype)
+        product = _name_of(prototype)
+        products.setdefault(product, prototype)
+        trsf = XCAFDoc_ShapeTool.GetLocation_s(component).Transformation()
+        matrix = tuple(trsf.Value(r, c) for r in (1, 2, 3) for c in (1, 2, 3, 4))
+        instances.append(Instance(_name_of(component), product, matrix))
+    if not instances:
+        products[_name_of(top)] = top
+    shapes = {name: XCAFDoc_ShapeTool.GetShape_s(label) for name, label in products.items()}
+    return Assembly(
+        _name_of(top),
+        tuple(instances),
+        {name: tuple(_volume(s) for s in _solids(shape)) for name, shape in shapes.items()},
+        all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes.values()),
+    )
+
+
+def _name_of(label: TDF_Label) -> str:
+    name = TDataStd_Name()
+    return name.Get().ToExtString() if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
+
+
+def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
+    explorer, found = TopExp_Explorer(shape, TopAbs_SOLID), []
+    while explorer.More():
+        found.append(explorer.Current())
+        explorer.Next()
+    return found
+
+
+def _volume(shape: TopoDS_Shape) -> float:
+    properties = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, properties)
+    return properties.Mass()
+
+
+def _check_part(data: bytes, part: Part) -> None:
+    text = data.decode("latin-1")
+    for entity, count in (("PRODUCT(", 1), ("NEXT_ASSEMBLY_USAGE_OCCURRENCE(", 0), ("MANIFOLD_SOLID_BREP(", 1)):
+        if text.count(f"={entity}") != count:
+            raise CheckFailure(f"{part.part_no}: STEP file has {text.count(f'={entity}')} {entity[:-1]}, not {count}")
+    read = read_assembly(data)
+    if read.name != part.part_no or read.instances or not read.valid:
+        raise CheckFailure(f"{part.part_no}: STEP file reads back as {read.name!r}, valid: {read.valid}")
+    _check_volume(read, part)
+
+
+def _check_volume(read: Assembly, part: Part) -> None:
+    volumes = read.solids.get(part.part_no, ())
+    if len(volumes) != 1 or not isclose(volumes[0], part.volume, rel_tol=VOLUME_AGREES):
+        raise CheckFailure(f"{part.part_no}: STEP file reads back with volumes {volumes} mm3, not {part.volume:.9g}")
+
+
+def _check_scene(data: bytes, scene: Scene, name: str) -> None:
+    read = read_assembly(data)
+    if read.name != name or not read.valid:
+        raise CheckFailure(f"scene {scene.name}: STEP file reads back as {read.name!r}, valid: {read.valid}")
+    for part in scene.parts:
+        _check_volume(read, part)
+    _check_instances(read.instances, scene.placements, scene.name)
+
+
+def _check_instances(instances: Sequence[Instance], placements: Sequence[Placement], name: str) -> None:
+    if len(instances) != len(placements):
+        raise CheckFailure(f"scene {name}: STEP file has {len(instances)} instances, not {len(placements)}")
+    for got, meant in zip(instances, placements):
+        (a, b, c), (x, y, z) = meant.rotation, meant.origin
+        matrix = (*a, x, *b, y, *c, z)
+        off = max(abs(g - m) for g, m in zip(got.matrix, matrix))
+        if (got.designator, got.product) != (meant.designator, meant.part.part_no) or off > PLACE_AGREES:
+            raise CheckFailure(
+                f"scene {name}: STEP file has {got.designator} of {got.product} where "
+                f"{meant.designator} of {meant.part.part_no} was written, off by {off:.3g} mm"
+            )

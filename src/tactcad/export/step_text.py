@@ -1,0 +1,123 @@
+"""STEP text (ISO 10303-21) in canonical form: equal content gives equal bytes, in any process.
+
+The kernel numbers instances by a counter of the whole process and orders styles by memory address.
+Here every entity is numbered anew in the order in which a walk from the top meets it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import dataclass
+
+from tactcad import __version__
+
+_ENTITY = re.compile(r"#(\d+)\s*=\s*((?:'(?:[^']|'')*'|[^';])*);")
+_REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
+_INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
+_STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+
+
+@dataclass(frozen=True)
+class Header:
+    """What the file's header says. date is YYYY-MM-DD; the time of day is fixed at midnight."""
+
+    name: str
+    description: str
+    revision: str
+    date: str
+    author: str
+    organisation: str
+
+
+def canonical(text: str, header: Header) -> str:
+    """The kernel's STEP text with the given header, its entities renumbered in canonical order."""
+    bodies = {int(n): _unbroken(body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])}
+    bodies = {n: _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body) for n, body in bodies.items()}
+    references = {n: _references(body) for n, body in bodies.items()}
+    digests = _digests(bodies, references)
+    used = {r for refs in references.values() for r in refs}
+    roots = sorted((n for n in bodies if n not in used), key=lambda n: _root_key(n, bodies[n], digests[n]))
+    numbers: dict[int, int] = {}
+    order: list[int] = []
+    for root in roots:
+        stack = [root]
+        while stack:
+            n = stack.pop()
+            if n in numbers:
+                continue
+            numbers[n] = len(order) + 1
+            order.append(n)
+            refs = references[n]
+            if bodies[n].startswith(_STYLES):
+                refs = sorted(refs, key=lambda r: digests[r])
+            stack.extend(reversed(refs))
+    lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
+    return "\n".join([_header(header), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
+
+
+def _root_key(n: int, body: str, digest: str) -> tuple:
+    """Products in the kernel's order, which is the writing order; styles, which have none, by content."""
+    return (1, digest, n) if body.startswith(_STYLES) else (0, n)
+
+
+def _unbroken(body: str) -> str:
+    return re.sub(r"\s*\n\s*", "", body)
+
+
+def _references(body: str) -> list[int]:
+    return [int(m.group(1)) for m in _REFERENCE.finditer(body) if m.group(1)]
+
+
+def _renumbered(body: str, numbers: dict[int, int]) -> str:
+    return _REFERENCE.sub(lambda m: f"#{numbers[int(m.group(1))]}" if m.group(1) else m.group(0), body)
+
+
+def _digests(bodies: dict[int, str], references: dict[int, list[int]]) -> dict[int, str]:
+    """Digest of each entity's whole content, independent of numbering (STEP data has no cycles)."""
+    digests: dict[int, str] = {}
+    for start in bodies:
+        stack = [start]
+        while stack:
+            n = stack[-1]
+            waiting = [r for r in references[n] if r not in digests]
+            if n in digests or not waiting:
+                stack.pop()
+                digests.setdefault(n, _digest(bodies[n], digests))
+            else:
+                stack.extend(waiting)
+    return digests
+
+
+def _digest(body: str, digests: dict[int, str]) -> str:
+    whole = _REFERENCE.sub(lambda m: digests[int(m.group(1))] if m.group(1) else m.group(0), body)
+    return hashlib.sha1(whole.encode("latin-1"), usedforsecurity=False).hexdigest()
+
+
+def _header(h: Header) -> str:
+    return "\n".join(
+        (
+            "ISO-10303-21;",
+            "HEADER;",
+            f"FILE_DESCRIPTION(({_text(h.description)}),'2;1');",
+            f"FILE_NAME({_text(h.name)},'{h.date}T00:00:00',({_text(h.author)}),({_text(h.organisation)}),"
+            f"'Open CASCADE Technology','tactcad {__version__}',{_text('revision ' + h.revision)});",
+            "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));",
+            "ENDSEC;",
+        )
+    )
+
+
+def _text(value: str) -> str:
+    """A STEP string: quotes doubled, what is not ASCII as \\X2\\ or \\X4\\ code units."""
+    out = []
+    for ch in value:
+        if ch in "'\\":
+            out.append(ch * 2)
+        elif " " <= ch <= "~":
+            out.append(ch)
+        elif ord(ch) <= 0xFFFF:
+            out.append(f"\\X2\\{ord(ch):04X}\\X0\\")
+        else:
+            out.append(f"\\X4\\{ord(ch):08X}\\X0\\")
+    return "'" + "".join(out) + "'"

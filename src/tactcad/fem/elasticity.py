@@ -1,0 +1,60 @@
+"""Linear elasticity: stiffness matrix, load and solution on scikit-fem's spaces."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix, csc_matrix
+from scipy.sparse.linalg import splu
+from skfem import Basis, FacetBasis
+
+Array = NDArray[np.float64]
+
+
+def lame(E: float, nu: float, plane_stress: bool = False) -> tuple[float, float]:
+    """lambda and mu, MPa; for plane stress lambda* = E nu/(1 - nu^2)."""
+    lam = E * nu / (1.0 - nu * nu) if plane_stress else E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    return lam, E / (2.0 * (1.0 + nu))
+
+
+def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
+    """A[(a,i),(b,j)] = int lam d_i a d_j b + mu (d_j a d_i b + delta_ij grad a . grad b) dx.
+
+    `basis` is scalar; unknown dim n + i is component i of its node n. All elements at once: one
+    matrix product an element gives the integrals T[a,i,b,j] = int d_i a d_j b dx.
+    """
+    dim, functions = basis.mesh.dim(), basis.Nbfun
+    grad = np.stack([np.broadcast_to(b[0].grad, (dim, *basis.dx.shape)) for b in basis.basis])  # a, i, element, point
+    g = np.ascontiguousarray(grad.transpose(2, 0, 1, 3)).reshape(len(basis.dx), functions * dim, -1)
+    T = np.matmul(g * basis.dx[:, None, :], g.transpose(0, 2, 1))
+    T = T.reshape(-1, functions, dim, functions, dim)
+    A = lam * T + mu * T.transpose(0, 1, 4, 3, 2)
+    trace = mu * np.einsum("eaibi->eab", T)
+    for i in range(dim):
+        A[:, :, i, :, i] += trace
+    dofs = dim * basis.element_dofs.T[:, :, None] + np.arange(dim)
+    size = functions * dim
+    rows = np.broadcast_to(dofs.reshape(-1, size, 1), (len(A), size, size))
+    cols = np.broadcast_to(dofs.reshape(-1, 1, size), (len(A), size, size))
+    return coo_matrix((A.ravel(), (rows.ravel(), cols.ravel())), shape=(dim * basis.N,) * 2).tocsc()
+
+
+def face_load(basis: FacetBasis, component: int, traction: Array) -> Array:
+    """Nodal forces of a traction (at the facets' quadrature points) in one direction."""
+    dim = basis.mesh.dim()
+    f = np.zeros(dim * basis.N)
+    for a in range(basis.Nbfun):
+        shares = np.sum(basis.basis[a][0].value * traction * basis.dx, axis=-1)
+        np.add.at(f, dim * basis.element_dofs[a] + component, shares)
+    return f
+
+
+def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
+    """Displacements with the `fixed` unknowns held at zero; symmetric positive definite A, SuperLU."""
+    free = np.setdiff1d(np.arange(len(f)), fixed)
+    u = np.zeros_like(f)
+    factors = splu(
+        A[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+    )
+    u[free] = factors.solve(f[free])
+    return u

@@ -1,0 +1,273 @@
+"""Mapped quadratic mesh of a hinge shape: blocks of curved nine-node quadrilaterals, nodes on the contour.
+
+Each root is a fan: the hinge strip opens under the fillet into a quarter ring about the slot's corner,
+and rings grow outwards to the block's rectangle::
+
+      +------------------+-----------+
+      |  \\     top       |           |     strip  from fillet end to fillet end
+      |    \\             |           |     mouth  under the fillet, out to a quarter ellipse
+      |wall  \\___        |  columns  |     ring   "top" and "side", graded geometrically
+      )  fillet   \\ side |           |
+    strip |mouth   |     |           |
+    ------+--------+-----+-----------+   mid-line, or the flat face
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, log, pi
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import ElementHex2, ElementQuad2, MeshHex2, MeshQuad2
+from skfem.assembly.dofs import Dofs
+from skfem.mesh import MeshHex, MeshQuad
+
+from tactcad.design.messages import CheckFailure
+
+from .shape import Block, Fillet, HingeShape
+
+Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
+
+GROWTH = 1.8  # of successive rings on the coarsest mesh
+SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
+ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
+MOUTH = 2  # least elements under a fillet, on the coarsest mesh
+COLUMN = 0.6  # longest element along hinge and fillet, in hinge thicknesses, on the coarsest mesh
+TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
+
+
+@dataclass(frozen=True)
+class PlaneMesh:
+    """Nine-node quadrilaterals. `cells` (n, 3, 3, 2): node coordinates by local (x, z) index, mm.
+
+    `half`: only the upper half of a shape that is symmetric about the mid-line z = middle.
+    """
+
+    cells: NDArray[np.float64]
+    shape: HingeShape
+    half: bool
+    middle: float
+
+    @property
+    def load_x(self) -> float:
+        return self.shape.arm.end
+
+    @property
+    def clamp_x(self) -> float:
+        return self.shape.body.end
+
+
+def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> PlaneMesh:
+    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way.
+
+    A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
+    slots from both faces differ in length or radius.
+    """
+    if not shape.two_sided:
+        cells = _half(shape, shape.low, upper=True, density=density)
+        return PlaneMesh(cells, shape, False, shape.low)
+    middle = (shape.low + shape.high) / 2.0
+    upper = _half(shape, middle, upper=True, density=density)
+    if not whole and _symmetric(shape, middle):
+        return PlaneMesh(upper, shape, True, middle)
+    for block in (shape.arm, shape.body):
+        low, high = block.low_fillet, block.high_fillet
+        if abs(low.wall - high.wall) > 1e-9 or abs(low.radius - high.radius) > 1e-9:
+            raise CheckFailure("slots from both faces differ in length or radius; the mapped mesh cannot join them")
+    lower = _half(shape, middle, upper=False, density=density)
+    return PlaneMesh(np.concatenate([upper, lower]), shape, False, middle)
+
+
+def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
+    """The same as scikit-fem's mesh."""
+    corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
+    points, cells = _merged(corners)
+    linear = MeshQuad(points.T, cells.T)
+    dofs = Dofs(linear, ElementQuad2())
+    nodes = np.empty((2, dofs.N))
+    for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
+        nodes[:, dofs.element_dofs[local]] = mesh.cells[:, u, v].T
+    return MeshQuad2(nodes, linear.t)
+
+
+def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
+    """The plane mesh swept over half the width, from the mid-plane y = 0 to the free side; axes x, z, y.
+
+    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    """
+    first = SIDE_LAYER * mesh.shape.thickness
+    y = half_width * (1.0 - _graded(half_width, first, density)[::-1])
+    layers = len(y) // 2
+    n = len(mesh.cells)
+    cells = np.empty((layers, n, 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(layers):
+        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
+    cells = cells.reshape(-1, 3, 3, 3, 3)
+    element = ElementHex2()
+    places = np.rint(2 * element.doflocs).astype(int)
+    corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
+    points, index = _merged(corners)
+    linear = MeshHex(points.T, index.T)
+    dofs = Dofs(linear, element)
+    nodes = np.empty((3, dofs.N))
+    for local, (u, v, w) in enumerate(places):
+        nodes[:, dofs.element_dofs[local]] = cells[:, u, v, w].T
+    return MeshHex2(nodes, linear.t)
+
+
+def _merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Unique points (those nearer than 1e-7 of the size are one), and each element's indices into them."""
+    flat = corners.reshape(-1, corners.shape[-1])
+    step = 1e-7 * np.ptp(flat, axis=0).max()
+    _, first, index = np.unique(np.rint(flat / step + 0.37).astype(np.int64), axis=0, return_index=True, return_inverse=True)
+    return flat[first], index.reshape(corners.shape[:2])
+
+
+def _symmetric(shape: HingeShape, middle: float) -> bool:
+    def mirrored(block: Block) -> bool:
+        low, high = block.low_fillet, block.high_fillet
+        gaps = (block.low + block.high - 2.0 * middle, low.wall - high.wall, low.radius - high.radius)
+        return max(map(abs, gaps)) < 1e-9
+
+    return mirrored(shape.arm) and mirrored(shape.body)
+
+
+def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArray[np.float64]:
+    """Elements on one side of the line z = middle."""
+    sign = 1.0 if upper else -1.0
+    strip_height = (shape.high if upper else shape.low) - middle
+    fillets = [(b, b.high_fillet if upper else b.low_fillet) for b in (shape.arm, shape.body)]
+    centre = sum(f.wall for _, f in fillets) / 2.0
+    arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
+    column = COLUMN * shape.thickness
+    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, column, density)]
+    for block, fillet in fillets:
+        face = sign * ((block.high if upper else block.low) - middle)
+        heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
+        direction = 1.0 if block is shape.arm else -1.0
+        root = _Root(
+            strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
+            end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
+        )
+        grids += [grid * (direction, 1.0) for grid in root.grids(density)]
+    cells = np.concatenate([_cells(grid) for grid in grids])
+    return cells * (arm_direction, sign) + (centre, middle)
+
+
+def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
+    """The hinge between the fillets' ends, x from -to_body to to_arm; without elements where they meet."""
+    length = to_arm + to_body
+    if length <= 1e-9:
+        return np.empty((1, 1, 2))
+    columns = max(1, ceil(length / column)) * density
+    x = np.linspace(-to_body, to_arm, 2 * columns + 1)
+    z = np.linspace(0.0, height, 2 * ROWS * density + 1)
+    return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
+
+
+@dataclass(frozen=True)
+class _Root:
+    """One root in its quadrant: x outwards from the hinge's centre, z from the mid-line, mm."""
+
+    strip_height: float
+    radius: float
+    wall: float
+    end: float
+    height: float
+    square_height: float  # lesser height of the halves that share the mid-line
+    column: float  # longest element along the fillet
+
+    def grids(self, density: int) -> list[Grid]:
+        reach = self.end - self.wall
+        inner = self.strip_height + self.radius
+        mouth = min(inner, 0.7 * reach)
+        if self.height <= inner * (1.0 + 1e-3):
+            raise CheckFailure("the slot's fillet reaches the outer face of arm or body")
+        side_x, side_z = self._square(reach, inner)
+        rows = ROWS * density
+        angle = np.linspace(0.0, pi / 2.0, 2 * rows + 1)
+        ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
+
+        strip_end = self.wall - self.radius
+        columns = max(MOUTH, ceil(pi / 2.0 * self.radius / self.column)) * density
+        u = np.linspace(0.0, 1.0, 2 * columns + 1)
+        turn = pi / 2.0 * u
+        arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
+        # opposite the arc's points near the strip, so that the thinnest elements are not sheared
+        floor = np.stack([strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1)
+        left = _edge((strip_end, 0.0), (strip_end, self.strip_height), np.linspace(0.0, 1.0, 2 * rows + 1))
+        grids = [_coons(floor, arc, left, ring)]
+
+        step = pi / 2.0 * inner / ROWS
+        u = _graded((side_x - mouth + side_z - inner) / 2.0, step, density)
+        corner = (self.wall + side_x, side_z)
+        diagonal = _edge(ring[rows], corner, u)
+        foot = _edge(ring[0], (self.wall + side_x, 0.0), u)
+        wall = _edge(ring[-1], (self.wall, side_z), u)
+        half = np.linspace(0.0, 1.0, rows + 1)
+        right = _edge((self.wall + side_x, 0.0), corner, half)
+        top = _edge(corner, (self.wall, side_z), half)
+        grids += [_coons(foot, diagonal, ring[: rows + 1], right), _coons(diagonal, wall, ring[rows:], top)]
+
+        if reach > side_x * (1.0 + 1e-12):
+            columns = max(1, ceil((reach - side_x) / side_z)) * density
+            x = np.linspace(self.wall + side_x, self.end, 2 * columns + 1)
+            grids.append(np.stack(np.meshgrid(x, right[:, 1], indexing="ij"), axis=-1))
+        if self.height > side_z * (1.0 + 1e-12):
+            tall = max(1, ceil((self.height - side_z) / side_x)) * density
+            z = np.linspace(side_z, self.height, 2 * tall + 1)
+            grids.append(np.stack(np.meshgrid(top[::-1, 0], z, indexing="ij"), axis=-1))
+            if reach > side_x * (1.0 + 1e-12):
+                grids.append(np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1))
+        return grids
+
+    def _square(self, reach: float, inner: float) -> tuple[float, float]:
+        """Size in x and z of the rectangle that the rings grow to.
+
+        It depends only on what both halves share, so that their nodes on the mid-line agree.
+        """
+        tall = self.square_height
+        wide = max(tall, 1.6 * inner)
+        if reach > TWO_BLOCKS * wide:
+            return wide, tall
+        if tall > TWO_BLOCKS * reach:
+            return reach, max(reach, 1.6 * inner) if 1.6 * inner < tall else tall
+        return reach, tall
+
+
+def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    start, end = np.asarray(start), np.asarray(end)
+    return start + u[:, None] * (end - start)
+
+
+def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
+    """0 to 1 in steps that grow geometrically from about step/length."""
+    rings = max(1, round(log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
+    rate = rings * log(GROWTH)
+    return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
+
+
+def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid) -> Grid:
+    """Transfinite interpolation between four edges that share their ends.
+
+    Blending follows arc length, so that graded edges grade the inside too.
+    """
+    u = (_share(bottom) + _share(top))[:, None, None] / 2.0
+    v = (_share(left) + _share(right))[None, :, None] / 2.0
+    ruled = (1 - v) * bottom[:, None] + v * top[:, None] + (1 - u) * left[None] + u * right[None]
+    corners = (1 - u) * ((1 - v) * bottom[0] + v * top[0]) + u * ((1 - v) * bottom[-1] + v * top[-1])
+    return ruled - corners
+
+
+def _share(edge: Grid) -> NDArray[np.float64]:
+    lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(edge, axis=0).T))])
+    return lengths / lengths[-1] if lengths[-1] > 0.0 else np.linspace(0.0, 1.0, len(edge))
+
+
+def _cells(grid: Grid) -> NDArray[np.float64]:
+    """(n, 3, 3, 2) elements of a block's node grid."""
+    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2] \
+        if min(grid.shape[:2]) >= 3 else np.empty((0, 0, 2, 3, 3))
+    return np.moveaxis(windows.reshape(-1, 2, 3, 3), 1, -1)

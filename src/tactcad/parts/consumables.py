@@ -1,0 +1,47 @@
+"""What the array needs and has no solid: gauges, adhesive, terminals, wire, bridge resistors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+from .layout import Layout
+
+
+@dataclass(frozen=True)
+class Supply:
+    """A bill-of-materials line without a solid. Quantities count the array once; spares come on top."""
+
+    part_no: str
+    description: str
+    qty: float
+    unit: str
+    designation: str
+    alternates: str = ""
+    spares: float = 0
+    consumable: bool = True
+
+
+def array_supplies(layout: Layout) -> tuple[Supply, ...]:
+    """Gauge, wiring and bonding supplies of the array. No maker's data was read: none is verified."""
+    g = layout.design.gauge
+    n = len(layout.elements)
+    spare_gauges = max(1, ceil(n / 5))  # chosen: one in five is lost in bonding or soldering
+    ohm = f"{g.resistance:g} ohm"
+    return (
+        Supply(
+            "STRAIN-GAUGE", f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for aluminium",
+            n, "pcs", f"strain gauge {ohm}, grid {g.grid_length:g} mm, carrier trimmed to "
+            f"{g.carrier_arm_side + g.carrier_body_side:g} x {g.carrier_width:g} mm",
+            alternates="any foil gauge of that grid and resistance", spares=spare_gauges, consumable=False,
+        ),
+        Supply(
+            "BRIDGE-RESISTOR", f"bridge completion, {ohm}, or a reference gauge on the same alloy",
+            3 * n, "pcs", f"precision resistor {ohm}, 0.1 %, 5 ppm/K", alternates="strain gauge as above, unloaded",
+            spares=3, consumable=False,
+        ),
+        Supply("TERMINAL", "solder terminal pair, self-adhesive", n, "pcs", "strain gauge terminal strip", spares=spare_gauges),
+        Supply("ADHESIVE", "strain gauge adhesive, cold curing", 1, "pack", "cyanoacrylate gauge adhesive"),
+        Supply("COATING", "protective coating over gauge and terminals", 1, "pack", "polyurethane or silicone gauge coating"),
+        Supply("LEAD-WIRE", "lead wire, three per gauge", round(3 * 0.5 * n, 1), "m", "AWG 36 stranded, polyimide or PTFE insulated"),
+    )

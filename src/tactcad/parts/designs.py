@@ -1,0 +1,20 @@
+"""A design that keeps every rule: what commands load."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tactcad.design.load import read
+from tactcad.design.tree import Design
+
+from .rules import refuse_broken
+
+
+def load(source: str | Path) -> Design:
+    """The design in a file, or the one of that name in hardware/, with every rule between fields kept.
+
+    Raises InputError where the file is missing or not a design, a value is not legal, or a rule is broken.
+    """
+    design = read(source)
+    refuse_broken(design)
+    return design

@@ -1,0 +1,156 @@
+"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
+
+      stop land                                      +-------------------------+ rear_height
+        ___                          ledge           |  o        O        o    |
+       /   \_____arm_____   ______________           |                         |
+      |                  | |              |__________|                         |
+      |__    ____________|_|______________     flat face                       |
+         |  |            hinge t                        \______ wire recess ___|
+         +--+ pad                                     x ->
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from tactcad.contour import Corner, Contour, circle, rounded_polygon
+from tactcad.design.tree import Design
+
+from .description import Characteristic, Extrusion, Material, Part
+from .layout import ElementPlace, HingeShape, Layout
+from .stop_gap import stop_gap
+
+ALUMINIUM = "#c3c8ce"
+# A 45 degree ramp leads to the stop land: a square step would be lower than the wire's corner radius.
+_TAN_22_5 = sqrt(2.0) - 1.0
+
+
+def element(layout: Layout, place: ElementPlace) -> Part:
+    """The element that stands at `place`; equal elements give equal parts with one part number."""
+    design = layout.design
+    gap = stop_gap(layout, place)
+    cut = design.element
+    e, s = place.hinge, design.stop
+    return Part(
+        part_no=element_number(design, place),
+        name=f"Sensing element, arm {shortest(place.arm)}",
+        process="wire-cut",
+        material=sheet_material(design),
+        body=Extrusion(
+            outline(layout, place.arm, e, gap), design.sheet.thickness, mounting_holes(layout)
+        ),
+        colour=ALUMINIUM,
+        finish="Ra 0.8 on hinge faces",
+        notes=(
+            "wire-cut in at least three passes, both hinge faces skimmed",
+            "burr-free, do not tumble",
+            "measure and record the hinge thickness of every element",
+        ),
+        characteristics=(
+            Characteristic("hinge thickness", e.t, e.t + 0.005, e.t - 0.005, key=True),
+            Characteristic(
+                "pad height over the dowel hole's centre",
+                design.holes.height + cut.pad_height,
+                design.holes.height + cut.pad_height + 0.01,
+                design.holes.height + cut.pad_height - 0.01,
+                key=True,
+            ),
+            Characteristic("stop gap", gap, gap + s.tolerance, gap - s.tolerance, key=True),
+        ),
+    )
+
+
+def element_number(design: Design, place: ElementPlace) -> str:
+    """Part number from the arm length, and from what an override changes; never from list order."""
+    base = design.element
+    usual = HingeShape(base.hinge_thickness, base.hinge_length, base.fillet_radius, base.arm_height)
+    number = f"{design.name}-element-a{shortest(place.arm)}"
+    for letter in ("t", "l", "r", "h"):
+        value = getattr(place.hinge, letter)
+        if value != getattr(usual, letter):
+            number += f"-{letter}{shortest(value)}"
+    return number
+
+
+def outline(layout: Layout, arm: float, hinge: HingeShape, gap: float) -> Contour:
+    """The element's contour in (x, z), counter-clockwise from the pad; mm."""
+    e = layout.design.element
+    x_tip, x_pad = layout.pad_inner, layout.pad_outer
+    x_hinge = x_tip + arm
+    x_arm, x_body = x_hinge - hinge.l / 2, x_hinge + hinge.l / 2
+    ledge = layout.ledge_of(hinge)
+    land = ledge - gap
+    x_land = x_tip + layout.design.stop.land_length
+    floor = hinge.t if e.sides == "one" else (hinge.h + hinge.t) / 2
+    corners = [
+        Corner((x_tip, -e.pad_height), edge="pad_face"),
+        Corner((x_pad, -e.pad_height), edge="pad_side"),
+        Corner((x_pad, 0.0), e.pad_root_radius, "flat_face", "pad_root"),
+    ]
+    if e.sides == "two":
+        front = (hinge.h - hinge.t) / 2
+        corners += [
+            Corner((x_arm, 0.0), edge="front_slot_arm_wall"),
+            Corner((x_arm, front), hinge.r, "hinge_face", "front_slot_arm_fillet"),
+            Corner((x_body, front), hinge.r, "front_slot_body_wall", "front_slot_body_fillet"),
+            Corner((x_body, layout.body_bottom(hinge)), edge="body_face"),
+        ]
+    corners += [
+        *rear_corners(layout, layout.body_bottom(hinge)),
+        Corner((layout.clamp_edge, ledge), e.corner_radius, "ledge", "ledge_root"),
+        Corner((x_body, ledge), edge="slot_body_wall"),
+        Corner((x_body, floor), hinge.r, "slot_floor", "slot_body_fillet"),
+        Corner((x_arm, floor), hinge.r, "slot_arm_wall", "slot_arm_fillet"),
+        Corner((x_arm, hinge.h), edge="arm_back"),
+        Corner((x_land + land - hinge.h, hinge.h), e.corner_radius, "land_ramp", "land_root"),
+        Corner((x_land, land), edge="stop_land"),
+        Corner((x_tip, land), edge="tip"),
+    ]
+    return rounded_polygon(corners)
+
+
+def ramp_height(corner_radius: float) -> float:
+    """Least height of a 45 degree ramp whose foot is rounded by corner_radius, mm."""
+    return corner_radius * _TAN_22_5 / sqrt(2.0)
+
+
+def rear_corners(layout: Layout, face: float) -> list[Corner]:
+    """The clamped rear body, from the wire recess round to the clamp edge; alike in elements and blanks.
+
+    `face` is z of the front body's lower face, where the recess begins.
+    """
+    e = layout.design.element
+    return [
+        Corner((layout.recess_start, face), edge="recess_wall"),
+        Corner((layout.recess_start, e.recess_depth), e.corner_radius, "recess_face", "recess_root"),
+        Corner((layout.rear_end, e.recess_depth), edge="rear_end"),
+        Corner((layout.rear_end, e.rear_height), edge="rear_top"),
+        Corner((layout.clamp_edge, e.rear_height), edge="clamp_edge"),
+    ]
+
+
+def mounting_holes(layout: Layout) -> tuple[Contour, ...]:
+    """Screw and dowel holes through elements, blanks and spacers, wire-cut; dowel holes at mid-tolerance."""
+    from .library.screws import METRIC
+
+    design = layout.design
+    z = design.holes.height
+    dowel = dowel_hole_diameter(design)
+    screws = [circle((x, z), METRIC[design.clamp.screw].clearance, "screw_hole") for x in layout.screw_x]
+    dowels = [circle((x, z), dowel, "dowel_hole") for x in layout.dowel_x]
+    return tuple(sorted(screws + dowels, key=lambda c: c.box[0]))
+
+
+def dowel_hole_diameter(design: Design) -> float:
+    """Slide-fit dowel hole as cut and modelled, mm: the middle of its limits."""
+    return round(design.holes.dowel_hole + design.holes.dowel_hole_upper / 2, 6)
+
+
+def sheet_material(design: Design) -> Material:
+    return Material(design.material.alloy, design.material.density)
+
+
+def shortest(value: float) -> str:
+    """A length as in part numbers: 4.0 is "4", 4.25 is "4.25"; equal text means equal value."""
+    text = repr(float(value))
+    return text[:-2] if text.endswith(".0") else text

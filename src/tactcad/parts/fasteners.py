@@ -1,0 +1,81 @@
+"""Which screws and dowels clamp the stack: standard lengths, or tie rods and ground rod beyond them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+from .layout import Layout
+from .library.dowels import dowel_lengths
+from .library.screws import CAP_SCREW_LENGTHS, METRIC, engagement
+
+# Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one
+# diameter of the usual M3 and of its dowel less the pin's chamfer.
+LEAST_UNDER_HEAD = 2.5
+LEAST_GRIP = 3.0
+LEAST_UNDER_CARRIER_HEAD = 2.0
+
+
+@dataclass(frozen=True)
+class Clamping:
+    """Lengths in mm.
+
+    screw           ISO 4762 length through the stack, or the tie rod's where rod is true
+    head_plate_web  head plate's material under the screw's head; None for tie rods
+    dowel           dowel length, a standard one or ground rod cut to length
+    """
+
+    rod: bool
+    screw: float
+    head_plate_web: float | None
+    dowel: float
+
+
+def clamping(layout: Layout) -> Clamping:
+    """The stack's fasteners.
+
+    A cap screw must leave LEAST_UNDER_HEAD under its head and engage 1.5 d in the tapped plate
+    without passing through it; the counterbore takes up the difference to the standard length.
+    """
+    d = layout.design.clamp
+    plate, stack = d.end_plate_thickness, layout.stack
+    dowel = _dowel(layout)
+    for length in CAP_SCREW_LENGTHS[d.screw]:
+        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside
+        engaged = max(engagement(d.screw), round(2 / 3 * plate, 1))
+        web = round(length - stack - engaged, 9)
+        if LEAST_UNDER_HEAD <= web <= plate and engaged <= plate:
+            return Clamping(False, length, web, dowel)
+    m = METRIC[d.screw]
+    ends = m.washer_height + m.nut_height + 2 * m.pitch
+    return Clamping(True, float(ceil(stack + 2 * plate + 2 * ends)), None, dowel)
+
+
+def _dowel(layout: Layout) -> float:
+    plate, stack = layout.design.clamp.end_plate_thickness, layout.stack
+    fitting = [n for n in dowel_lengths(layout.design.clamp.dowel) if stack + 2 * LEAST_GRIP <= n <= stack + 2 * plate]
+    if fitting:
+        return fitting[-1]
+    return float(ceil(stack + 2 * LEAST_GRIP)) if ceil(stack + 2 * LEAST_GRIP) <= stack + 2 * plate else stack + 2 * plate
+
+
+@dataclass(frozen=True)
+class CarrierScrew:
+    """Length, and the carrier's material under its sunk head, mm."""
+
+    length: float
+    under_head: float
+
+
+def carrier_screw(layout: Layout) -> CarrierScrew | None:
+    """The cap screw that fixes the carrier to an end plate's blind thread; None where no length fits.
+
+    It engages 1.5 d and 0.8 mm of the 1.5 d + 1 mm of thread; its head is sunk.
+    """
+    d = layout.design.clamp
+    most = d.carrier_thickness - METRIC[d.screw].head_height
+    for length in CAP_SCREW_LENGTHS[d.screw]:
+        under = round(length - engagement(d.screw) - 0.8, 9)
+        if LEAST_UNDER_CARRIER_HEAD <= under <= most:
+            return CarrierScrew(length, under)
+    return None

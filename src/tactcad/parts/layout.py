@@ -1,0 +1,269 @@
+"""Where everything of the array stands, derived once from the design.
+
+Frame (mm): x from the middle line between the rows along row one's arms, y along the row, z = 0 on
+the elements' flat (gauge) face, + away from the object. Row two is row one's kind of row turned by
+180 degrees about z, so every x below is a distance from the middle line and holds for both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from tactcad.design.tree import Design
+
+from .library.screws import SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
+
+# Least material between a carrier screw's hole and the heads below it; chosen: a third of an M3.
+END_PLATE_WEB = 1.0
+# Set screws end this far below the carrier's top, so that the axis's plate lies flat on it.
+SUNK = 1.0
+
+
+@dataclass(frozen=True)
+class HingeShape:
+    """One element's hinge and arm (mm): thickness t, slot length l, fillet radius r, arm height h."""
+
+    t: float
+    l: float  # noqa: E741 - the field's and the paper's letter
+    r: float
+    h: float
+
+
+@dataclass(frozen=True)
+class ElementPlace:
+    """One element of the array. number counts from 1 as in Table 1; row is 1 or 2, index counts from 0
+    along it; y is its mid-plane."""
+
+    number: int
+    row: int
+    index: int
+    y: float
+    arm: float
+    hinge: HingeShape
+    hinge_x: float
+    load_arm: float
+    body_length: float
+
+    @property
+    def designator(self) -> str:
+        return f"E{self.number}"
+
+
+@dataclass(frozen=True)
+class HoldDown:
+    """Set screw length (None: no standard one reaches), and the gap it spans from stop plate to carrier."""
+
+    length: float | None
+    reach: float
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The array's derived dimensions (mm)."""
+
+    design: Design
+
+    @cached_property
+    def pad_inner(self) -> float:
+        """x of the arms' tips and of the pads' inner edges: half the gap between facing pads."""
+        return (self.design.array.row_pitch - self.design.element.pad_length) / 2
+
+    @property
+    def pad_outer(self) -> float:
+        return self.pad_inner + self.design.element.pad_length
+
+    @cached_property
+    def elements(self) -> tuple[ElementPlace, ...]:
+        """Every element, by number."""
+        places: list[ElementPlace] = []
+        for row, arms in enumerate(self.design.array.row_arms, start=1):
+            for index, arm in enumerate(arms):
+                number = len(places) + 1
+                hinge = self.hinge_of(number)
+                hinge_x = self.pad_inner + arm
+                places.append(
+                    ElementPlace(
+                        number=number,
+                        row=row,
+                        index=index,
+                        y=self.position_y(index),
+                        arm=arm,
+                        hinge=hinge,
+                        hinge_x=hinge_x,
+                        load_arm=arm - self.design.element.pad_length / 2,
+                        body_length=round(self.clamp_edge - hinge_x - hinge.l / 2, 9),
+                    )
+                )
+        return tuple(places)
+
+    def hinge_of(self, number: int) -> HingeShape:
+        """[element]'s hinge, with what [element.override.NUMBER] changes."""
+        e = self.design.element
+        own = e.override.get(number)
+        pick = lambda name: getattr(e, name) if not own or getattr(own, name) is None else getattr(own, name)  # noqa: E731
+        return HingeShape(
+            t=pick("hinge_thickness"), l=pick("hinge_length"), r=pick("fillet_radius"), h=pick("arm_height")
+        )
+
+    @cached_property
+    def clamp_edge(self) -> float:
+        """x where spacers and rear bodies begin, one line for all arms: the longest arm's seat behind its slot."""
+        ends = []
+        number = 0
+        for arms in self.design.array.row_arms:
+            for arm in arms:
+                number += 1
+                ends.append(self.pad_inner + arm + self.hinge_of(number).l / 2)
+        # rounded to a nanometre, so that one decimal design does not become 11.399999999999999
+        return round(max(ends) + self.design.element.seat_length, 6)
+
+    @property
+    def rear_end(self) -> float:
+        return round(self.clamp_edge + self.design.element.rear_length, 6)
+
+    @property
+    def recess_start(self) -> float:
+        return round(self.clamp_edge + self.design.element.recess_offset, 6)
+
+    @property
+    def screw_x(self) -> tuple[float, ...]:
+        return tuple(round(self.clamp_edge + offset, 6) for offset in self.design.holes.screw_offsets)
+
+    @property
+    def dowel_x(self) -> tuple[float, ...]:
+        return tuple(round(self.clamp_edge + offset, 6) for offset in self.design.holes.dowel_offsets)
+
+    def body_bottom(self, hinge: HingeShape) -> float:
+        """z of the front body's lower face: 0, or below it where a two-sided body is thicker than its arm."""
+        if self.design.element.sides == "one":
+            return 0.0
+        return round((hinge.h - self.design.element.body_height) / 2, 9)
+
+    def ledge_of(self, hinge: HingeShape) -> float:
+        """z of the front body's upper face, where the stop plate sits."""
+        return round(self.body_bottom(hinge) + self.design.element.body_height, 9)
+
+    @property
+    def ledge(self) -> float:
+        """z of the common ledge. Rule `ledges_in_one_plane` holds it equal for all elements."""
+        return self.ledge_of(self.elements[0].hinge)
+
+    # --- the stack along y ---
+
+    @property
+    def spacer(self) -> float:
+        given = self.design.array.spacer
+        return round(self.design.array.pitch - self.design.sheet.thickness, 9) if given is None else given
+
+    @property
+    def positions(self) -> int:
+        """Elements side by side in the longer row; the other row is filled up with blanks."""
+        return max(len(arms) for arms in self.design.array.row_arms)
+
+    @property
+    def stack(self) -> float:
+        """Length of elements and spacers, one spacer outside at each end."""
+        return round(self.positions * self.design.array.pitch + self.spacer, 6)
+
+    def position_y(self, index: int) -> float:
+        return round((index - (self.positions - 1) / 2) * self.design.array.pitch, 9)
+
+    def blanks(self) -> tuple[tuple[int, int], ...]:
+        """(row, index) of every place of the two rows that no element takes."""
+        lengths = [len(arms) for arms in self.design.array.row_arms] + [0]
+        return tuple(
+            (row, index)
+            for row in (1, 2)
+            for index in range(lengths[row - 1], self.positions)
+        )
+
+    # --- plates ---
+
+    @property
+    def spacer_z(self) -> tuple[float, float]:
+        c = self.design.clamp
+        return (c.spacer_bottom, round(self.design.element.rear_height - c.spacer_drop, 9))
+
+    @cached_property
+    def end_plate_z(self) -> tuple[float, float]:
+        c = self.design.clamp
+        if c.end_plate_height is not None:
+            return (c.end_plate_bottom, round(c.end_plate_bottom + c.end_plate_height, 9))
+        return (c.end_plate_bottom, self.stop_plate_top + self.hold_down.reach)
+
+    @cached_property
+    def hold_down(self) -> HoldDown:
+        """The shortest standard set screw that lets the carrier clear the clamping screws' heads."""
+        c = self.design.clamp
+        head = self.design.holes.height + counterbore_diameter(c.screw) / 2
+        lowest = head + END_PLATE_WEB + tapped_depth(c.screw)
+        for length in SET_SCREW_LENGTHS[c.screw]:
+            reach = round(length - c.carrier_thickness + SUNK, 9)
+            if self.stop_plate_top + reach >= lowest and reach > 0:
+                return HoldDown(length, reach)
+        return HoldDown(None, round(lowest - self.stop_plate_top, 9))
+
+    @property
+    def end_plate_half(self) -> float:
+        """Half the end plate's length along x."""
+        return round(self.rear_end + self.design.clamp.end_plate_margin, 6)
+
+    @property
+    def end_plate_y(self) -> float:
+        """y of the end plate's mid-plane (the other one's is its negative)."""
+        return round((self.stack + self.design.clamp.end_plate_thickness) / 2, 9)
+
+    @property
+    def stop_plate_half(self) -> float:
+        """Half the stop plate's length along x."""
+        return round(self.clamp_edge - self.design.clamp.stop_plate_gap, 6)
+
+    @property
+    def stop_plate_width(self) -> float:
+        """The stop plate along y: inside the end plates with a gap at each end."""
+        return round(self.stack - 2 * self.design.clamp.stop_plate_gap, 6)
+
+    @property
+    def stop_plate_top(self) -> float:
+        return round(self.ledge + self.design.clamp.stop_plate_thickness, 9)
+
+    @property
+    def carrier_bottom(self) -> float:
+        return self.end_plate_z[1]
+
+    @property
+    def carrier_screw_x(self) -> float:
+        return round(self.clamp_edge + self.design.clamp.carrier_screw_offset, 6)
+
+    @property
+    def hold_down_x(self) -> float:
+        """x of the set screws: over the middle of the shortest ledge, so that they press it straight."""
+        longest = self.clamp_edge - self.design.element.seat_length
+        return round((longest + self.stop_plate_half) / 2, 6)
+
+    @property
+    def hold_down_y(self) -> tuple[float, ...]:
+        """y of the set screws of a row: one over a short stack, else even, no further apart than allowed."""
+        pitch = self.design.array.pitch
+        span = (self.positions - 1) * pitch
+        if self.positions == 1:
+            return (0.0,)
+        count = 2
+        while span / (count - 1) > self.design.clamp.hold_down_pitch:
+            count += 1
+        return tuple(round(-span / 2 + span * i / (count - 1), 6) for i in range(count))
+
+    @property
+    def mount_x(self) -> float:
+        """x of the carrier's threads for the axis: midway between set screws and carrier screws."""
+        return round((self.hold_down_x + self.carrier_screw_x) / 2, 1)
+
+    @property
+    def carrier_size(self) -> tuple[float, float]:
+        """Length along x, width along y: over the end plates, and over the axis's thread pattern."""
+        c = self.design.clamp
+        edge = 4.0  # material beyond a thread of the axis's pattern: one diameter of the usual M4
+        along_x = 2 * (self.end_plate_half + c.carrier_margin)
+        along_y = max(self.stack + 2 * c.end_plate_thickness, c.mount_pitch_y + 2 * edge)
+        return (round(along_x, 6), round(along_y, 6))

@@ -1,0 +1,1 @@
+"""Standard parts: sizes from their standards, as part descriptions."""

@@ -1,0 +1,191 @@
+"""Metric screws, nuts and washers: ISO 4762, ISO 4026, ISO 4032, ISO 7089, DIN 976-1 (mm).
+
+Screws are modelled at nominal diameter without thread; head and socket are true. Local frame: axis z,
+the bearing face at z = 0, the screw pointing along +z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, pi, sin
+
+from tactcad.contour import Contour, chain, circle
+
+from ..description import Extrusion, Material, Part, Pocket, Purchase, Revolution
+
+STAINLESS = Material("stainless steel A2-70", 7900)
+STAINLESS_SET = Material("stainless steel A2-21H", 7900)
+
+
+@dataclass(frozen=True)
+class Metric:
+    """Coarse thread: d, pitch (ISO 261), tap drill (ISO 2306), clearance hole, medium (ISO 273)."""
+
+    d: float
+    pitch: float
+    tap_drill: float
+    clearance: float
+    head: float  # ISO 4762 dk, plain head
+    head_height: float  # ISO 4762 k
+    key: float  # ISO 4762 s
+    key_depth: float  # ISO 4762 t, least
+    set_key: float  # ISO 4026 s
+    set_key_depth: float  # ISO 4026 t, least for long screws
+    set_point: float  # ISO 4026 dp
+    nut: float  # ISO 4032 s
+    nut_height: float  # ISO 4032 m, largest
+    washer: float  # ISO 7089 d2
+    washer_hole: float  # ISO 7089 d1
+    washer_height: float  # ISO 7089 h
+    torque: float  # N m, for A2-70, friction 0.12, about half of proof: fits aluminium threads of 1.5 d
+
+
+METRIC = {
+    "M2": Metric(2, 0.4, 1.6, 2.4, 3.8, 2, 1.5, 1.0, 0.9, 1.7, 1.0, 4, 1.6, 5, 2.2, 0.3, 0.15),
+    "M2.5": Metric(2.5, 0.45, 2.05, 2.9, 4.5, 2.5, 2, 1.1, 1.3, 2.0, 1.5, 5, 2.0, 6, 2.7, 0.5, 0.3),
+    "M3": Metric(3, 0.5, 2.5, 3.4, 5.5, 3, 2.5, 1.3, 1.5, 2.0, 2.0, 5.5, 2.4, 7, 3.2, 0.5, 0.55),
+    "M4": Metric(4, 0.7, 3.3, 4.5, 7, 4, 3, 2.0, 2, 2.5, 2.5, 7, 3.2, 9, 4.3, 0.8, 1.2),
+    "M5": Metric(5, 0.8, 4.2, 5.5, 8.5, 5, 4, 2.5, 2.5, 3.0, 3.5, 8, 4.7, 10, 5.3, 1.0, 2.5),
+}
+
+_SERIES = (2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50)
+
+
+def _between(low: float, high: float) -> tuple[float, ...]:
+    return tuple(float(length) for length in _SERIES if low <= length <= high)
+
+
+# Preferred lengths, ISO 4762:2004 table 1 and ISO 4026:2003 table 1.
+CAP_SCREW_LENGTHS = {
+    "M2": _between(3, 20), "M2.5": _between(4, 25), "M3": _between(5, 30), "M4": _between(6, 40),
+    "M5": _between(8, 50),
+}
+SET_SCREW_LENGTHS = {
+    "M2": _between(2, 10), "M2.5": _between(2.5, 12), "M3": _between(3, 16), "M4": _between(4, 20),
+    "M5": _between(5, 25),
+}
+
+# Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
+ENGAGED = 1.5
+
+
+def engagement(thread: str) -> float:
+    """Least length of engaged thread in aluminium, mm."""
+    return ENGAGED * METRIC[thread].d
+
+
+def tapped_depth(thread: str) -> float:
+    """Drilled depth below the face, cone included, of a blind hole with 1.5 d + 1 mm of full thread.
+
+    Two pitches of run-out below the full thread are left for the tap's lead.
+    """
+    m = METRIC[thread]
+    return blind_thread(thread) + 2 * m.pitch + m.tap_drill / 2 * 0.6008606190275604
+
+
+def blind_thread(thread: str) -> float:
+    """Full thread of a blind hole, mm: the engaged length and 1 mm for the screw's end."""
+    return engagement(thread) + 1.0
+
+
+def counterbore_diameter(thread: str) -> float:
+    """Counterbore for an ISO 4762 head, mm: head and 0.25 around it."""
+    return METRIC[thread].head + 0.5
+
+
+def cap_screw(thread: str, length: float) -> Part:
+    """ISO 4762 socket head cap screw. Raises KeyError for a size or ValueError for a length not in the standard."""
+    m = METRIC[thread]
+    if length not in CAP_SCREW_LENGTHS[thread]:
+        raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")
+    body = _revolved([(0, -m.head_height), (m.head / 2, -m.head_height), (m.head / 2, 0), (m.d / 2, 0),
+                      (m.d / 2, length), (0, length)])
+    designation = f"ISO 4762 {thread}x{length:g} A2-70"
+    return Part(
+        part_no=f"ISO4762-{thread}x{length:g}-A2-70",
+        name=f"Socket head cap screw {thread}x{length:g}",
+        process="bought",
+        material=STAINLESS,
+        body=body,
+        features=(_socket(m.key, m.key_depth, -m.head_height),),
+        colour="#8a8d91",
+        purchase=Purchase(designation, alternates=f"DIN 912 {thread}x{length:g} A2-70"),
+        spares=2,
+    )
+
+
+def set_screw(thread: str, length: float) -> Part:
+    """ISO 4026 set screw with flat point: z = 0 is the driven end, the point at z = length."""
+    m = METRIC[thread]
+    if length not in SET_SCREW_LENGTHS[thread]:
+        raise ValueError(f"ISO 4026 {thread} has no length {length:g}; it has {SET_SCREW_LENGTHS[thread]}")
+    chamfer = (m.d - m.set_point) / 2
+    body = _revolved([(0, 0), (m.d / 2, 0), (m.d / 2, length - chamfer), (m.set_point / 2, length), (0, length)])
+    return Part(
+        part_no=f"ISO4026-{thread}x{length:g}-A2-21H",
+        name=f"Set screw {thread}x{length:g}, flat point",
+        process="bought",
+        material=STAINLESS_SET,
+        body=body,
+        features=(_socket(m.set_key, min(m.set_key_depth, length / 2), 0.0),),
+        colour="#5c6066",
+        purchase=Purchase(f"ISO 4026 {thread}x{length:g} A2-21H", alternates=f"DIN 913 {thread}x{length:g} A2"),
+        spares=2,
+    )
+
+
+def nut(thread: str) -> Part:
+    """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along -z."""
+    m = METRIC[thread]
+    return Part(
+        part_no=f"ISO4032-{thread}-A2-70",
+        name=f"Hexagon nut {thread}",
+        process="bought",
+        material=STAINLESS,
+        body=Extrusion(_hexagon(m.nut), m.nut_height, (circle((0, 0), m.tap_drill),)),
+        colour="#8a8d91",
+        purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
+        spares=2,
+    )
+
+
+def washer(thread: str) -> Part:
+    """ISO 7089 plain washer, 200 HV."""
+    m = METRIC[thread]
+    return Part(
+        part_no=f"ISO7089-{m.d:g}-200HV-A2",
+        name=f"Plain washer {m.d:g}",
+        process="bought",
+        material=STAINLESS,
+        body=Extrusion(circle((0, 0), m.washer), m.washer_height, (circle((0, 0), m.washer_hole),)),
+        colour="#9da1a6",
+        purchase=Purchase(f"ISO 7089 {m.d:g} 200 HV A2", alternates=f"DIN 125-A {m.d:g} A2"),
+        spares=2,
+    )
+
+
+def threaded_rod(thread: str, length: float) -> Part:
+    """DIN 976-1 threaded rod cut to length, along +z from 0."""
+    m = METRIC[thread]
+    return Part(
+        part_no=f"DIN976-1-{thread}x{length:g}-A2-70",
+        name=f"Threaded rod {thread}, cut to {length:g}",
+        process="bought",
+        material=STAINLESS,
+        body=Extrusion(circle((0, 0), m.d), length),
+        colour="#8a8d91",
+        purchase=Purchase(f"DIN 976-1 A {thread} A2-70, cut to {length:g} mm", alternates=f"DIN 975 {thread} A2"),
+    )
+
+
+def _revolved(profile: list[tuple[float, float]]) -> Revolution:
+    return Revolution(chain(profile))
+
+
+def _socket(key: float, depth: float, z: float) -> Pocket:
+    return Pocket("socket", (0, 0, z), (0, 0, 1), (1, 0, 0), _hexagon(key), depth)
+
+
+def _hexagon(across_flats: float) -> Contour:
+    r = across_flats / 2 / cos(pi / 6)
+    return chain([(r * cos(k * pi / 3), r * sin(k * pi / 3)) for k in range(6)])

@@ -1,0 +1,434 @@
+"""Rules between fields of a design: each named, each with the field to look at and what is legal.
+
+A field's own range is tried when the file is read; these are tried after, all of them, in this order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
+from math import hypot
+
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.tree import Design
+
+from .element import ramp_height
+from .fasteners import LEAST_GRIP, carrier_screw, clamping
+from .layout import END_PLATE_WEB, ElementPlace, Layout
+from .library.screws import METRIC, counterbore_diameter, engagement, tapped_depth
+from .stop_gap import stop_gap
+
+# Below this, two lengths written in decimals are the same length (mm).
+SAME = 1e-9
+# Least gap between facing pads, and between pad and gauge carrier; chosen: a hair, 0.1 mm.
+LEAST_GAP = 0.1
+# Tie rod and ground rod are sold in bars of up to 3 m (DIN 976-1: 1, 2 and 3 m).
+LONGEST_ROD = 3000.0
+
+
+@dataclass(frozen=True)
+class Broken:
+    """A rule that a design breaks: the field to look at, what is wrong, its value, what is legal."""
+
+    rule: str
+    path: str
+    what: str
+    value: object
+    legal: str
+
+
+Finding = tuple[str, str, object, str]
+Rule = Callable[[Layout], Iterator[Finding]]
+
+
+def broken_rules(design: Design) -> list[Broken]:
+    """Every rule that the design breaks, the first finding of each, in the order of RULES."""
+    layout = Layout(design)
+    found = []
+    for name, rule in RULES.items():
+        for path, what, value, legal in rule(layout):
+            found.append(Broken(name, path, what, value, legal))
+            break
+        if found and name in STOP_AFTER:
+            break  # what follows would only repeat it, or could not be computed
+    return found
+
+
+def refuse_broken(design: Design) -> None:
+    """Raise InputError for the first rule that the design breaks, naming the others."""
+    found = broken_rules(design)
+    if found:
+        first = found[0]
+        others = f" (and {', '.join(b.rule for b in found[1:])})" if found[1:] else ""
+        raise InputError(
+            first.path, f"rule {first.rule}{others}: {first.what}", value=first.value, legal=first.legal
+        )
+
+
+def _at(place: ElementPlace, field: str, layout: Layout) -> str:
+    """Path of a hinge field of one element: its override where it has one."""
+    own = layout.design.element.override.get(place.number)
+    if own is not None and getattr(own, field) is not None:
+        return f"element.override.{place.number}.{field}"
+    return f"element.{field}"
+
+
+def _arm_path(place: ElementPlace) -> str:
+    return f"array.row_arms[{place.row - 1}][{place.index}]"
+
+
+def override_names_element(layout: Layout) -> Iterator[Finding]:
+    count = sum(len(arms) for arms in layout.design.array.row_arms)
+    for number in layout.design.element.override:
+        if not 1 <= number <= count:
+            yield (f"element.override.{number}", "no element has this number", number, f"1 to {count}")
+
+
+def pitch_is_sheet_and_spacer(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    if layout.spacer < 0.05 - SAME:
+        yield (
+            "array.pitch", "leaves no room for a spacer beside the sheet", d.array.pitch,
+            f"at least sheet.thickness + 0.05 = {d.sheet.thickness + 0.05:g} mm",
+        )
+    elif abs(d.sheet.thickness + layout.spacer - d.array.pitch) > SAME:
+        yield (
+            "array.spacer", "sheet and spacer do not make up the pitch", layout.spacer,
+            f"array.pitch - sheet.thickness = {d.array.pitch - d.sheet.thickness:g} mm",
+        )
+
+
+def arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    least = d.element.pad_length + LEAST_GAP
+    if d.array.row_pitch < least - SAME:
+        yield (
+            "array.row_pitch", "arms reach the opposite row", d.array.row_pitch,
+            f"at least element.pad_length + {LEAST_GAP:g} = {least:g} mm",
+        )
+
+
+def hinge_thinner_than_arm(layout: Layout) -> Iterator[Finding]:
+    sides = 1 if layout.design.element.sides == "one" else 2
+    for p in layout.elements:
+        room = p.hinge.h - p.hinge.t
+        if room <= SAME:
+            yield (_at(p, "hinge_thickness", layout), "hinge not thinner than the arm", p.hinge.t, f"less than arm_height = {p.hinge.h:g} mm")
+        elif room / sides < p.hinge.r - SAME:
+            yield (
+                _at(p, "fillet_radius", layout), "fillet larger than the slot is deep", p.hinge.r,
+                f"at most {room / sides:g} mm, (arm_height - hinge_thickness)" + ("/2" if sides == 2 else ""),
+            )
+
+
+def fillets_fit_slot(layout: Layout) -> Iterator[Finding]:
+    for p in layout.elements:
+        if 2 * p.hinge.r > p.hinge.l + SAME:
+            yield (
+                _at(p, "fillet_radius", layout), "fillets do not fit the slot", p.hinge.r,
+                f"at most hinge_length/2 = {p.hinge.l / 2:g} mm",
+            )
+
+
+def body_takes_slot(layout: Layout) -> Iterator[Finding]:
+    e = layout.design.element
+    sides = 1 if e.sides == "one" else 2
+    for p in layout.elements:
+        least = p.hinge.t + sides * p.hinge.r
+        if e.body_height < least - SAME:
+            yield ("element.body_height", "body lower than hinge and fillets", e.body_height, f"at least {least:g} mm")
+
+
+def ledges_in_one_plane(layout: Layout) -> Iterator[Finding]:
+    for p in layout.elements:
+        if abs(layout.ledge_of(p.hinge) - layout.ledge) > SAME:
+            yield (
+                _at(p, "arm_height", layout), "two-sided elements of other arm height have their ledge in another plane",
+                p.hinge.h, f"{layout.elements[0].hinge.h:g} mm, as element 1",
+            )
+
+
+def slot_clears_pad(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    for p in layout.elements:
+        need = d.element.pad_length + d.element.pad_root_radius + p.hinge.l / 2
+        if p.arm < need - SAME:
+            yield (
+                _arm_path(p), "slot reaches into the pad", p.arm,
+                f"at least pad_length + pad_root_radius + hinge_length/2 = {need:g} mm",
+            )
+
+
+def pad_root_fits_pad(layout: Layout) -> Iterator[Finding]:
+    e = layout.design.element
+    if e.pad_root_radius > e.pad_height + SAME:
+        yield ("element.pad_root_radius", "larger than the pad is high", e.pad_root_radius, f"at most {e.pad_height:g} mm")
+
+
+def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    if d.element.sides == "two":
+        for p in layout.elements:
+            if d.gauge.grid_length > p.hinge.l + SAME:
+                yield ("gauge.grid_length", "longer than the slot it is bonded in", d.gauge.grid_length, f"at most {p.hinge.l:g} mm")
+        return
+    for p in layout.elements:
+        flat = p.arm - d.element.pad_length - d.element.pad_root_radius
+        if d.gauge.carrier_arm_side > flat + SAME:
+            yield (
+                "gauge.carrier_arm_side", f"carrier reaches the pad of element {p.number}",
+                d.gauge.carrier_arm_side, f"at most {flat:g} mm there",
+            )
+        behind = layout.recess_start - p.hinge_x
+        if d.gauge.carrier_body_side > behind + SAME:
+            yield (
+                "gauge.carrier_body_side", f"carrier reaches the wire recess behind element {p.number}",
+                d.gauge.carrier_body_side, f"at most {behind:g} mm there",
+            )
+
+
+def estimator_holds(layout: Layout) -> Iterator[Finding]:
+    for p in layout.elements:
+        try:
+            stop_gap(layout, p)
+        except CheckFailure as error:
+            yield (
+                _at(p, "hinge_length", layout), f"the estimator cannot give element {p.number} a stop gap: {error}",
+                p.hinge.l, "a hinge inside the estimator's range, or its gap in [stop.gaps]",
+            )
+
+
+def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    for p in layout.elements:
+        gap = stop_gap(layout, p)
+        room = layout.ledge_of(p.hinge) - p.hinge.h - gap
+        least = ramp_height(d.element.corner_radius)
+        if room < least - SAME:
+            path = f"stop.gaps.{p.arm:g}" if d.stop.gaps and p.arm in d.stop.gaps else "element.body_height"
+            value = gap if path.startswith("stop") else d.element.body_height
+            legal = (
+                f"at most {layout.ledge_of(p.hinge) - p.hinge.h - least:.4g} mm"
+                if path.startswith("stop")
+                else f"at least {d.element.body_height + least - room:.4g} mm, so that the stop land stands over the arm"
+            )
+            yield (path, f"stop gap {gap:g} mm of element {p.number} leaves no land over the arm", value, legal)
+
+
+def stop_land_fits_arm(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    for p in layout.elements:
+        ramp = layout.ledge_of(p.hinge) - stop_gap(layout, p) - p.hinge.h
+        foot = d.element.corner_radius * 0.4142135623730951
+        need = d.stop.land_length + ramp + foot + p.hinge.l / 2
+        if p.arm < need - SAME:
+            yield (
+                "stop.land_length", f"land and its ramp reach the slot of element {p.number}", d.stop.land_length,
+                f"at most {d.stop.land_length - (need - p.arm):.4g} mm",
+            )
+
+
+def ledge_below_rear(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    need = layout.ledge + 2 * d.element.corner_radius
+    if d.element.rear_height < need - SAME:
+        yield ("element.rear_height", "rear body not higher than the ledge", d.element.rear_height, f"at least {need:g} mm")
+    seat = d.element.seat_length
+    least = d.element.corner_radius + d.clamp.stop_plate_gap + LEAST_SEAT
+    if seat < least - SAME:
+        yield (
+            "element.seat_length", "too short for the stop plate's seat", seat,
+            f"at least corner_radius + clamp.stop_plate_gap + {LEAST_SEAT:g} = {least:g} mm",
+        )
+    if d.clamp.stop_plate_gap < d.element.corner_radius - SAME:
+        yield (
+            "clamp.stop_plate_gap", "stop plate would sit on the ledge's root fillet", d.clamp.stop_plate_gap,
+            f"at least element.corner_radius = {d.element.corner_radius:g} mm",
+        )
+
+
+# Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
+# push without lifting, and is the least that a 0.15 mm misplaced plate still finds.
+LEAST_SEAT = 0.5
+
+
+def recess_fits_rear(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    low = max((layout.body_bottom(p.hinge) for p in layout.elements), default=0.0)
+    if d.element.recess_depth < low + d.element.corner_radius - SAME:
+        yield (
+            "element.recess_depth", "shallower than its own root fillet", d.element.recess_depth,
+            f"at least {low + d.element.corner_radius:g} mm",
+        )
+    if d.element.recess_offset + d.element.corner_radius > d.element.rear_length - SAME:
+        yield (
+            "element.recess_offset", "starts behind the rear end", d.element.recess_offset,
+            f"less than rear_length - corner_radius = {d.element.rear_length - d.element.corner_radius:g} mm",
+        )
+    if layout.design.clamp.spacer_bottom < d.element.recess_depth - SAME:
+        yield (
+            "clamp.spacer_bottom", "spacers close the wire recess", d.clamp.spacer_bottom,
+            f"at least element.recess_depth = {d.element.recess_depth:g} mm",
+        )
+
+
+def holes_inside_body(layout: Layout) -> Iterator[Finding]:
+    """Around every hole at least holes.web of element, spacer and end plate."""
+    d, h = layout.design, layout.design.holes
+    screw, dowel = METRIC[d.clamp.screw].clearance, h.dowel_hole + h.dowel_hole_upper
+    low = max(d.element.recess_depth, layout.spacer_z[0])
+    high = min(d.element.rear_height, layout.spacer_z[1])
+    widest = max(screw, dowel)
+    if not low + h.web + widest / 2 - SAME <= h.height <= high - h.web - widest / 2 + SAME:
+        yield (
+            "holes.height", "holes too near the edge of the rear body or its spacer", h.height,
+            f"from {low + h.web + widest / 2:g} to {high - h.web - widest / 2:g} mm",
+        )
+    if dowel < float(d.clamp.dowel) + 0.002:
+        yield ("holes.dowel_hole", "smaller than the dowel", h.dowel_hole, f"more than {d.clamp.dowel} mm")
+    elif h.dowel_hole > float(d.clamp.dowel) + 0.1:
+        yield ("holes.dowel_hole", "does not locate on the dowel", h.dowel_hole, f"at most {float(d.clamp.dowel) + 0.1:g} mm")
+    holes = [("holes.screw_offsets", x, screw) for x in h.screw_offsets]
+    holes += [("holes.dowel_offsets", x, dowel) for x in h.dowel_offsets]
+    for path, x, diameter in holes:
+        low, high = h.web + diameter / 2, d.element.rear_length - h.web - diameter / 2
+        if not low - SAME <= x <= high + SAME:
+            yield (path, "hole outside the rear body", x, f"from {low:g} to {high:g} mm behind the clamp edge")
+    for (path, x0, d0), (_, x1, d1) in combinations(holes, 2):
+        if abs(x1 - x0) < (d0 + d1) / 2 + h.web - SAME:
+            yield (path, f"holes at {x0:g} and {x1:g} mm leave too thin a web", abs(x1 - x0), f"at least {(d0 + d1) / 2 + h.web:g} mm apart")
+
+
+def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
+    d, c = layout.design, layout.design.clamp
+    z0, z1 = layout.end_plate_z
+    m = METRIC[c.screw]
+    c_lamping = clamping(layout)
+    around = max(m.washer if c_lamping.rod else counterbore_diameter(c.screw), m.nut if c_lamping.rod else 0) / 2
+    if d.holes.height - around - z0 < END_PLATE_WEB - SAME:
+        yield (
+            "clamp.end_plate_bottom", "end plate ends in the screw heads", z0,
+            f"at most {d.holes.height - around - END_PLATE_WEB:g} mm",
+        )
+    top = max(d.holes.height + around + END_PLATE_WEB + tapped_depth(c.screw), layout.stop_plate_top + LEAST_GAP)
+    if z1 < top - SAME:
+        yield ("clamp.end_plate_height", "too low for the carrier's screws over the clamping screws", z1 - z0, f"at least {top - z0:g} mm")
+    rear = layout.rear_end - layout.screw_x[-1]
+    if rear + c.end_plate_margin < around + END_PLATE_WEB - SAME:
+        yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + END_PLATE_WEB - rear:g} mm")
+    spots = [(x, around) for x in layout.screw_x] + [(x, float(c.dowel) / 2) for x in layout.dowel_x]
+    for (x0, r0), (x1, r1) in combinations(spots, 2):
+        if abs(x0 - x1) < r0 + r1 + LEAST_GAP - SAME:
+            yield ("holes.screw_offsets", "screw heads run into each other or into a dowel", abs(x0 - x1), f"at least {r0 + r1 + LEAST_GAP:g} mm apart")
+    first = min(x - r for x, r in spots)
+    if first < LEAST_GAP:
+        yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {LEAST_GAP:g} mm from the middle line")
+    if c.end_plate_thickness / 2 - m.tap_drill / 2 < END_PLATE_WEB:
+        yield ("clamp.end_plate_thickness", "too thin for the carrier's threads", c.end_plate_thickness, f"at least {2 * END_PLATE_WEB + m.tap_drill:g} mm")
+
+
+def stack_can_be_clamped(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    c = clamping(layout)
+    if max(c.screw, c.dowel) > LONGEST_ROD:
+        yield ("array.row_arms", "stack longer than any tie rod", layout.stack, f"at most about {LONGEST_ROD:g} mm")
+    if c.dowel < layout.stack + 2 * LEAST_GRIP - SAME:
+        yield (
+            "clamp.end_plate_thickness", "no dowel grips both end plates", d.clamp.end_plate_thickness,
+            f"at least {LEAST_GRIP:g} mm",
+        )
+
+
+def carrier_can_be_screwed(layout: Layout) -> Iterator[Finding]:
+    c = layout.design.clamp
+    if carrier_screw(layout) is None:
+        yield (
+            "clamp.carrier_thickness", f"no standard {c.screw} screw sinks its head and engages the end plate",
+            c.carrier_thickness, "another thickness, about 6 mm for M3",
+        )
+    least = engagement(c.mount_thread)
+    if c.carrier_thickness < least - SAME:
+        yield ("clamp.carrier_thickness", f"too thin for the axis's {c.mount_thread} threads", c.carrier_thickness, f"at least {least:g} mm")
+
+
+def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
+    d, c = layout.design, layout.design.clamp
+    hold = layout.hold_down
+    gap = layout.carrier_bottom - layout.stop_plate_top
+    if hold.length is None:
+        yield (
+            "clamp.stop_plate_thickness", f"no standard {c.screw} set screw reaches from the carrier to the stop plate",
+            c.stop_plate_thickness, "a thicker stop plate, or smaller screws",
+        )
+    elif not engagement(c.screw) - SAME <= hold.length - gap <= c.carrier_thickness + SAME:
+        yield (
+            "clamp.end_plate_height", f"the {hold.length:g} mm set screw does not engage the carrier as it should",
+            c.end_plate_height, "leave it out, to have it derived",
+        )
+    if layout.stop_plate_width < 1.0:
+        yield ("clamp.stop_plate_gap", "leaves no stop plate between the end plates", c.stop_plate_gap, f"less than {(layout.stack - 1) / 2:g} mm")
+    if layout.stop_plate_top > d.element.rear_height + 100:
+        yield ("clamp.stop_plate_thickness", "out of proportion", c.stop_plate_thickness, "less")
+
+
+def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
+    """Screw heads, axis threads and set screws in the carrier leave 0.5 mm between them and to its edge."""
+    c = layout.design.clamp
+    spots = [("clamp.carrier_screw_offset", layout.carrier_screw_x, layout.end_plate_y, counterbore_diameter(c.screw) / 2)]
+    spots.append(("clamp.mount_pitch_y", layout.mount_x, c.mount_pitch_y / 2, METRIC[c.mount_thread].d / 2))
+    spots += [("clamp.mount_pitch_y", layout.hold_down_x, y, METRIC[c.screw].d / 2) for y in layout.hold_down_y]
+    for (_, x0, y0, r0), (path, x1, y1, r1) in combinations(spots, 2):
+        apart = hypot(x1 - x0, y1 - y0)
+        if apart < r0 + r1 + 0.5 - SAME:
+            value = c.mount_pitch_y if path.endswith("y") else c.carrier_screw_offset
+            yield (path, f"holes of the carrier {apart:.3g} mm apart", value, f"at least {r0 + r1 + 0.5:.3g} mm apart")
+    half = layout.carrier_size[0] / 2
+    for path, x, _, r in spots:
+        if x + r + 1.0 > half + SAME:
+            yield (path, "hole at the carrier's edge", x, f"at most {half - r - 1.0:g} mm from the middle")
+    if layout.carrier_screw_x + METRIC[c.screw].tap_drill / 2 + END_PLATE_WEB > layout.end_plate_half:
+        yield (
+            "clamp.carrier_screw_offset", "carrier screw outside the end plate", c.carrier_screw_offset,
+            f"at most {layout.end_plate_half - layout.clamp_edge - METRIC[c.screw].tap_drill / 2 - END_PLATE_WEB:g} mm",
+        )
+
+
+def arms_clear_end_plates(layout: Layout) -> Iterator[Finding]:
+    if layout.spacer < LEAST_ARM_GAP - SAME:
+        yield ("array.spacer", "arms too near their neighbours to move freely", layout.spacer, f"at least {LEAST_ARM_GAP:g} mm")
+
+
+# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam.
+LEAST_ARM_GAP = 0.1
+
+RULES: dict[str, Rule] = {
+    rule.__name__: rule
+    for rule in (
+        override_names_element,
+        pitch_is_sheet_and_spacer,
+        arms_clear_opposite_row,
+        hinge_thinner_than_arm,
+        fillets_fit_slot,
+        body_takes_slot,
+        ledges_in_one_plane,
+        slot_clears_pad,
+        pad_root_fits_pad,
+        gauge_fits_face,
+        arms_clear_end_plates,
+        ledge_below_rear,
+        recess_fits_rear,
+        estimator_holds,
+        stop_land_above_arm,
+        stop_land_fits_arm,
+        holes_inside_body,
+        stack_can_be_clamped,
+        end_plate_takes_holes,
+        carrier_can_be_screwed,
+        stop_plate_can_be_held,
+        carrier_holes_apart,
+    )
+}
+# Rules whose breach would make later ones fail for the same reason, or not computable.
+STOP_AFTER = frozenset({"override_names_element", "estimator_holds"})

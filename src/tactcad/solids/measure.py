@@ -1,0 +1,27 @@
+"""What the kernel measures on a shape."""
+
+from __future__ import annotations
+
+from OCP.Bnd import Bnd_Box
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopoDS import TopoDS_Shape
+
+
+def measure(shape: TopoDS_Shape) -> dict:
+    """Volume (mm3), surface area (mm2), centre of mass and bounding box (mm): box is (least, largest)."""
+    solid, surface = GProp_GProps(), GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, solid)
+    BRepGProp.SurfaceProperties_s(shape, surface)
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, False, False)
+    centre = solid.CentreOfMass()
+    low, high = box.CornerMin(), box.CornerMax()
+    gap = box.GetGap()
+    return {
+        "volume": solid.Mass(),
+        "area": surface.Mass(),
+        "centre": [centre.X(), centre.Y(), centre.Z()],
+        "box": [[low.X() + gap, low.Y() + gap, low.Z() + gap], [high.X() - gap, high.Y() - gap, high.Z() - gap]],
+    }

@@ -1,0 +1,120 @@
+"""The designs that the ladder's constants are fitted on, and what finite elements say about each."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactcad.fem.plane import solve_plane
+from tactcad.fem.shape import reference_shape
+from tactcad.fem.solid import solve_solid
+from tactcad.fem.surface import face_strain
+from tactcad.mechanics.section import HingeSection
+
+Columns = dict[str, NDArray[np.float64]]
+
+# The box over which the closed forms promise their error (mm; Poisson's ratio).
+BOX = {
+    "hinge_thickness": (0.15, 0.4), "hinge_length": (0.3, 1.5), "fillet_radius": (0.1, 0.3),
+    "load_arm": (3.0, 7.0), "arm_height": (1.5, 3.0), "body_height": (3.0, 8.0), "body_length": (2.0, 6.0),
+    "poisson": (0.2, 0.4), "width": (1.5, 8.0),
+}
+# Beyond the box, for small versions and short or deeply rounded slots; drawn by logarithm.
+WIDE = {
+    "hinge_thickness": (0.05, 0.4), "hinge_length": (0.1, 2.0), "fillet_radius": (0.03, 0.6),
+    "load_arm": (2.0, 9.0), "arm_height": (1.2, 4.0), "body_height": (2.0, 10.0), "body_length": (1.0, 8.0),
+    "poisson": (0.15, 0.45), "width": (1.0, 10.0),
+}
+LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block any more
+FILLET_RATIO = (0.15, 6.0)  # r/t
+FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
+WIDE_SHARE = 0.4
+
+PLANE_DENSITY = (3, 6)  # Richardson's pair
+SOLID_DENSITY = (2, 1)  # in the plane, across the width; K3D/K2D on one plane mesh errs by about 1e-4
+GRIDS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0)  # gauge grid lengths sampled, in slot lengths
+
+
+def draw(count: int, seed: int) -> Columns:
+    """`count` designs, half of them two-sided, as columns (mm); E is 1 MPa."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    while len(rows) < count:
+        wide = rng.random() < WIDE_SHARE
+        row = {k: _log_uniform(rng, *v) if wide else rng.uniform(*v) for k, v in (WIDE if wide else BOX).items()}
+        if rng.random() < FULL_ROUND_SHARE:
+            row["hinge_length"] = 2.0 * row["fillet_radius"]
+        row["two_sided"] = float(len(rows) % 2)
+        if _possible(row):
+            rows.append(row)
+    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+
+
+def draw_box(count: int, seed: int) -> Columns:
+    """Designs of the promised box alone, uniform, for checks."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    while len(rows) < count:
+        row = {k: rng.uniform(*v) for k, v in BOX.items()} | {"two_sided": float(len(rows) % 2)}
+        if _possible(row):
+            rows.append(row)
+    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+
+
+def section(columns: Columns) -> HingeSection:
+    """The designs as one section of unit Young's modulus (stiffness is proportional to it)."""
+    names = set(BOX) | {"two_sided"}
+    return HingeSection(youngs_modulus=1.0, **{k: v for k, v in columns.items() if k in names})
+
+
+def plane_results(s: HingeSection) -> dict[str, float]:
+    """One design (scalars): plane-stress stiffness for unit width and modulus, and face strains over nominal."""
+    shape, nu, L, t = reference_shape(s), float(s.poisson), float(s.load_arm), float(s.hinge_thickness)
+    coarse, fine = (solve_plane(shape, 1.0, nu, 1.0, density=d) for d in PLANE_DENSITY)
+    order = 4.0
+    gain = (PLANE_DENSITY[1] / PLANE_DENSITY[0]) ** order - 1.0
+    compliance = fine.compliance + (fine.compliance - coarse.compliance) / gain
+    nominal = 6.0 * L / (t * t)
+    slot, flat = face_strain(fine, "slot"), face_strain(fine, "flat")
+    result = {
+        "plane_stiffness": 1.0 / compliance, "plane_change": fine.compliance / coarse.compliance - 1.0,
+        "slot_peak": slot.peak / nominal, "flat_peak": flat.peak / nominal, "flat_centre": flat.centre / nominal,
+    }
+    for grid in GRIDS:
+        inside = grid * float(s.hinge_length)
+        fits = not bool(s.two_sided) or grid <= 1.0
+        result[f"grid_{grid:g}"] = flat.mean(inside) / nominal if fits else math.nan
+    return result
+
+
+def solid_results(s: HingeSection) -> dict[str, float]:
+    """One design (scalars): K3D/K2D on one plane mesh, and strain at mid-width over the plane's, per newton."""
+    shape, nu, b = reference_shape(s), float(s.poisson), float(s.width)
+    density, across = SOLID_DENSITY
+    plane = solve_plane(shape, 1.0, nu, b, density=density)
+    solid = solve_solid(shape, 1.0, nu, b, density=density, across=across)
+    grid = 0.5 * float(s.hinge_length)
+    means = [face_strain(r, "flat").mean(grid) for r in (solid, plane)]
+    peaks = [face_strain(r, "slot").peak for r in (solid, plane)]
+    return {
+        "width_factor": plane.compliance / solid.compliance,
+        "mid_grid_ratio": means[0] / means[1], "mid_peak_ratio": peaks[0] / peaks[1],
+    }
+
+
+def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+
+def _possible(row: dict[str, float]) -> bool:
+    depth = row["hinge_thickness"] + (1.0 + row["two_sided"]) * row["fillet_radius"]
+    reach = row["load_arm"] - row["hinge_length"] / 2.0
+    return (
+        2.0 * row["fillet_radius"] <= row["hinge_length"]
+        and min(row["arm_height"], row["body_height"]) >= LEAST_HEIGHT * depth
+        and FILLET_RATIO[0] <= row["fillet_radius"] / row["hinge_thickness"] <= FILLET_RATIO[1]
+        and reach >= row["arm_height"] / 2.0
+        and row["body_length"] >= 0.2 * row["body_height"]
+    )

@@ -1,0 +1,124 @@
+"""Entries come back as they went in, or not at all."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tactcad.export.cache import Cache, default_root
+
+DATA = bytes(range(256)) * 40
+
+
+@pytest.fixture
+def said() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def cache(tmp_path, said) -> Cache:
+    return Cache(tmp_path / "cache", said.append)
+
+
+def entry(cache: Cache) -> Path:
+    (path,) = (p for p in cache.root.rglob("*") if p.is_file())
+    return path
+
+
+@pytest.mark.parametrize("data", [DATA, b"", b"\n", b"a\nb\n"])
+def test_what_was_put_comes_back(cache, said, data):
+    assert cache.get("key") is None
+    cache.put("key", data)
+    assert cache.get("key") == data
+    assert cache.get("other key") is None
+    assert not said
+
+
+def test_made_once(cache):
+    made = []
+
+    def make() -> bytes:
+        made.append(1)
+        return DATA
+
+    assert [cache.get_or_make("key", make) for _ in range(3)] == [DATA] * 3
+    assert len(made) == 1
+
+
+def truncated(path: Path) -> None:
+    os.truncate(path, path.stat().st_size - 1)
+
+
+def emptied(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def lengthened(path: Path) -> None:
+    path.write_bytes(path.read_bytes() + b"x")
+
+
+def one_bit_flipped(path: Path) -> None:
+    data = bytearray(path.read_bytes())
+    data[-1000] ^= 1
+    path.write_bytes(data)
+
+
+def header_altered(path: Path) -> None:
+    path.write_bytes(b"x" + path.read_bytes())
+
+
+@pytest.mark.parametrize("damage", [truncated, emptied, lengthened, one_bit_flipped, header_altered])
+def test_damage_is_noticed_reported_and_repaired(cache, said, damage):
+    cache.put("key", DATA)
+    damage(entry(cache))
+    assert cache.get_or_make("key", lambda: DATA) == DATA
+    assert len(said) == 1
+    assert "damaged" in said[0]
+    assert cache.get("key") == DATA
+    assert len(said) == 1
+
+
+def test_an_entry_under_another_key_is_noticed(cache, said):
+    cache.put("one", b"1")
+    one = entry(cache)
+    cache.put("two", b"2")
+    (two,) = (p for p in cache.root.rglob("*") if p.is_file() and p != one)
+    one.replace(two)
+    assert cache.get("two") is None
+    assert "damaged" in said[0]
+
+
+def test_a_place_that_cannot_be_written_costs_time_only(tmp_path, said):
+    (tmp_path / "file").write_text("")
+    cache = Cache(tmp_path / "file" / "cache", said.append)
+    assert cache.get_or_make("key", lambda: DATA) == DATA
+    assert "going on without" in said[0]
+
+
+WRITER = """
+import sys
+from pathlib import Path
+from tactcad.export.cache import Cache
+cache = Cache(Path(sys.argv[1]), lambda text: sys.exit(text))
+for turn in range(300):
+    data = b"%d" % (turn % 3) * 50_000
+    cache.put(f"key {turn % 3}", data)
+    assert cache.get(f"key {turn % 3}") == data
+"""
+
+
+def test_two_processes_at_once(tmp_path):
+    runs = [subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)]) for _ in range(2)]
+    assert [run.wait() for run in runs] == [0, 0]
+    assert not list(tmp_path.rglob(".new-*"))
+
+
+def test_where_it_lies(monkeypatch, tmp_path):
+    monkeypatch.delenv("TACTCAD_CACHE", raising=False)
+    assert default_root() == Path(__file__).parents[2] / ".cache" / "tactcad"
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path))
+    assert default_root() == tmp_path

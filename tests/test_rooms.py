@@ -1,0 +1,98 @@
+"""A lower room never imports a higher one, and the CAD kernel is loaded only where solids are needed."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src"
+ROOMS = (
+    "design", "contour", "mechanics", "parts", "fem", "scenes", "solids", "checks", "export", "studies", "cli",
+)
+KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}
+# Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
+# at its top waits seconds for the kernel.
+NEED_SOLIDS = {"tactcad.export.picture", "tactcad.export.step"}
+
+MODULES = sorted((SOURCE / "tactcad").rglob("*.py"))
+
+
+def dotted(path: Path) -> str:
+    parts = path.relative_to(SOURCE).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def room(module: str) -> str:
+    """The room of a dotted name in tactcad, "" for the package itself and foreign modules."""
+    parts = module.split(".")
+    return parts[1] if parts[0] == "tactcad" and len(parts) > 1 and parts[1] in ROOMS else ""
+
+
+def imports(tree: ast.AST, module: str, is_package: bool) -> set[str]:
+    """Dotted names of everything imported anywhere in the module, inside functions too."""
+    package = module.split(".") if is_package else module.split(".")[:-1]
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else []
+            name = ".".join(base + ([node.module] if node.module else []))
+            found |= {name} | {f"{name}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith("import_module"):
+            found |= {str(arg.value) for arg in node.args if isinstance(arg, ast.Constant)}
+    return found
+
+
+def imports_of(path: Path) -> set[str]:
+    return imports(ast.parse(path.read_text()), dotted(path), path.name == "__init__.py")
+
+
+def test_every_folder_is_a_room():
+    folders = {p.name for p in (SOURCE / "tactcad").iterdir() if p.is_dir() and p.name != "__pycache__"}
+    assert folders == set(ROOMS)
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_no_room_imports_a_higher_one(path):
+    here = room(dotted(path))
+    if not here:  # the package itself and __main__, which starts the command
+        assert all(room(name) in ("", "cli") for name in imports_of(path))
+        return
+    above = ROOMS[ROOMS.index(here) + 1 :]
+    assert not [name for name in imports_of(path) if room(name) in above]
+
+
+@pytest.mark.parametrize("path", MODULES, ids=dotted)
+def test_kernel_is_imported_only_where_solids_are_made_or_needed(path):
+    name = dotted(path)
+    if room(name) == "solids" or name in NEED_SOLIDS:
+        return
+    assert not [other for other in imports_of(path) if other.split(".")[0] in KERNEL]
+
+
+def test_the_listed_modules_exist_and_stand_above_solids():
+    assert NEED_SOLIDS <= {dotted(p) for p in MODULES}
+    assert {room(name) for name in NEED_SOLIDS} <= {"checks", "export"}
+
+
+def test_importing_everything_else_loads_no_kernel():
+    light = [dotted(p) for p in MODULES if room(dotted(p)) != "solids" and p.name != "__main__.py"]
+    light = [name for name in light if name not in NEED_SOLIDS]
+    script = (
+        f"import importlib, sys\nfor name in {light!r}: importlib.import_module(name)\n"
+        f"print(*sorted({{m.split('.')[0] for m in sys.modules}} & {KERNEL!r}))"
+    )
+    run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split() == []
+
+
+def test_the_import_reader_sees_all_forms():
+    text = "import a.b\nfrom . import c\nfrom ..d import e\ndef f():\n    from tactcad.cli import g"
+    found = imports(ast.parse(text), "tactcad.parts.x", is_package=False)
+    assert {"a.b", "tactcad.parts.c", "tactcad.d", "tactcad.d.e", "tactcad.cli.g"} <= found
