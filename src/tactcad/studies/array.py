@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
 
 
 @dataclass(frozen=True)
@@ -65,33 +69,29 @@ class ArrayModel:
         return np.array([place.get(int(n), -1) for n in number])
 
 
-def from_design(design) -> ArrayModel:
-    """The array of a loaded design (tactcad.parts.designs.load)."""
-    from tactcad.parts.layout import Layout
-
-    places = Layout(design).elements
-    e, m = design.element, design.material
-    column = lambda pick: np.array([float(pick(p)) for p in places])  # noqa: E731
-    section = HingeSection(
-        hinge_thickness=column(lambda p: p.hinge.t), hinge_length=column(lambda p: p.hinge.l),
-        fillet_radius=column(lambda p: p.hinge.r), load_arm=column(lambda p: p.load_arm),
-        arm_height=column(lambda p: p.hinge.h), body_height=e.body_height,
-        body_length=column(lambda p: p.body_length), poisson=m.poisson, youngs_modulus=m.youngs_modulus,
-        width=design.sheet.thickness, two_sided=e.sides == "two",
-    )
-    side = column(lambda p: 1.0 if p.row == 1 else -1.0)
+def from_design(design: Design) -> ArrayModel:
+    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig tables."""
+    for name in ("calibration", "sample", "grasping"):
+        if getattr(design, name) is None:
+            raise InputError(f"design {design.name}", f"has no [{name}] table, which a validation needs")
+    layout = Layout(design)
+    places = layout.elements
+    side = np.array([1.0 if p.row == 1 else -1.0 for p in places])  # row two is row one's kind turned by 180 degrees
+    gauge, readout, rig = design.gauge, design.readout, design.calibration
     return ArrayModel(
-        design.name, np.array([p.number for p in places]), column(lambda p: p.arm), section, e.pad_length,
-        e.pad_height, side * design.array.row_pitch / 2, side * column(lambda p: p.y),
-        _pick(Gauge, design.gauge),
-        _pick(ReadOut, design.readout),
-        Power(design.gauge.resistance, design.gauge.carrier_conductivity, design.gauge.resistance_per_kelvin,
-              design.readout.reference_mismatch, design.readout.on_time, design.readout.period),
+        design.name, np.array([p.number for p in places]), np.array([float(p.arm) for p in places]),
+        # friction acts at the pad of a calibration rig, and is asked for there
+        hinge_section(layout, places).with_(pad_height=0.0, friction=0.0),
+        design.element.pad_length, design.element.pad_height,
+        side * design.array.row_pitch / 2, side * np.array([p.y for p in places]),
+        _pick(Gauge, gauge),
+        replace(_pick(ReadOut, readout), adc_bits=int(readout.adc_bits), samples=int(readout.samples)),
+        Power(gauge.resistance, gauge.carrier_conductivity, gauge.resistance_per_kelvin, readout.reference_mismatch,
+              readout.on_time, readout.period),
         _pick(Tolerance, design.tolerance),
-        Rig(design.calibration.load_cell_stiffness, design.calibration.load_cell_resolution,
-            design.calibration.micrometer_resolution, design.calibration.load_point, design.calibration.friction,
+        Rig(rig.load_cell_stiffness, rig.load_cell_resolution, rig.micrometer_resolution, rig.load_point, rig.friction,
             design.sample.thickness, design.sample.poisson, design.grasping.moving_weight, design.grasping.weight,
-            design.grasping.weights),
+            int(design.grasping.weights)),
     )
 
 

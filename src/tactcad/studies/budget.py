@@ -125,7 +125,7 @@ def _reference(pair: _Pair, study: Table2Study, data: Published, array: ArrayMod
     half = log(study.supported.high[0] / pair.K_r)
     stage = _stage_error(data, array)
     return Effect("reference stiffness, printed against supported",
-                  f"equation (3) with either; the supported one's own interval is +-{half:.0%} of K_r", size, nan, off,
+                  f"equation (3) with either; the supported one's own interval is ±{half:.0%} of K_r", size, nan, off,
                   "calibrate the reference element again", abs(pair.by_reference) * stage)
 
 
@@ -136,7 +136,7 @@ def _dimensions(pair: _Pair, array: ArrayModel) -> list[Effect]:
 
     def one(title: str, name: str, half: float, remedy: str, better: float) -> Effect:
         now, then = pair.change(name, half), pair.change(name, better)
-        return Effect(title, f"+-{half:g} mm by the closed form", *now, pair.apart(*now), remedy, pair.apart(*then))
+        return Effect(title, f"±{half:g} mm by the closed form", *now, pair.apart(*now), remedy, pair.apart(*then))
 
     pad = array.pad_length / 2
     wire = WIRE_TOLERANCE["1 pass"]
@@ -148,7 +148,7 @@ def _dimensions(pair: _Pair, array: ArrayModel) -> list[Effect]:
         one("hinge thickness, as toleranced", "hinge_thickness", tol.hinge_thickness, measured, 0.0),
         one("hinge length", "hinge_length", tol.hinge_length, measured, 0.0),
         one("arm height", "arm_height", tol.arm_height, measured, 0.0),
-        Effect("sheet thickness", f"+-{tol.sheet_thickness:g} mm, all elements alike", *sheet, pair.together(*sheet),
+        Effect("sheet thickness", f"±{tol.sheet_thickness:g} mm, all elements alike", *sheet, pair.together(*sheet),
                "measure the sheet to 0.01 mm", pair.together(*sheet) * 0.01 / tol.sheet_thickness),
     ]
 
@@ -181,9 +181,9 @@ def _calibration(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
     ]
     stage = _stage_error(data, array)
     return [
-        Effect("friction at the force sensor's tip", f"mu {rig.friction:g}, K L/(L - mu H), H = pad height + t/2",
+        Effect("friction at the force sensor's tip", f"µ {rig.friction:g}, K L/(L − µH), H = pad height + t/2",
                *friction[0], pair.together(*friction[0]), "roller instead of a flat tip", pair.together(*friction[1])),
-        Effect("micrometer of the calibration", f"{rig.micrometer_resolution * 1e3:g} um on the slope of one run",
+        Effect("micrometer of the calibration", f"{rig.micrometer_resolution * 1e3:g} µm on the slope of one run",
                stage, stage, pair.apart(stage, stage), "three runs", pair.apart(stage, stage) / 3**0.5),
     ]
 
@@ -205,10 +205,10 @@ def _grasp(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
     span = float(max(np.ptp(array.pad_x), np.ptp(array.pad_y)))
     tilted = span / 2 * tan(radians(array.tolerance.tilt))
     slopes = "slopes against load, not totals"
-    at = f"at the first load, {array.rig.moving_weight:g} N, approach {z * 1e3:.3g} um"
+    at = f"at the first load, {array.rig.moving_weight:g} N, approach {z * 1e3:.3g} µm"
     return [
-        Effect("pad height", f"+-{height * 1e3:g} um {at}", nan, nan, pair.by_ratio * 2**0.5 * height / z, slopes, 0.0),
-        Effect("tilt of the array", f"{array.tolerance.tilt:g} degree over {span:g} mm: {tilted * 1e3:.3g} um {at}", nan, nan,
+        Effect("pad height", f"±{height * 1e3:g} µm {at}", nan, nan, pair.by_ratio * 2**0.5 * height / z, slopes, 0.0),
+        Effect("tilt of the array", f"{array.tolerance.tilt:g} degree over {span:g} mm: {tilted * 1e3:.3g} µm {at}", nan, nan,
                pair.by_ratio * tilted / z, slopes, 0.0),
     ]
 
@@ -266,8 +266,8 @@ def _electronics(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
     bend = np.abs(readout.bridge_nonlinearity(factor * q * d))
     per_mm = readout.volts_per_strain(factor, array.readout) * q
     noise = float(((array.readout.averaged_noise / (per_mm * d)) ** 2).sum() ** 0.5)
-    drift = [abs(how(array.readout.excitation, array.gauge, array.power).drift) for how in (self_heating.continuous, self_heating.switched)]
-    warm = [float((value / (factor * q * d)).max()) for value in drift]
+    drift = abs(self_heating.continuous(array.readout.excitation, array.gauge, array.power).drift)
+    warm = float((drift / (factor * q * d)).max())
     at = f"at the first load, {array.rig.moving_weight:g} N"
     return [
         Effect("bridge non-linearity", f"quarter bridge {at}", nan, nan, pair.by_ratio * float(abs(bend[1] - bend[0])),
@@ -275,8 +275,8 @@ def _electronics(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
         Effect("noise of the averaged reading", f"{array.readout.averaged_noise * 1e3:.2g} mV {at}, two standard deviations",
                nan, nan, pair.by_ratio * 2 * noise, "slope over all weights", pair.by_ratio * 2 * noise *
                array.rig.moving_weight / max(_span(array), 1e-9)),
-        Effect("gauge warms itself", f"power on all the time; drift against the signal {at}", nan, nan,
-               pair.by_ratio * warm[0], "power on only while reading", pair.by_ratio * warm[1]),
+        Effect("gauge warms itself", f"power on all the time; drift against the signal {at}, R of totals", nan, nan,
+               pair.by_ratio * warm, "power on only while reading; slopes, since what is left is the same in each reading", 0.0),
     ]
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.mechanics import gauge_signal, readout
+from tactcad.mechanics import gauge_signal, readout, self_heating
 from tactcad.studies.array import ArrayModel
 from tactcad.studies.published import Published
 from tactcad.studies.regression import t_quantile
@@ -43,6 +43,10 @@ class GainFit:
     nonlinearity: np.ndarray  # of the bridge there
     limited: np.ndarray  # held by the supply or the converter
     resolution: np.ndarray  # N, two standard deviations of the averaged reading
+    always_on: self_heating.Heating
+    switched: self_heating.Heating
+    drift_always_on: np.ndarray  # N, what the drift reads as, by element
+    drift_switched: np.ndarray
 
     @property
     def predicted(self) -> np.ndarray:
@@ -69,6 +73,7 @@ def fit(data: Published, array: ArrayModel) -> GainFit:
     effective = [_effective(s, length, array) for length in lengths]
     gains = np.array([g for g, _ in tried])
     gain = float(readout.volts_per_strain(array.gauge.factor, array.readout))
+    on, off = (how(array.readout.excitation, array.gauge, array.power) for how in (self_heating.continuous, self_heating.switched))
     strain = q * t1.deflection.value[here] * 1e-3
     volts = readout.unlimited_output(strain, array.gauge.factor, array.readout)
     held = readout.output(strain, array.gauge.factor, array.readout)
@@ -79,7 +84,8 @@ def fit(data: Published, array: ArrayModel) -> GainFit:
         gain * per_force, strain,
         held - readout.output(0.0, array.gauge.factor, array.readout),
         readout.bridge_nonlinearity(array.gauge.factor * strain), held != volts,
-        2 * array.readout.averaged_noise / (gain * per_force),
+        2 * array.readout.averaged_noise / (gain * per_force), on, off,
+        *(abs(h.drift) / array.gauge.factor / per_force for h in (on, off)),
     )
 
 

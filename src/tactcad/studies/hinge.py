@@ -7,7 +7,7 @@ accuracy that one may expect of a plane finite-element model.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.special import fdtri
@@ -17,6 +17,7 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.studies.array import ArrayModel
 from tactcad.studies.published import Published
 from tactcad.studies.regression import t_quantile
+from tactcad.studies.report import UNREPORTED
 from tactcad.studies.residuals import matched
 
 LENGTHS = np.linspace(0.30, 2.0, 171)  # mm, slot length l
@@ -31,7 +32,7 @@ class Form:
 
     name: str
     two_sided: bool
-    square_sum: np.ndarray
+    square_sum: np.ndarray = field(metadata=UNREPORTED)
     best_length: float
     best_radius: float
     best_scatter: float  # rms of ln K at the best point, degrees of freedom taken off

@@ -11,6 +11,9 @@ from math import isfinite, isinf, isnan
 
 import numpy as np
 
+SCHEMA = "tactcad-validation-1"
+UNREPORTED = {"unreported": True}  # metadata of a field that is a picture's raw material, left out of the JSON
+
 STYLE = """
 :root{color-scheme:light}
 body{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}
@@ -128,7 +131,7 @@ def listed(items) -> str:
 def to_json(report: Report) -> str:
     """Findings, tables' numbers and every study's values; figures by name. NaN and infinities become text."""
     data = {
-        "schema": "tactcad-validation-1",
+        "schema": SCHEMA,
         "title": report.title,
         "subtitle": report.subtitle,
         "summary": list(report.summary),
@@ -148,7 +151,7 @@ def to_json(report: Report) -> str:
 def plain(value: object) -> object:
     """Dataclasses, arrays and numbers as JSON's kinds; numbers that JSON lacks as 'nan', 'inf', '-inf'."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if not f.metadata.get("unreported")}
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
@@ -160,6 +163,20 @@ def plain(value: object) -> object:
     if isinstance(value, float) and not isfinite(value):
         return str(value)
     return value
+
+
+def to_text(report: Report) -> str:
+    """The findings for a terminal."""
+    lines = [report.title, ""]
+    for i, s in enumerate(report.sections, 1):
+        lines += [f"{i}. {s.title}", *(f"   - {f}" for f in s.findings), ""]
+    return "\n".join(lines).rstrip()
+
+
+def standalone(figure: Figure) -> str:
+    """The picture as a file of its own, on white."""
+    start = figure.svg.index(">") + 1
+    return ('<?xml version="1.0" encoding="utf-8"?>\n' + figure.svg[:start] + '<rect width="100%" height="100%" fill="#ffffff"/>' + figure.svg[start:])
 
 
 def to_html(report: Report) -> str:

@@ -71,12 +71,11 @@ def matched(data: Published, array: ArrayModel) -> tuple[np.ndarray, HingeSectio
 
 def residuals(data: Published, array: ArrayModel, rng: np.random.Generator, rung: str = "solid",
               more: dict[str, np.ndarray] | None = None) -> Residuals:
-    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, by array element."""
+    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, for the matched elements."""
     here, s = matched(data, array)
     K = data.table1.stiffness.value[here]
     predicted = {name: ladder.evaluate(s, name).stiffness for name in ladder.CLOSED_FORMS}
-    place = array.rows(data.table1.element)[here]
-    predicted |= {name: values[place] for name, values in (more or {}).items()}
+    predicted |= more or {}
     t, L = s.hinge_thickness, np.broadcast_to(s.load_arm, s.shape)
     return Residuals(
         data.table1.element[here], data.table1.arm.value[here], K, predicted, rung, np.log(K / predicted[rung]),

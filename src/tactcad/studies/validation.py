@@ -7,6 +7,7 @@ import numpy as np
 from tactcad.design.messages import InputError
 from tactcad.studies import (
     budget,
+    fem_rungs,
     gain,
     grasp_figures,
     hinge,
@@ -42,7 +43,7 @@ def validate(data: Published, array: ArrayModel) -> Report:
         raise InputError(f"design {array.name}", "does not have Table 1's elements",
                          value=array.number.tolist(), legal=f"{LEAST_COMMON} of {data.table1.element.tolist()}, the reference element among them")
     rng = np.random.default_rng(SEED)
-    K = residuals.residuals(data, array, rng)
+    K = residuals.residuals(data, array, rng, more=fem_rungs.stiffnesses(residuals.matched(data, array)[1]))
     fit = hinge.fit(data, array)
     signal = gain.fit(data, array)
     own = table1_check.check(data)

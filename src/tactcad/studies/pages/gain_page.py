@@ -14,7 +14,7 @@ def page(g: GainFit, array: ArrayModel) -> Section:
     return Section(
         "gain", "Signal sensitivity K_v by one gain",
         "All elements share one read-out. Does one gain explain their K_v, and which gain is it?",
-        findings(g, array), (_by_element(g), _lengths(g)), (_plot(g),), g,
+        findings(g, array), (_by_element(g), _lengths(g), _heating(g, array)), (_plot(g),), g,
     )
 
 
@@ -42,7 +42,22 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
         f"(strains up to {percent(g.strain_at_most.max())}); two standard deviations of the averaged reading are "
         f"{interval(*(np.array([g.resolution.min(), g.resolution.max()]) * 1e3), 2)} mN, with the noise that the design assumes."
     )
+    found.append(
+        f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at {sig(g.always_on.power_density, 2)} kW/m² and reads up to "
+        f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, {sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN "
+        f"remain at the end of a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
+    )
     return tuple(found)
+
+
+def _heating(g: GainFit, array: ArrayModel) -> Table:
+    rows = tuple((name, h.power * 1e3, h.power_density, h.rise, f"{h.drift * 1e6:.1f}".replace("-", "−"), drift.min() * 1e3, drift.max() * 1e3)
+                 for name, h, drift in (("power on all the time", g.always_on, g.drift_always_on),
+                                        (f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s", g.switched, g.drift_switched)))
+    return Table("Self-heating of the grid",
+                 (("", ""), ("mean power", "mW"), ("per grid area", "kW/m²"), ("grid over leaf", "K"), ("drift dR/R", "10⁻⁶"), ("reads as, least", "mN"),
+                  ("largest", "mN")), rows,
+                 "Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest moment. The drift is what the reference gauges leave.")
 
 
 def _by_element(g: GainFit) -> Table:
