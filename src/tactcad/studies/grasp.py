@@ -13,14 +13,15 @@ from dataclasses import dataclass
 from math import inf, isinf, pi, tan
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.special import chdtrc, fdtrc
 
 from tactcad.design.messages import InputError
 from tactcad.studies.readings import GraspReadings
 from tactcad.studies.regression import t_quantile
 
+STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
 DISAGREE = 0.01  # probability below which the elements are said to disagree
-ANGLES = 1441  # scan of the projective line of K_obj
+ANGLES = 721  # scan of the projective line of K_obj
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,8 @@ def evaluate(readings: GraspReadings, calibration: Sensitivity, *, reference: in
     notes = []
     dropped = int((~touching).sum())
     if dropped:
-        notes.append(f"{dropped} readings at zero load left out: before contact the pads' heights enter")
+        notes.append(f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter")
+    notes += _strays(readings.element, readings.signal[:, touching])
     if widened > 1:
         notes.append(f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened {widened:.2g} times")
     return Grasp(readings.sample, pairs, combined, noise, slopes.signal_dof, p, widened, int(touching.sum()), dropped,
@@ -165,6 +167,25 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
     return Slopes(element, s, f, signal_part, part, dof, calibration.dof[rows]), variance**0.5
 
 
+def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
+    """Elements whose signals do not follow the approach that the others share (F test against the others' noise)."""
+    n, each = len(element), signal.shape[1] - 2
+    if n < 3:
+        return []
+    centred = signal - signal.mean(1, keepdims=True)
+    notes = []
+    for i, number in enumerate(element):
+        rest = np.delete(centred, i, 0)
+        _, size, vt = np.linalg.svd(rest, full_matrices=False)
+        noise = (size[1:] ** 2).sum() / (each * (n - 2))
+        g = centred[i] @ vt[0]
+        # the others' approach is known to noise/size[0] at each load, and g carries that over
+        own = ((centred[i] - g * vt[0]) ** 2).sum() / each / (1 + (g / size[0]) ** 2)
+        if noise > 0 and fdtrc(each, each * (n - 2), own / noise) < STRAY / n:
+            notes.append(f"element {number} does not follow the approach of the others: late contact, a limit of the read-out, or a bad gauge")
+    return notes
+
+
 def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> tuple[Interval, float, float]:
     """K_obj that makes f + x s most equal over the members (default all), its interval, p of their disagreement,
     and the factor by which that widens the standard error.
@@ -175,12 +196,14 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     m = list(range(len(slopes.s))) if members is None else members
     f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
     scale = float(np.median(np.abs(f / s)))
+    # without noise in K and K_v, f + x s of an element has no variance at x = -K: hold it above zero there
+    smallest = np.maximum(1e-14 * c[:, 0, 0], np.finfo(float).tiny)
     angle = np.linspace(-pi / 2, pi / 2, ANGLES)
 
     def misfit(a: np.ndarray) -> np.ndarray:
         cos, sin = np.cos(a)[:, None], scale * np.sin(a)[:, None]
         z = cos * f + sin * s
-        w = 1 / (cos**2 * c[:, 0, 0] + 2 * cos * sin * c[:, 0, 1] + sin**2 * c[:, 1, 1])
+        w = 1 / np.maximum(cos**2 * c[:, 0, 0] + 2 * cos * sin * c[:, 0, 1] + sin**2 * c[:, 1, 1], smallest)
         mean = (w * z).sum(1) / w.sum(1)
         return (w * (z - mean[:, None]) ** 2).sum(1)
 
@@ -245,9 +268,10 @@ def _interval(misfit, best: float, limit: float, scale: float) -> Interval:
         if not len(outside):
             return Interval(_value(best, scale), 0.0, inf)
         inner, outer = offset[max(outside[0] - 1, 0)], offset[outside[0]]
-        for _ in range(60):
-            middle = (inner + outer) / 2
-            inner, outer = (middle, outer) if misfit(np.array([best + direction * middle]))[0] <= limit else (inner, middle)
+        for _ in range(12):
+            fine = np.linspace(inner, outer, 33)
+            first = max(int(np.argmax(misfit(best + direction * fine) > limit)), 1)
+            inner, outer = fine[first - 1], fine[first]
         edges.append(direction * inner)
     estimate = _value(best, scale)
     # On the line of angles K_obj >= 0 is [0, pi/2], repeated every pi.

@@ -64,20 +64,25 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
         w,
         dof,
         run_slope,
-        _homogeneity(run_slope[has_slope], sxx[has_slope], slope, scatter, dof),
+        _homogeneity(run_slope[has_slope], sxx[has_slope], slope, scatter, dof, rounding(y)),
     )
 
 
 def _homogeneity(run_slope: np.ndarray, sxx: np.ndarray, slope: np.ndarray, scatter: np.ndarray,
-                 dof: int) -> np.ndarray:
+                 dof: int, smallest: np.ndarray) -> np.ndarray:
     """F test of one slope for all runs, by response; 1 with a single run."""
     extra = len(sxx) - 1
     rest = dof - extra
     if extra < 1 or rest < 1:
         return np.ones(len(slope))
     between = (sxx[:, None] * (run_slope - slope) ** 2).sum(0)
-    within = np.maximum(np.diag(scatter) * dof - between, np.finfo(float).tiny)
+    within = np.maximum(np.diag(scatter) * dof - between, rest * smallest**2)
     return fdtrc(extra, rest, between / extra / (within / rest))
+
+
+def rounding(y: np.ndarray) -> np.ndarray:
+    """Scatter below which the readings of each response y[:, k] differ by rounding only."""
+    return np.maximum(1e-13 * np.abs(y).max(0), np.finfo(float).tiny ** 0.5)
 
 
 def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
@@ -122,6 +127,7 @@ def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float
     """
     n = len(x)
     kept = np.ones(n, bool)
+    smallest = float(rounding(y[:, None])[0])
     removed: list[int] = []
     named = 0
     for step in range(max(1, n // 10)):
@@ -130,7 +136,7 @@ def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float
             break
         lines = fit_lines(x[index], y[index, None], run[index])
         scale = sqrt(max(lines.covariance[0, 0], 0.0) * _sxx(x[index], run[index]))
-        if scale == 0:
+        if scale <= smallest:
             break
         deviate = np.abs(lines.residual[:, 0]) / (scale * np.sqrt(np.maximum(1 - lines.leverage, 1e-12)))
         worst = int(np.argmax(deviate))
