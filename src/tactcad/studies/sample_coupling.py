@@ -17,6 +17,7 @@ from tactcad.mechanics import lumped
 WAVES = 1200  # wave numbers, to LARGEST/pad size
 ANGLES = 96
 LARGEST = 60.0
+FAR = 50.0  # mm
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,15 @@ def influence(dx: np.ndarray, dy: np.ndarray, length: float, width: float, thick
     phi = 1.0 if np.isinf(thickness) else layer_factor(k * thickness, poisson)[:, None]
     weight = phi * (np.sinc(kx * length / 2 / np.pi) * np.sinc(ky * width / 2 / np.pi)) ** 2
     own = weight.sum()
-    return np.array([(weight * np.cos(kx * x) * np.cos(ky * y)).sum() / own for x, y in zip(dx, dy)])
+
+    def share(x: float, y: float) -> float:
+        """Further than FAR a layer carries nothing over, and a half-space 1/r: there the sum over waves would alias."""
+        r = float(np.hypot(x, y))
+        if r > FAR:
+            return share(x * FAR / r, y * FAR / r) * FAR / r if np.isinf(thickness) else 0.0
+        return float((weight * np.cos(kx * x) * np.cos(ky * y)).sum() / own)
+
+    return np.array([share(x, y) for x, y in zip(dx, dy)])
 
 
 def coupling(K: np.ndarray, x: np.ndarray, y: np.ndarray, object_stiffness: float, reference: int, length: float,

@@ -54,14 +54,12 @@ def approach(load: np.ndarray, stiffness: np.ndarray, object_stiffness: float,
     h = np.zeros_like(stiffness) if pad_height is None else pad_height
     share = object_stiffness / (stiffness + object_stiffness)
     rate = stiffness * share
-    z = np.empty(len(load))
-    order = np.argsort(-h)  # the pads touch in this order
-    for j, force in enumerate(load):
-        for n in range(1, len(order) + 1):
-            touching = order[:n]
-            z[j] = (force - (rate[touching] * h[touching]).sum()) / rate[touching].sum()
-            if n == len(order) or z[j] <= -h[order[n]]:
-                break
+    order = np.argsort(-h, kind="stable")  # the pads touch in this order
+    sorted_rate, sorted_h = rate[order], h[order]
+    # approach with the first n pads touching, and the one at which the next would touch
+    candidate = (load[:, None] - np.cumsum(sorted_rate * sorted_h)) / np.cumsum(sorted_rate)
+    following = np.append(-sorted_h[1:], np.inf)
+    z = candidate[np.arange(len(load)), np.argmax(candidate <= following, axis=1)]
     return z, share[:, None] * np.maximum(z[None, :] + h[:, None], 0.0)
 
 
