@@ -325,10 +325,10 @@ def test_reference_findings_follow_the_data(paper, array):
         return " ".join(reference_page.findings(reference_element.study(d, array, reference_stiffness.study(d))))
 
     as_printed = said(paper)
-    assert "at least 2.39 times more" in as_printed and "Only 'deflection scale of the reference element off' overlaps both" in as_printed
+    assert "at least 2.39 times more" in as_printed and "Only 'with its deflection scale off' overlaps both" in as_printed
     assert "lies within" in said(with_figures(paper, reference_signal_least=0.2, reference_signal_most=0.4))
     softer = said(with_figures(paper, reference_signal_least=0.26, reference_signal_most=0.30))
-    assert "Only 'softer reference element' overlaps both" in softer
+    assert "Only 'with a softer reference element' overlaps both" in softer
     assert "None overlaps either" in said(with_figures(paper, reference_signal_least=5.0, reference_signal_most=6.0,
                                                       reference_deflection_least=500.0, reference_deflection_most=600.0))
 

@@ -35,7 +35,9 @@ table{border-collapse:collapse;font-size:14px;margin:6px 0 2px;font-variant-nume
 th,td{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:right;vertical-align:top}
 th{border-bottom:2px solid #6a737d;font-weight:600;text-align:right}
 th small{display:block;font-weight:400;color:#4a525b}
+td{white-space:nowrap}
 td.text,th.text{text-align:left}
+td.text{white-space:normal}
 td.mark{background:#fdf0e2}
 footer{padding:30px 28px 50px;color:#4a525b;font-size:14px}
 @media print{h2{break-after:avoid}figure,table{break-inside:avoid}}
@@ -77,6 +79,7 @@ class Section:
     tables: tuple[Table, ...] = ()
     figures: tuple[Figure, ...] = ()
     values: object = None  # the study's dataclass, for JSON
+    headline: tuple[str, ...] = ()  # the findings that stand at the top of the report too
 
 
 @dataclass(frozen=True)

@@ -63,9 +63,11 @@ class Residuals:
 
 
 def matched(data: Published, array: ArrayModel) -> tuple[np.ndarray, HingeSection]:
-    """Rows of Table 1 whose element the design has, and their hinge sections."""
+    """Rows of Table 1 whose element the design has, by number and arm length, and their hinge sections."""
     place = array.rows(data.table1.element)
-    here = np.flatnonzero(place >= 0)
+    printed = data.table1.arm
+    same = np.abs(array.arm[place] - printed.value) <= printed.half_step
+    here = np.flatnonzero((place >= 0) & same)
     return here, array.section.rows(place[here])
 
 

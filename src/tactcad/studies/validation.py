@@ -38,10 +38,11 @@ LEAST_COMMON = 4  # elements of Table 1 that a design must have for the fits to 
 
 def validate(data: Published, array: ArrayModel) -> Report:
     """All nine sections. Raises InputError when the design has too few of Table 1's elements."""
-    common = int((array.rows(data.table1.element) >= 0).sum())
-    if common < LEAST_COMMON or array.rows(data.table1.element[[data.reference]])[0] < 0:
-        raise InputError(f"design {array.name}", "does not have Table 1's elements",
-                         value=array.number.tolist(), legal=f"{LEAST_COMMON} of {data.table1.element.tolist()}, the reference element among them")
+    common = residuals.matched(data, array)[0]
+    if len(common) < LEAST_COMMON or data.reference not in common:
+        raise InputError(f"design {array.name}", "does not have Table 1's elements, by number and arm length",
+                         value=f"{len(common)} of them",
+                         legal=f"{LEAST_COMMON} of {data.table1.element.tolist()} at least, the reference element among them")
     rng = np.random.default_rng(SEED)
     K = residuals.residuals(data, array, rng, more=fem_rungs.stiffnesses(residuals.matched(data, array)[1]))
     fit = hinge.fit(data, array)
@@ -66,14 +67,7 @@ def validate(data: Published, array: ArrayModel) -> Report:
         inversion_page.page(inverted),
     )
     by_key = {s.key: s for s in sections}
-    summary = (
-        by_key["table2"].findings[2],
-        by_key["reference"].findings[1],
-        by_key["stiffness"].findings[0],
-        by_key["stiffness"].findings[2],
-        by_key["table1"].findings[3],
-        by_key["inversion"].findings[0],
-    )
+    summary = tuple(h for key in ("table2", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline)
     return Report(
         "Held against the paper: a spring-based tactile array",
         f"Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, the lumped pair, and the beam model of the "

@@ -13,10 +13,11 @@ FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called r
 
 
 def page(v: Inversion) -> Section:
+    found = findings(v)
     return Section(
         "inversion", "Inversion: object stiffness from R",
         "What would a user of this array have read off as K_obj, by equation (3), from Table 2's R?",
-        findings(v), (_table(v, v.supported), _table(v, v.printed)), (_plot(v),), v,
+        found, (_table(v, v.supported), _table(v, v.printed)), (_plot(v),), v, (found[0],),
     )
 
 

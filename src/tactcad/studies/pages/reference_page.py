@@ -13,7 +13,7 @@ def page(e: ReferenceElement) -> Section:
     return Section(
         "reference", f"The reference element, no. {e.element}",
         "Its printed signals and deflections do not match its printed K_v. What could explain its stiffness, and what would each explanation do to K_v?",
-        findings(e), (_ranges(e), _accounts(e), _explanations(e)), (_plot(e),), e,
+        findings(e), (_ranges(e), _accounts(e), _explanations(e)), (_plot(e),), e, (_loads(e),),
     )
 
 
@@ -35,25 +35,31 @@ def _printed(pair: tuple[float, float]) -> str:
     return f"{pair[0]:g} to {pair[1]:g}"
 
 
+# account of Table 2 -> how a sentence names it, and what it means when it alone fits
+ACCOUNTS = {
+    "as printed": ("as printed", "Then Table 1 and the reference element's readings agree as they stand."),
+    "softer reference element": (
+        "with a softer reference element", "Then its K in Table 1 is wrong, and its deflections in Table 2 are right."),
+    "deflection scale of the reference element off": (
+        "with its deflection scale off",
+        "Then its K and K_v in Table 1 may stand, and its deflections behind Table 2, hence every R, are wrong by one factor."),
+}
+
+
 def _loads(e: ReferenceElement) -> str:
     """Which account of Table 2 the printed deflections and signals go with."""
     first = e.readings[0]
-    text = (f"The softest element's largest deflection fixes the grasping force at about {sig(first.load)} N (about {first.weights:.0f} added weights; "
-            "the paper does not give their number). At that load ")
-    said = []
-    for r in e.readings:
-        said.append(f"'{r.name}' predicts {interval(*r.deflection)} µm and {interval(*r.signal, 2)} V")
-    text += listed(said) + f", where {_printed(e.deflection)} µm and {_printed(e.signal)} V are printed. "
+    said = "; ".join(f"{ACCOUNTS[r.name][0]}, {interval(*r.deflection)} µm and {interval(*r.signal, 2)} V" for r in e.readings)
+    text = (f"At the grasping force that the softest element's largest deflection fixes (about {sig(first.load, 2)} N, or {first.weights:.0f} added weights, which "
+            f"the paper does not count) the reference element would show: {said}. Printed are {_printed(e.deflection)} µm and {_printed(e.signal)} V. ")
     both = [r.name for r in e.readings if r.deflection_agrees and r.signal_agrees]
-    only = {r.name: ("deflections" if r.deflection_agrees else "signals") for r in e.readings if r.deflection_agrees != r.signal_agrees}
+    if len(both) == 1:
+        return text + f"Only '{ACCOUNTS[both[0]][0]}' overlaps both ranges. {ACCOUNTS[both[0]][1]}"
     if both:
-        text += f"Only {listed(repr(n) for n in both)} overlaps both printed ranges"
-        text += f"; {listed(f'{n!r} only the {what}' for n, what in only.items())}." if only else "."
-    elif only:
-        text += f"None overlaps both printed ranges; {listed(f'{n!r} the {what}' for n, what in only.items())}."
-    else:
-        text += "None overlaps either printed range."
-    return text
+        return text + f"{listed(repr(ACCOUNTS[n][0]) for n in both)} overlap both ranges: these readings do not tell them apart."
+    some = [f"'{ACCOUNTS[r.name][0]}' only the {'deflections' if r.deflection_agrees else 'signals'}" for r in e.readings
+            if r.deflection_agrees or r.signal_agrees]
+    return text + (f"None overlaps both ranges; {listed(some)}." if some else "None overlaps either range.")
 
 
 def _explained(e: ReferenceElement) -> list[str]:

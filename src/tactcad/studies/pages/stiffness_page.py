@@ -13,10 +13,11 @@ SMALL_FACTOR = 0.05  # a common factor within this is called none
 
 
 def page(r: Residuals, array: ArrayModel) -> Section:
+    found = findings(r, array)
     return Section(
         "stiffness", "Table 1: stiffness, predicted and calibrated",
         "Does the beam model explain the measured stiffnesses, and what would have to be different where it does not?",
-        findings(r, array), (_rungs(r), _explained(r, array)), (_bands(r), _needed(r)), r,
+        found, (_rungs(r), _explained(r, array)), (_bands(r), _needed(r)), r, (found[0], found[2]),
     )
 
 
@@ -124,12 +125,12 @@ def _bands(r: Residuals) -> Figure:
     x = np.arange(len(order))
     with d.panels(size=(11.2, 4.7)) as (figure, ax):
         pad, cut = r.band_pad[:, order], r.band_cut[:, order]
-        ax.bar(x, pad[1] - pad[0], 0.62, pad[0], color=d.SKY, alpha=0.35, label="95 %: contact anywhere on the pad")
-        ax.bar(x, cut[1] - cut[0], 0.62, cut[0], color=d.BLUE, alpha=0.55, label="95 %: cutting and clamping tolerances")
-        ax.hlines(r.predicted[r.rung][order], x - 0.31, x + 0.31, color=d.BLACK, lw=1.6, label=f"predicted, rung {r.rung}")
+        ax.bar(x, pad[1] - pad[0], 0.5, pad[0], color=d.SKY, alpha=0.35, label="95 %: contact anywhere on the pad")
+        ax.bar(x, cut[1] - cut[0], 0.5, cut[0], color=d.BLUE, alpha=0.55, label="95 %: cutting and clamping tolerances")
+        ax.hlines(r.predicted[r.rung][order], x - 0.25, x + 0.25, color=d.BLACK, lw=1.6, label=f"predicted, rung {r.rung}")
         ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
         for i, k in zip(x, order):
-            ax.annotate(f"{r.measured[k]:g}", (i + 0.31, r.measured[k]), (4, -3), textcoords="offset points", fontsize=9.5, color=d.RED)
+            ax.annotate(f"{r.measured[k]:g}", (i + 0.25, r.measured[k]), (4, -3), textcoords="offset points", fontsize=9.5, color=d.RED)
         ax.set_yscale("log")
         d.log_ticks(ax.yaxis, (5, 10, 20, 40, 80))
         ax.set_ylim(min(pad[0].min(), r.measured.min()) * 0.85, max(pad[1].max(), r.measured.max()) * 1.15)

@@ -11,10 +11,11 @@ from tactcad.studies.table1_check import Product, Table1Check
 
 
 def page(c: Table1Check, data: Published) -> Section:
+    found = findings(c, data)
     return Section(
         "table1", "Table 1 against itself",
         "Do the columns of Table 1 agree with each other, and with the load cell that stood in series?",
-        findings(c, data), (_products(c), _series(c, data)), (_plot(c, data),), c,
+        found, (_products(c), _series(c, data)), (_plot(c, data),), c, (found[3],),
     )
 
 
@@ -66,12 +67,11 @@ def _product(name: str, against: str, p: Product, element: np.ndarray, reason: s
 
 def _products(c: Table1Check) -> Table:
     def cells(p: Product, i: int) -> tuple:
-        shown = signed_percent(p.difference[i])
-        shown = f"{shown} (± {sig(p.rounding[i] * 100, 2)} %)"
+        shown = f"{signed_percent(p.difference[i]).removesuffix(' %')} ± {sig(p.rounding[i] * 100, 2)}"
         return (exact(p.printed[i]), p.computed[i], Marked(shown) if p.beyond_rounding[i] else shown)
 
     rows = tuple((int(n), *cells(c.force, i), *cells(c.signal, i), *cells(c.ratio, i)) for i, n in enumerate(c.element))
-    head = lambda name, unit: ((f"{name} printed", unit), ("from columns", unit), ("difference", "(rounding)"))  # noqa: E731
+    head = lambda name, unit: ((f"{name} printed", unit), ("from columns", unit), ("difference", "% ± rounding"))  # noqa: E731
     return Table("Products and ratios of Table 1's own columns",
                  (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")), rows,
                  "Marked: more than the rounding of the printed figures allows.")

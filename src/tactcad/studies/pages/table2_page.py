@@ -29,11 +29,12 @@ class Witness:
 
 def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> Section:
     who = witnesses(s, r, e)
+    found = findings(s, data, who)
     return Section(
         "table2", "Table 2: which reference stiffness do the measured ratios support?",
         "Equation (2) predicts R from three stiffnesses. Measured R is far from it. Which stiffness, or what else, would mend that?",
-        findings(s, data, who), (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)), (_ratio_plot(s), _forest(s, who)),
-        {"study": s, "witnesses": who},
+        found, (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)), (_ratio_plot(s), _forest(s, who)),
+        {"study": s, "witnesses": who}, (_supported(s)[0], _other_witnesses(s, who)),
     )
 
 
