@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check nightly clean
+.PHONY: help environment export test check review nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -29,6 +29,9 @@ check: environment ## style, and every check of every design: all failures are p
 	$(BIN)/ruff check || status=1; \
 	for design in $(DESIGNS); do $(BIN)/tactcad check $$design || status=1; done; \
 	exit $$status
+
+review: export ## open every exported STEP and DXF file in FreeCAD, compare with bill and manifest
+	$(BIN)/python packaging/review/review.py $(DESIGNS:hardware/%.toml=exports/%)
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
-  tactcad export soft-tissue --out /tmp/soft  another design, to a folder of your choice
+  tactcad export soft-tissue --out soft       another design, to a folder of your choice
   tactcad export my/design.toml --scene array one scene only
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing."""

@@ -15,31 +15,29 @@ REQUIRED = object()
 
 @dataclass(frozen=True)
 class Number:
-    """A number in `unit`, between low and high, both legal unless low_open."""
+    """A number in `unit`, from low to high, both legal."""
 
     unit: str
     low: float
     high: float
     meaning: str
-    low_open: bool = False
 
     @property
     def legal(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
-        return f"{'more than' if self.low_open else 'from'} {self.low:g} to {self.high:g}{unit}"
+        return f"from {self.low:g} to {self.high:g}{unit}"
 
     def read(self, value: Any, where: str) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise InputError(where, "not a number", value=value, legal=self.legal)
         if isinstance(value, float) and not isfinite(value):
             raise InputError(where, "not a finite number", value=value, legal=self.legal)
-        if not self.low <= value <= self.high or (self.low_open and value == self.low):
+        if not self.low <= value <= self.high:
             raise InputError(where, "out of range", value=value, legal=self.legal)
         return float(value)
 
     def schema(self) -> dict:
-        low = "exclusiveMinimum" if self.low_open else "minimum"
-        return {"type": "number", low: self.low, "maximum": self.high}
+        return {"type": "number", "minimum": self.low, "maximum": self.high}
 
 
 @dataclass(frozen=True)

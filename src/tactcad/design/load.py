@@ -106,7 +106,7 @@ def from_table(table: dict[str, Any]) -> Design:
     for name, section in sections.items():
         if name == "origin":
             continue
-        kind = _SECTION_TYPES[name]
+        kind = SECTION_TYPES[name]
         if name not in table and section.default is dataclasses.MISSING:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
         if name not in table and section.default is None:
@@ -116,7 +116,7 @@ def from_table(table: dict[str, Any]) -> Design:
     return dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
 
 
-_SECTION_TYPES = {
+SECTION_TYPES = {
     # a rig's table is `Kind | None`; the kind is its first argument
     name: (typing.get_args(hint) or (hint,))[0]
     for name, hint in typing.get_type_hints(Design).items()

@@ -13,7 +13,10 @@ from .fields import Choice, Number, Numbers, Rows, Text, given
 from .materials import ALLOYS
 
 _LINE = r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,80}"
-_line = lambda meaning: Text(_LINE, "one line of 1 to 80 printable characters", meaning)  # noqa: E731
+
+
+def _line(meaning: str) -> Text:
+    return Text(_LINE, "one line of 1 to 80 printable characters", meaning)
 
 
 @dataclass(frozen=True)

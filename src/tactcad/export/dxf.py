@@ -14,8 +14,9 @@ from math import degrees, dist, isclose
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tactcad.contour import Arc, Contour, Line, Point, Segment, circle
-from tactcad.parts.description import Extrusion, Hole, Part
+from tactcad.contour import Arc, Contour, Line, Point, Segment
+from tactcad.parts.description import Part
+from tactcad.parts.section import section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -52,21 +53,6 @@ class CutFile:
     @property
     def cut_length(self) -> float:
         return self.outer.length + sum(c.length for c in self.openings)
-
-
-def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
-    """Outline and openings of an extruded part, its through holes along the thickness included.
-
-    Raises TypeError where the part is not an extrusion.
-    """
-    if not isinstance(part.body, Extrusion):
-        raise TypeError(f"{part.part_no} is not an extrusion: it has no one section to cut")
-    holes = tuple(
-        circle(f.at[:2], f.diameter, f.name)
-        for f in part.features
-        if isinstance(f, Hole) and f.through and f.axis[:2] == (0.0, 0.0)
-    )
-    return part.body.outer, part.body.openings + holes
 
 
 def dxf_bytes(part: Part) -> bytes:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, hypot
 
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepLib import BRepLib
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.GCPnts import GCPnts_QuasiUniformDeflection
 from OCP.GeomAbs import GeomAbs_Line
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
-from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
+from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape, HLRBRep_PolyAlgo, HLRBRep_PolyHLRToShape
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
@@ -29,6 +30,10 @@ Polyline = tuple[tuple[float, float], ...]
 # Curves are drawn as chords that stay this close (mm); at 1:1 a hundredth of a line's width.
 CHORD = 0.01
 MARGIN = 2.0  # mm around the drawing
+# Exact removal costs the square of the number of shapes (measured: 45 take 0.3 s, 110 take 2 s, 2000 hours),
+# removal on triangles about its first power.
+EXACT_UP_TO = 64
+MESH_LINEAR, MESH_ANGULAR = 0.05, 0.2  # mm, radians: finer than a line is wide at 1:1
 SAME_EXTENT = 0.05  # mm between the picture's extent and the one projected from the descriptions
 
 
@@ -72,18 +77,37 @@ class Drawing:
         return (min(xs), min(ys), max(xs), max(ys))
 
 
-def drawing(shapes: Iterable[TopoDS_Shape], view: View) -> Drawing:
-    """What is seen of the placed shapes from the view's eye, in canonical order."""
+def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
+    """What is seen of the placed shapes from the view's eye, in canonical order.
+
+    Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles.
+    """
+    axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right))
+    result = (_exact if len(shapes) <= EXACT_UP_TO else _on_triangles)(shapes, HLRAlgo_Projector(axes))
+    sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
+    return Drawing(tuple(sorted(sharp)), tuple(sorted(_polylines(result.Rg1LineVCompound()))))
+
+
+def _exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
     algorithm = HLRBRep_Algo()
     for shape in shapes:
         algorithm.Add(shape)
-    axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right))
-    algorithm.Projector(HLRAlgo_Projector(axes))
+    algorithm.Projector(projector)
     algorithm.Update()
     algorithm.Hide()
-    result = HLRBRep_HLRToShape(algorithm)
-    sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
-    return Drawing(tuple(sorted(sharp)), tuple(sorted(_polylines(result.Rg1LineVCompound()))))
+    return HLRBRep_HLRToShape(algorithm)
+
+
+def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_PolyHLRToShape:
+    algorithm = HLRBRep_PolyAlgo()
+    for shape in shapes:
+        BRepMesh_IncrementalMesh(shape, MESH_LINEAR, False, MESH_ANGULAR)  # once a prototype: placed copies share it
+        algorithm.Load(shape)
+    algorithm.Projector(projector)
+    algorithm.Update()
+    result = HLRBRep_PolyHLRToShape()
+    result.Update(algorithm)
+    return result
 
 
 def svg(drawn: Drawing, title: str, description: str) -> bytes:

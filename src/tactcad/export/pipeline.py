@@ -91,13 +91,13 @@ def _rebuild(
     design: Design, scene_names: Sequence[str], place: Published, inputs: Inputs, why: tuple[str, ...],
     progress: Progress,
 ) -> Exported:
-    from tactcad.scenes import scene
+    from tactcad.scenes import make_scene
 
     from .products import Shapes, part_products, scene_products
 
     cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
-    scenes = [scene(design, name) for name in scene_names]
+    scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]

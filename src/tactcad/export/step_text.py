@@ -14,6 +14,8 @@ from tactcad import __version__
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*((?:'(?:[^']|'')*'|[^';])*);")
 _REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
+# Text that the kernel gives every instance and that says nothing: 37 bytes of each.
+_PLACEMENT = re.compile(r"^PRODUCT_DEFINITION_SHAPE\('Placement','Placement of an item',")
 _INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
 _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 
@@ -33,7 +35,7 @@ class Header:
 def canonical(text: str, header: Header) -> str:
     """The kernel's STEP text with the given header, its entities renumbered in canonical order."""
     bodies = {int(n): _unbroken(body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])}
-    bodies = {n: _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body) for n, body in bodies.items()}
+    bodies = {n: _plain(body) for n, body in bodies.items()}
     references = {n: _references(body) for n, body in bodies.items()}
     digests = _digests(bodies, references)
     used = {r for refs in references.values() for r in refs}
@@ -54,6 +56,12 @@ def canonical(text: str, header: Header) -> str:
             stack.extend(reversed(refs))
     lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
     return "\n".join([_header(header), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
+
+
+def _plain(body: str) -> str:
+    """The body with the designator as an instance's id, and without empty words."""
+    body = _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body)
+    return _PLACEMENT.sub("PRODUCT_DEFINITION_SHAPE('','',", body)
 
 
 def _root_key(n: int, body: str, digest: str) -> tuple:

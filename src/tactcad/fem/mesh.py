@@ -25,7 +25,7 @@ from skfem.mesh import MeshHex, MeshQuad
 
 from tactcad.design.messages import CheckFailure
 
-from .shape import Block, Fillet, HingeShape
+from .shape import Block, HingeShape
 
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 

@@ -1,4 +1,4 @@
-"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
+r"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
 
       stop land                                      +-------------------------+ rear_height
         ___                          ledge           |  o        O        o    |
@@ -11,9 +11,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
-
-from tactcad.contour import Corner, Contour, circle, rounded_polygon
+from tactcad.contour import Contour, Corner, circle, rounded_polygon
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
@@ -21,8 +19,6 @@ from .layout import ElementPlace, HingeShape, Layout
 from .stop_gap import stop_gap
 
 ALUMINIUM = "#c3c8ce"
-# A 45 degree ramp leads to the stop land: a square step would be lower than the wire's corner radius.
-_TAN_22_5 = sqrt(2.0) - 1.0
 
 
 def element(layout: Layout, place: ElementPlace) -> Part:
@@ -102,16 +98,12 @@ def outline(layout: Layout, arm: float, hinge: HingeShape, gap: float) -> Contou
         Corner((x_body, floor), hinge.r, "slot_floor", "slot_body_fillet"),
         Corner((x_arm, floor), hinge.r, "slot_arm_wall", "slot_arm_fillet"),
         Corner((x_arm, hinge.h), edge="arm_back"),
+        # a ramp of 45 degrees: a square step would be lower than the wire's corner radius
         Corner((x_land + land - hinge.h, hinge.h), e.corner_radius, "land_ramp", "land_root"),
         Corner((x_land, land), edge="stop_land"),
         Corner((x_tip, land), edge="tip"),
     ]
     return rounded_polygon(corners)
-
-
-def ramp_height(corner_radius: float) -> float:
-    """Least height of a 45 degree ramp whose foot is rounded by corner_radius, mm."""
-    return corner_radius * _TAN_22_5 / sqrt(2.0)
 
 
 def rear_corners(layout: Layout, face: float) -> list[Corner]:
@@ -153,4 +145,4 @@ def sheet_material(design: Design) -> Material:
 def shortest(value: float) -> str:
     """A length as in part numbers: 4.0 is "4", 4.25 is "4.25"; equal text means equal value."""
     text = repr(float(value))
-    return text[:-2] if text.endswith(".0") else text
+    return text.removesuffix(".0")

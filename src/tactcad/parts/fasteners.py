@@ -47,7 +47,7 @@ def clamping(layout: Layout) -> Clamping:
         if LEAST_UNDER_HEAD <= web <= plate and engaged <= plate:
             return Clamping(False, length, web, dowel)
     m = METRIC[d.screw]
-    ends = m.washer_height + m.nut_height + 2 * m.pitch
+    ends = m.nut_height + 2 * m.pitch
     return Clamping(True, float(ceil(stack + 2 * plate + 2 * ends)), None, dowel)
 
 

@@ -12,12 +12,14 @@ from functools import cached_property
 
 from tactcad.design.tree import Design
 
-from .library.screws import SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
+from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
 
 # Least material between a carrier screw's hole and the heads below it; chosen: a third of an M3.
 END_PLATE_WEB = 1.0
 # Set screws end this far below the carrier's top, so that the axis's plate lies flat on it.
 SUNK = 1.0
+# Set screws stand this far from the rear bodies; chosen: more than their threads' play in the carrier.
+BESIDE_SET_SCREW = 0.3
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,7 @@ class HingeShape:
     """One element's hinge and arm (mm): thickness t, slot length l, fillet radius r, arm height h."""
 
     t: float
-    l: float  # noqa: E741 - the field's and the paper's letter
+    l: float
     r: float
     h: float
 
@@ -101,7 +103,11 @@ class Layout:
         """[element]'s hinge, with what [element.override.NUMBER] changes."""
         e = self.design.element
         own = e.override.get(number)
-        pick = lambda name: getattr(e, name) if not own or getattr(own, name) is None else getattr(own, name)  # noqa: E731
+
+        def pick(name: str) -> float:
+            changed = getattr(own, name) if own else None
+            return getattr(e, name) if changed is None else changed
+
         return HingeShape(
             t=pick("hinge_thickness"), l=pick("hinge_length"), r=pick("fillet_radius"), h=pick("arm_height")
         )
@@ -238,9 +244,8 @@ class Layout:
 
     @property
     def hold_down_x(self) -> float:
-        """x of the set screws: over the middle of the shortest ledge, so that they press it straight."""
-        longest = self.clamp_edge - self.design.element.seat_length
-        return round((longest + self.stop_plate_half) / 2, 6)
+        """x of the set screws: as near the clamp edge as the rear bodies beside them allow, over every ledge."""
+        return round(self.clamp_edge - METRIC[self.design.clamp.screw].d / 2 - BESIDE_SET_SCREW, 6)
 
     @property
     def hold_down_y(self) -> tuple[float, ...]:
@@ -256,8 +261,8 @@ class Layout:
 
     @property
     def mount_x(self) -> float:
-        """x of the carrier's threads for the axis: midway between set screws and carrier screws."""
-        return round((self.hold_down_x + self.carrier_screw_x) / 2, 1)
+        """x of the carrier's threads for the axis: midway between set screws and carrier screws, to 0.5 mm."""
+        return round(self.hold_down_x + self.carrier_screw_x) / 2
 
     @property
     def carrier_size(self) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from tactcad.contour import Corner, rectangle, rounded_polygon
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Feature, Hole, Material, Part, Vector
-from .element import ALUMINIUM, dowel_hole_diameter, mounting_holes, rear_corners, sheet_material
+from .element import dowel_hole_diameter, mounting_holes, rear_corners, sheet_material
 from .fasteners import Clamping, carrier_screw, clamping
 from .layout import Layout
 from .library.dowels import dowel_diameter

@@ -7,18 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
 from itertools import combinations
-from math import hypot
+from math import cos, hypot, pi
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 
-from .element import ramp_height
 from .fasteners import LEAST_GRIP, carrier_screw, clamping
-from .layout import END_PLATE_WEB, ElementPlace, Layout
-from .library.screws import METRIC, counterbore_diameter, engagement, tapped_depth
-from .stop_gap import stop_gap
+from .layout import END_PLATE_WEB, SUNK, ElementPlace, Layout
+from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement, tapped_depth
+from .stop_gap import land_room, stop_gap
 
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
@@ -203,18 +201,29 @@ def estimator_holds(layout: Layout) -> Iterator[Finding]:
 def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     for p in layout.elements:
-        gap = stop_gap(layout, p)
-        room = layout.ledge_of(p.hinge) - p.hinge.h - gap
-        least = ramp_height(d.element.corner_radius)
-        if room < least - SAME:
-            path = f"stop.gaps.{p.arm:g}" if d.stop.gaps and p.arm in d.stop.gaps else "element.body_height"
-            value = gap if path.startswith("stop") else d.element.body_height
-            legal = (
-                f"at most {layout.ledge_of(p.hinge) - p.hinge.h - least:.4g} mm"
-                if path.startswith("stop")
-                else f"at least {d.element.body_height + least - room:.4g} mm, so that the stop land stands over the arm"
+        room = land_room(layout, p.hinge)
+        given = d.stop.gaps.get(p.arm) if d.stop.gaps else None
+        if given is not None and given > room + SAME:
+            yield (
+                f"stop.gaps.{p.arm:g}", f"leaves element {p.number} no stop land over the arm", given,
+                f"at most {room:.4g} mm",
             )
-            yield (path, f"stop gap {gap:g} mm of element {p.number} leaves no land over the arm", value, legal)
+        elif room < d.stop.tolerance - SAME:
+            yield (
+                "element.body_height", f"leaves element {p.number} no stop land over the arm", d.element.body_height,
+                f"at least {d.element.body_height + d.stop.tolerance - room:.4g} mm",
+            )
+
+
+def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    for p in layout.elements:
+        gap = stop_gap(layout, p)
+        if gap <= d.stop.tolerance + SAME:
+            yield (
+                "stop.tolerance", f"the stop of element {p.number} may close before it moves: its gap is {gap:g} mm",
+                d.stop.tolerance, f"less than {gap:g} mm",
+            )
 
 
 def stop_land_fits_arm(layout: Layout) -> Iterator[Finding]:
@@ -281,7 +290,12 @@ def holes_inside_body(layout: Layout) -> Iterator[Finding]:
     low = max(d.element.recess_depth, layout.spacer_z[0])
     high = min(d.element.rear_height, layout.spacer_z[1])
     widest = max(screw, dowel)
-    if not low + h.web + widest / 2 - SAME <= h.height <= high - h.web - widest / 2 + SAME:
+    if low + 2 * h.web + widest > high + SAME:
+        yield (
+            "element.rear_height", "rear body too low for its holes", d.element.rear_height,
+            f"at least {d.element.rear_height + low + 2 * h.web + widest - high:g} mm",
+        )
+    elif not low + h.web + widest / 2 - SAME <= h.height <= high - h.web - widest / 2 + SAME:
         yield (
             "holes.height", "holes too near the edge of the rear body or its spacer", h.height,
             f"from {low + h.web + widest / 2:g} to {high - h.web - widest / 2:g} mm",
@@ -305,19 +319,24 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     d, c = layout.design, layout.design.clamp
     z0, z1 = layout.end_plate_z
     m = METRIC[c.screw]
-    c_lamping = clamping(layout)
-    around = max(m.washer if c_lamping.rod else counterbore_diameter(c.screw), m.nut if c_lamping.rod else 0) / 2
-    if d.holes.height - around - z0 < END_PLATE_WEB - SAME:
+    rod = clamping(layout).rod
+    # a counterbore needs material around it; a nut only has to lie on the plate
+    around = (m.nut / cos(pi / 6) if rod else counterbore_diameter(c.screw)) / 2
+    web = LEAST_GAP if rod else END_PLATE_WEB
+    if d.holes.height - around - z0 < web - SAME:
         yield (
             "clamp.end_plate_bottom", "end plate ends in the screw heads", z0,
-            f"at most {d.holes.height - around - END_PLATE_WEB:g} mm",
+            f"at most {d.holes.height - around - web:g} mm",
         )
-    top = max(d.holes.height + around + END_PLATE_WEB + tapped_depth(c.screw), layout.stop_plate_top + LEAST_GAP)
-    if z1 < top - SAME:
+    top = max(
+        d.holes.height + counterbore_diameter(c.screw) / 2 + END_PLATE_WEB + tapped_depth(c.screw),
+        layout.stop_plate_top + LEAST_GAP,
+    )
+    if z1 < top - SAME and layout.hold_down.length is not None:
         yield ("clamp.end_plate_height", "too low for the carrier's screws over the clamping screws", z1 - z0, f"at least {top - z0:g} mm")
     rear = layout.rear_end - layout.screw_x[-1]
-    if rear + c.end_plate_margin < around + END_PLATE_WEB - SAME:
-        yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + END_PLATE_WEB - rear:g} mm")
+    if rear + c.end_plate_margin < around + web - SAME:
+        yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + web - rear:g} mm")
     spots = [(x, around) for x in layout.screw_x] + [(x, float(c.dowel) / 2) for x in layout.dowel_x]
     for (x0, r0), (x1, r1) in combinations(spots, 2):
         if abs(x0 - x1) < r0 + r1 + LEAST_GAP - SAME:
@@ -358,19 +377,24 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
     hold = layout.hold_down
     gap = layout.carrier_bottom - layout.stop_plate_top
     if hold.length is None:
+        short = hold.reach - (SET_SCREW_LENGTHS[c.screw][-1] - c.carrier_thickness + SUNK)
         yield (
             "clamp.stop_plate_thickness", f"no standard {c.screw} set screw reaches from the carrier to the stop plate",
-            c.stop_plate_thickness, "a thicker stop plate, or smaller screws",
+            c.stop_plate_thickness, f"at least {c.stop_plate_thickness + short:.4g} mm, or a larger screw",
         )
     elif not engagement(c.screw) - SAME <= hold.length - gap <= c.carrier_thickness + SAME:
         yield (
             "clamp.end_plate_height", f"the {hold.length:g} mm set screw does not engage the carrier as it should",
             c.end_plate_height, "leave it out, to have it derived",
         )
+    needed = layout.clamp_edge - layout.hold_down_x
+    if d.element.seat_length < needed - SAME:
+        yield (
+            "element.seat_length", "the set screws press beside the ledge of the longest arm", d.element.seat_length,
+            f"at least {needed:g} mm",
+        )
     if layout.stop_plate_width < 1.0:
         yield ("clamp.stop_plate_gap", "leaves no stop plate between the end plates", c.stop_plate_gap, f"less than {(layout.stack - 1) / 2:g} mm")
-    if layout.stop_plate_top > d.element.rear_height + 100:
-        yield ("clamp.stop_plate_thickness", "out of proportion", c.stop_plate_thickness, "less")
 
 
 def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
@@ -419,8 +443,9 @@ RULES: dict[str, Rule] = {
         arms_clear_end_plates,
         ledge_below_rear,
         recess_fits_rear,
-        estimator_holds,
         stop_land_above_arm,
+        estimator_holds,
+        stop_gap_above_tolerance,
         stop_land_fits_arm,
         holes_inside_body,
         stack_can_be_clamped,
@@ -431,4 +456,4 @@ RULES: dict[str, Rule] = {
     )
 }
 # Rules whose breach would make later ones fail for the same reason, or not computable.
-STOP_AFTER = frozenset({"override_names_element", "estimator_holds"})
+STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "estimator_holds"})

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from math import floor
+from math import floor, sqrt
 
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
 
-from .layout import ElementPlace, Layout
+from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut to a hundredth: finer steps are below the tolerance that any stop can hold.
 STEP_MM = 0.01
@@ -18,25 +18,37 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
     [stop.gaps] where it names the arm, else yield_fraction of the nominal deflection at yield,
-    carried from the load line to the tip by the rigid arm's lever a/L and rounded down to 0.01 mm
-    (gaps below 0.1 mm to three digits). Nominal yield: 6 F L/(b t^2) = yield strength.
+    carried from the load line to the tip by the rigid arm's lever a/L, but no more than there is room
+    for under the ledge, and rounded down to 0.01 mm (below 0.1 mm to 0.001).
+    Nominal yield: 6 F L/(b t^2) = yield strength.
     """
     design = layout.design
     if design.stop.gaps and place.arm in design.stop.gaps:
         return design.stop.gaps[place.arm]
-    return _derived(
+    wanted = _at_yield_fraction(
         place.hinge.t, place.hinge.l, place.hinge.r, place.hinge.h, place.arm, place.load_arm, place.body_length,
         design.element.body_height, design.sheet.thickness, design.element.sides == "two",
         design.material.youngs_modulus, design.material.poisson, design.material.yield_strength,
         design.stop.yield_fraction,
     )
+    gap = min(wanted, land_room(layout, place.hinge))
+    step = STEP_MM if gap >= 10 * STEP_MM else STEP_MM / 10
+    return round(floor(gap / step + 1e-9) * step, 6)
+
+
+def land_room(layout: Layout, hinge: HingeShape) -> float:
+    """Largest gap that leaves a stop land over the arm: ledge less arm and the ramp's least height, mm.
+
+    The ramp rises at 45 degrees from a foot rounded by corner_radius, whose tangent length is
+    r tan(22.5 deg); along the ramp's height that is r (sqrt 2 - 1)/sqrt 2.
+    """
+    ramp = layout.design.element.corner_radius * (sqrt(2.0) - 1.0) / sqrt(2.0)
+    return layout.ledge_of(hinge) - hinge.h - ramp
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _derived(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:  # noqa: E741, N803
+def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
-    K = float(ladder.stiffness(section, "solid"))  # noqa: N806 - raises CheckFailure out of range
+    K = float(ladder.stiffness(section, "solid"))
     deflection = yield_strength * b * t**2 / (6 * L) / K
-    gap = fraction * deflection * a / L
-    step = STEP_MM if gap >= 10 * STEP_MM else STEP_MM / 10
-    return round(floor(gap / step + 1e-9) * step, 6)
+    return fraction * deflection * a / L

@@ -33,6 +33,6 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
     return tuple(name for name in names if not wanted or name in wanted)
 
 
-def scene(design: Design, name: str) -> Scene:
+def make_scene(design: Design, name: str) -> Scene:
     """The scene of that name (one of scene_names) of a design that keeps every rule."""
     return getattr(importlib.import_module(f"tactcad.scenes.{name}"), name)(design)

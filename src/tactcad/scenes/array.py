@@ -125,15 +125,11 @@ class _Builder:
 
     def _tie_rod(self, n: int, x: float, z: float, outer: float, length: float) -> None:
         thread = self.layout.design.clamp.screw
-        m = screws.METRIC[thread]
         rod = self.place(f"TR{n}", screws.threaded_rod(thread, length), (x, -length / 2, z), ALONG_Y)
         for end, (side, plate) in enumerate(((-1, "EP1"), (1, "EP2"))):
             turned = AGAINST_Y if side < 0 else ALONG_Y  # local z runs outwards
-            k = 2 * n - 1 + end
-            washer = self.place(f"WA{k}", screws.washer(thread), (x, side * outer, z), turned)
-            nut = self.place(f"NU{k}", screws.nut(thread), (x, side * (outer + m.washer_height), z), turned)
-            self.touch(plate, washer)
-            self.touch(washer, nut)
+            nut = self.place(f"NU{2 * n - 1 + end}", screws.nut(thread), (x, side * outer, z), turned)
+            self.touch(plate, nut)
             self.contacts.append(Contact(rod, nut, "thread"))
 
     def hold_down(self) -> None:

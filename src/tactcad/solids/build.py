@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-
 from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
 
 from tactcad.contour import Contour, Line, Point
-from tactcad.parts.description import Extrusion, Feature, Hole, ModelFile, Part, Pocket, Revolution, drill_point_height
+from tactcad.parts.description import (
+    Extrusion,
+    Feature,
+    Hole,
+    ModelFile,
+    Part,
+    Pocket,
+    Revolution,
+    drill_point_height,
+)
 
 from .files import read_step_solid
 

@@ -14,14 +14,25 @@ def measure(shape: TopoDS_Shape) -> dict:
     solid, surface = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     BRepGProp.SurfaceProperties_s(shape, surface)
-    box = Bnd_Box()
-    BRepBndLib.AddOptimal_s(shape, box, False, False)
     centre = solid.CentreOfMass()
-    low, high = box.CornerMin(), box.CornerMax()
-    gap = box.GetGap()
     return {
         "volume": solid.Mass(),
         "area": surface.Mass(),
         "centre": [centre.X(), centre.Y(), centre.Z()],
-        "box": [[low.X() + gap, low.Y() + gap, low.Z() + gap], [high.X() - gap, high.Y() - gap, high.Z() - gap]],
+        "box": bounding_box(shape),
     }
+
+
+def volume(shape: TopoDS_Shape) -> float:
+    """mm3"""
+    solid = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, solid)
+    return solid.Mass()
+
+
+def bounding_box(shape: TopoDS_Shape) -> list[list[float]]:
+    """Least and largest corner, mm, of the exact surfaces."""
+    box = Bnd_Box()
+    BRepBndLib.AddOptimal_s(shape, box, False, False)
+    low, high, gap = box.CornerMin(), box.CornerMax(), box.GetGap()
+    return [[low.X() + gap, low.Y() + gap, low.Z() + gap], [high.X() - gap, high.Y() - gap, high.Z() - gap]]

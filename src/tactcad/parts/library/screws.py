@@ -1,4 +1,4 @@
-"""Metric screws, nuts and washers: ISO 4762, ISO 4026, ISO 4032, ISO 7089, DIN 976-1 (mm).
+"""Metric screws, nuts and rods: ISO 4762, ISO 4026, ISO 4032, DIN 976-1 (mm).
 
 Screws are modelled at nominal diameter without thread; head and socket are true. Local frame: axis z,
 the bearing face at z = 0, the screw pointing along +z.
@@ -34,18 +34,15 @@ class Metric:
     set_point: float  # ISO 4026 dp
     nut: float  # ISO 4032 s
     nut_height: float  # ISO 4032 m, largest
-    washer: float  # ISO 7089 d2
-    washer_hole: float  # ISO 7089 d1
-    washer_height: float  # ISO 7089 h
     torque: float  # N m, for A2-70, friction 0.12, about half of proof: fits aluminium threads of 1.5 d
 
 
 METRIC = {
-    "M2": Metric(2, 0.4, 1.6, 2.4, 3.8, 2, 1.5, 1.0, 0.9, 1.7, 1.0, 4, 1.6, 5, 2.2, 0.3, 0.15),
-    "M2.5": Metric(2.5, 0.45, 2.05, 2.9, 4.5, 2.5, 2, 1.1, 1.3, 2.0, 1.5, 5, 2.0, 6, 2.7, 0.5, 0.3),
-    "M3": Metric(3, 0.5, 2.5, 3.4, 5.5, 3, 2.5, 1.3, 1.5, 2.0, 2.0, 5.5, 2.4, 7, 3.2, 0.5, 0.55),
-    "M4": Metric(4, 0.7, 3.3, 4.5, 7, 4, 3, 2.0, 2, 2.5, 2.5, 7, 3.2, 9, 4.3, 0.8, 1.2),
-    "M5": Metric(5, 0.8, 4.2, 5.5, 8.5, 5, 4, 2.5, 2.5, 3.0, 3.5, 8, 4.7, 10, 5.3, 1.0, 2.5),
+    "M2": Metric(2, 0.4, 1.6, 2.4, 3.8, 2, 1.5, 1.0, 0.9, 1.7, 1.0, 4, 1.6, 0.15),
+    "M2.5": Metric(2.5, 0.45, 2.05, 2.9, 4.5, 2.5, 2, 1.1, 1.3, 2.0, 1.5, 5, 2.0, 0.3),
+    "M3": Metric(3, 0.5, 2.5, 3.4, 5.5, 3, 2.5, 1.3, 1.5, 2.0, 2.0, 5.5, 2.4, 0.55),
+    "M4": Metric(4, 0.7, 3.3, 4.5, 7, 4, 3, 2.0, 2, 2.5, 2.5, 7, 3.2, 1.2),
+    "M5": Metric(5, 0.8, 4.2, 5.5, 8.5, 5, 4, 2.5, 2.5, 3.0, 3.5, 8, 4.7, 2.5),
 }
 
 _SERIES = (2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50)
@@ -135,7 +132,7 @@ def set_screw(thread: str, length: float) -> Part:
 
 
 def nut(thread: str) -> Part:
-    """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along -z."""
+    """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along +z."""
     m = METRIC[thread]
     return Part(
         part_no=f"ISO4032-{thread}-A2-70",
@@ -145,21 +142,6 @@ def nut(thread: str) -> Part:
         body=Extrusion(_hexagon(m.nut), m.nut_height, (circle((0, 0), m.tap_drill),)),
         colour="#8a8d91",
         purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
-        spares=2,
-    )
-
-
-def washer(thread: str) -> Part:
-    """ISO 7089 plain washer, 200 HV."""
-    m = METRIC[thread]
-    return Part(
-        part_no=f"ISO7089-{m.d:g}-200HV-A2",
-        name=f"Plain washer {m.d:g}",
-        process="bought",
-        material=STAINLESS,
-        body=Extrusion(circle((0, 0), m.washer), m.washer_height, (circle((0, 0), m.washer_hole),)),
-        colour="#9da1a6",
-        purchase=Purchase(f"ISO 7089 {m.d:g} 200 HV A2", alternates=f"DIN 125-A {m.d:g} A2"),
         spares=2,
     )
 

@@ -1,0 +1,148 @@
+"""make review: opens every exported STEP and DXF file in real FreeCAD, headless, and compares it with the
+bill of materials and the manifest. Installs nothing; says what is missing and how to get it.
+
+usage: python review.py exports/NAME...
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from collections import Counter
+from math import isclose
+from pathlib import Path
+
+INSIDE = Path(__file__).with_name("in_freecad.py")
+# Debian's freecad-python3 belongs to the system's Python, others bring a command of their own.
+CANDIDATES = (["/usr/bin/python3"], ["freecadcmd"], ["FreeCADCmd"])
+AGREES = 1e-6  # share of a volume, area or length
+
+
+def main(folders: list[str]) -> int:
+    freecad = next((c for c in CANDIDATES if answers(c)), None)
+    if freecad is None:
+        print(
+            "make review: FreeCAD is not installed, nothing was reviewed.\n"
+            "make review: on Debian or Ubuntu: apt-get install freecad-python3",
+            file=sys.stderr,
+        )
+        return 1
+    wrong = []
+    for folder in map(Path, folders):
+        if not (folder / "manifest.json").is_file():
+            wrong.append(f"{folder}: no export there; run make export first")
+            continue
+        findings = review(freecad, folder)
+        wrong += [f"{folder}: {text}" for text in findings]
+    for text in wrong:
+        print(f"make review: {text}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def answers(command: list[str]) -> bool:
+    try:
+        return open_files(command, []) is not None
+    except OSError:
+        return False
+
+
+def open_files(command: list[str], paths: list[str]) -> dict | None:
+    """What FreeCAD says of the files; None where it cannot be asked."""
+    run = subprocess.run([*command, str(INSIDE), *paths], capture_output=True, text=True, check=False)
+    lines = [line for line in run.stdout.splitlines() if line.startswith("REVIEW ")]
+    return json.loads(lines[-1].removeprefix("REVIEW ")) if lines else None
+
+
+def review(freecad: list[str], folder: Path) -> list[str]:
+    manifest = json.loads((folder / "manifest.json").read_text())
+    parts = {p["part_no"]: p for p in manifest["parts"]}
+    files = [f for f in manifest["files"] if f["path"].endswith((".step", ".dxf"))]
+    report = open_files(freecad, [str(folder / f["path"]) for f in files])
+    if report is None:
+        return ["FreeCAD ended without a report (it crashed on one of the files)"]
+    wrong = []
+    for f in files:
+        found = report["files"][str(folder / f["path"])]
+        if f["kind"] == "step-part":
+            wrong += part_faults(f["path"], found, parts[f["part_no"]])
+        elif f["kind"] == "step-assembly":
+            wrong += assembly_faults(f["path"], found, bill_of(folder, f["path"]), parts)
+        else:
+            wrong += cut_faults(f["path"], found, parts[f["part_no"]])
+    solids = sum(len(found.get("solids", ())) for found in report["files"].values())
+    print(f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, {len(wrong)} findings")
+    return wrong
+
+
+def bill_of(folder: Path, path: str) -> list[dict]:
+    """The bill of materials that belongs to an assembly: bom-SCENE.json, or the array's bom.json."""
+    named = [p for p in folder.glob("bom-*.json") if f"-{p.stem.removeprefix('bom-')}_" in path]
+    return json.loads((named[0] if named else folder / "bom.json").read_text())["rows"]
+
+
+def part_faults(path: str, found: dict, part: dict) -> list[str]:
+    solids = found["solids"]
+    if len(solids) != 1:
+        return [f"{path}: {len(solids)} solids instead of one"]
+    return solid_faults(path, solids[0], part)
+
+
+def solid_faults(path: str, solid: dict, part: dict) -> list[str]:
+    wrong = [] if solid["valid"] and solid["closed"] else [f"{path}: {part['part_no']} is not a valid closed solid"]
+    for name, meant in (("volume", part["volume_mm3"]), ("area", part["area_mm2"])):
+        if not isclose(solid[name], meant, rel_tol=AGREES):
+            wrong.append(f"{path}: {part['part_no']} has {name} {solid[name]:.9g}, the manifest {meant:.9g}")
+    return wrong
+
+
+def assembly_faults(path: str, found: dict, bill: list[dict], parts: dict[str, dict]) -> list[str]:
+    """Counts, names and volumes against the bill of materials."""
+    rows = [row for row in bill if row["has_solid"]]
+    solids = found["solids"]
+    wrong = []
+    if len(solids) != sum(row["qty"] for row in rows):
+        wrong.append(f"{path}: {len(solids)} solids, the bill of materials has {sum(row['qty'] for row in rows)}")
+    wrong += [f"{path}: an invalid solid of {s['volume']:.6g} mm3" for s in solids if not (s["valid"] and s["closed"])]
+    meant = sorted(parts[row["part_no"]]["volume_mm3"] for row in rows for _ in range(int(row["qty"])))
+    for got, want in zip(sorted(s["volume"] for s in solids), meant):
+        if not isclose(got, want, rel_tol=AGREES):
+            wrong.append(f"{path}: a solid of {got:.9g} mm3 where the manifest has {want:.9g}")
+            break
+    return wrong + name_faults(path, found["names"], rows)
+
+
+def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
+    """Every part stands in FreeCAD's tree under its part number, as often as the bill says.
+
+    FreeCAD makes labels unique by counting up their last digits: M3x30-A2-70, M3x30-A2-071, ...
+    """
+    stem = re.compile(r"\d+$")
+    seen = Counter(stem.sub("", label) for label in labels)
+    meant = Counter()
+    for row in rows:
+        meant[stem.sub("", row["part_no"])] += int(row["qty"])
+    return [
+        f"{path}: FreeCAD shows {seen[name]} of {name}, the bill of materials has {count}"
+        for name, count in meant.items()
+        if seen[name] != count
+    ]
+
+
+def cut_faults(path: str, found: dict, part: dict) -> list[str]:
+    thickness = part["box_mm"][1][2] - part["box_mm"][0][2]
+    section = part["volume_mm3"] / thickness
+    size = [part["box_mm"][1][i] - part["box_mm"][0][i] for i in (0, 1)]
+    wrong = [] if found["closed"] else [f"{path}: an open contour"]
+    for name, got, meant in (
+        ("area", found["area"], section), ("cut length", found["length"], part["cut_length_mm"]),
+        ("width", found["size"][0], size[0]), ("height", found["size"][1], size[1]),
+    ):
+        if not isclose(got, meant, rel_tol=AGREES):
+            wrong.append(f"{path}: {name} {got:.9g}, the part has {meant:.9g}")
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,117 @@
+"""Do placed parts overlap, and where they meet, was it meant?
+
+Pairs whose boxes are apart are passed over. Of the rest only different situations reach the kernel: two parts
+that stand to each other as another pair of the same parts does have the same verdict, which is what
+makes a long row of equal elements cheap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.TopoDS import TopoDS_Shape
+
+from tactcad.scenes.scene import Contact, Placement, Scene
+from tactcad.solids.measure import bounding_box, measure, volume
+from tactcad.solids.place import location
+
+from .finding import Finding
+
+# Solids nearer than this touch (mm); overlaps of less volume are the rounding of touching faces (mm3).
+TOUCH_MM = 1e-5
+OVERLAP_MM3 = 1e-6
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """How two placed parts stand to each other: overlap in mm3, distance in mm, a point of it."""
+
+    overlap: float
+    distance: float
+    place: tuple[float, float, float]
+
+
+def check_interference(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Finding]:
+    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame."""
+    meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
+    local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
+    boxes = np.array([_placed_box(p, local[p.part.part_no]) for p in scene.placements])
+    known: dict[tuple, Meeting] = {}
+    found = []
+    met: set[frozenset[str]] = set()
+    for i, j in near_pairs(boxes):
+        first, second = scene.placements[i], scene.placements[j]
+        key = (first.part.part_no, second.part.part_no, relative(first, second))
+        if key not in known:
+            known[key] = _meeting(first, second, shapes)
+        pair = frozenset((first.designator, second.designator))
+        if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
+            met.add(pair)
+        found += _verdict(first, second, known[key], meant.get(pair))
+    for contact in scene.contacts:
+        if frozenset((contact.first, contact.second)) not in met:
+            message = f"declared to be in {contact.kind} contact with {contact.second}, but they are apart"
+            found.append(Finding("contact", "fail", contact.first, (), 0, 0, message))
+    return found
+
+
+def near_pairs(boxes: np.ndarray) -> Iterator[tuple[int, int]]:
+    """Index pairs i < j whose boxes (n, 2, 3) come within TOUCH_MM: a sweep along the longest extent."""
+    axis = int(np.argmax(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)))
+    order = np.argsort(boxes[:, 0, axis], kind="stable")
+    low, high = boxes[order, 0] - TOUCH_MM, boxes[order, 1] + TOUCH_MM
+    pairs = []
+    for n in range(len(order)):
+        last = int(np.searchsorted(low[:, axis], high[n, axis], side="right"))
+        ahead = slice(n + 1, last)
+        meets = np.all((low[ahead] <= high[n]) & (high[ahead] >= low[n]), axis=1)
+        pairs += [tuple(sorted((int(order[n]), int(order[n + 1 + k])))) for k in np.flatnonzero(meets)]
+    return iter(sorted(pairs))
+
+
+def relative(first: Placement, second: Placement) -> tuple[float, ...]:
+    """Second's place as seen from first: rotation and offset, rounded to a picometre."""
+    a, b = np.array(first.rotation), np.array(second.rotation)
+    offset = a.T @ (np.array(second.origin) - np.array(first.origin))
+    return tuple(np.round(np.concatenate([(a.T @ b).ravel(), offset]), 9) + 0.0)
+
+
+def _meeting(first: Placement, second: Placement, shapes: Mapping[str, TopoDS_Shape]) -> Meeting:
+    a, b = (shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in (first, second))
+    nearest = BRepExtrema_DistShapeShape(a, b)
+    point = nearest.PointOnShape1(1) if nearest.NbSolution() else None
+    place = (point.X(), point.Y(), point.Z()) if point else (0.0, 0.0, 0.0)
+    distance = nearest.Value()
+    if distance > TOUCH_MM:
+        return Meeting(0.0, distance, place)
+    common = BRepAlgoAPI_Common(a, b).Shape()
+    overlap = volume(common)
+    if overlap > OVERLAP_MM3:
+        place = tuple(measure(common)["centre"])
+    return Meeting(overlap, distance, place)
+
+
+def _verdict(first: Placement, second: Placement, m: Meeting, meant: Contact | None) -> list[Finding]:
+    kind = meant.kind if meant else ""
+    pair = f"{first.designator} ({first.part.part_no}) and {second.designator} ({second.part.part_no})"
+    if m.overlap > OVERLAP_MM3 and kind != "thread":
+        declared = f", although only {kind} contact is declared" if kind else ""
+        return [_finding("overlap", first, m, m.overlap, f"{pair} overlap by {m.overlap:.4g} mm3{declared}")]
+    if m.overlap <= OVERLAP_MM3 and m.distance < TOUCH_MM and not kind:
+        return [_finding("undeclared-touch", first, m, m.distance, f"{pair} touch, which the scene does not declare")]
+    return []
+
+
+def _finding(check: str, first: Placement, m: Meeting, value: float, message: str) -> Finding:
+    return Finding(check, "fail", first.designator, m.place, value, 0.0, message)
+
+
+def _placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
+    (x0, y0, z0), (x1, y1, z1) = box
+    corners = np.array([(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
+    there = corners @ np.array(p.rotation).T + np.array(p.origin)
+    return np.array([there.min(axis=0), there.max(axis=0)])

@@ -1,0 +1,60 @@
+"""Is the part's mesh a closed surface, and as large as the solid: what printers and simulators ask for."""
+
+from __future__ import annotations
+
+import numpy as np
+import trimesh
+from OCP.TopoDS import TopoDS_Shape
+
+from tactcad.parts.description import Part
+from tactcad.solids.measure import measure
+from tactcad.solids.mesh import triangles
+
+from .finding import Finding
+
+LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
+
+
+def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
+    """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in bounds."""
+    vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    found = check_triangles(part.part_no, mesh)
+    if found:
+        return found
+    exact = measure(shape)
+    bound = chord_bound(exact["area"])
+    for check, value, meant, limit in (
+        ("mesh-volume", mesh.volume, exact["volume"], bound),
+        ("mesh-area", mesh.area, exact["area"], AREA_SHARE * exact["area"]),
+    ):
+        if abs(value - meant) > limit:
+            message = f"mesh has {value:.6g}, the solid {meant:.6g}; tessellation explains {limit:.3g}"
+            found.append(Finding(check, "fail", part.part_no, (), value, meant, message))
+    return found
+
+
+# A chord of a turn w is shorter than its arc by w^2/24: 0.17 % at 0.2 rad; twice that where both
+# directions curve.
+AREA_SHARE = 2 * ANGULAR_RAD**2 / 24
+
+
+def chord_bound(area: float) -> float:
+    """Most that facets can take off or add: every face moved by the chord error (mm3)."""
+    return area * LINEAR_MM
+
+
+def check_triangles(part_no: str, mesh: trimesh.Trimesh) -> list[Finding]:
+    """Every edge is used by exactly two triangles, in opposite directions; nothing is inside out."""
+    found = []
+    uses = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
+    bad = uses[0][uses[1] != 2]
+    if len(bad):
+        where = tuple(float(v) for v in mesh.vertices[bad[0]].mean(axis=0))
+        message = f"{len(bad)} edges are not shared by exactly two triangles"
+        found.append(Finding("mesh-watertight", "fail", part_no, where, len(bad), 0, message))
+    elif not mesh.is_winding_consistent:
+        found.append(Finding("mesh-winding", "fail", part_no, (), 0, 1, "neighbouring triangles face opposite ways"))
+    elif mesh.volume <= 0:
+        found.append(Finding("mesh-winding", "fail", part_no, (), mesh.volume, 0, "the mesh is inside out"))
+    return found

@@ -1,0 +1,68 @@
+"""All checks of a design: every part of its scenes, then how the parts stand to each other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tactcad.design.tree import Design
+from tactcad.scenes import make_scene
+from tactcad.solids.build import SolidError, build
+
+from .brep import check_brep
+from .finding import Finding
+from .interference import check_interference
+from .mesh import check_mesh
+from .shop import DEFAULT, load_shop
+from .wirecut import check_wirecut
+
+
+@dataclass
+class Report:
+    """Findings in the order found, how many times each check ran, and how long it took in all (s)."""
+
+    findings: list[Finding] = field(default_factory=list)
+    runs: dict[str, int] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def failures(self) -> list[Finding]:
+        return [f for f in self.findings if f.severity == "fail"]
+
+    def run(self, name: str, check: Callable[..., list[Finding]], *args: object) -> None:
+        """Run one check and keep what it says."""
+        start = time.perf_counter()
+        self.findings += check(*args)
+        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+        self.runs[name] = self.runs.get(name, 0) + 1
+
+
+def run_checks(design: Design, scene_names: Sequence[str], shop_file: Path = DEFAULT) -> Report:
+    """Every check on every part and scene of a design that keeps its rules.
+
+    A part that cannot be built is a finding, and its scenes are then not checked for interference.
+    Raises InputError where the shop file cannot be used.
+    """
+    shop = load_shop(shop_file)
+    report = Report()
+    shapes, unbuilt = {}, set()
+    for name in scene_names:
+        scene = make_scene(design, name)
+        for part in scene.parts:
+            if part.part_no in shapes or part.part_no in unbuilt:
+                continue
+            try:
+                shapes[part.part_no] = build(part).wrapped
+            except SolidError as error:
+                unbuilt.add(part.part_no)
+                report.findings.append(Finding("build", "fail", part.part_no, (), 0, 0, str(error)))
+                continue
+            report.run("brep", check_brep, part, shapes[part.part_no])
+            report.run("mesh", check_mesh, part, shapes[part.part_no])
+            if part.process == "wire-cut":
+                report.run("wire-cut", check_wirecut, part, shop)
+        if not any(part.part_no in unbuilt for part in scene.parts):
+            report.run("interference", check_interference, scene, shapes)
+    return report

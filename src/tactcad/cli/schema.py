@@ -1,0 +1,21 @@
+"""tactcad schema [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+EXAMPLES = """\
+  tactcad schema              every field of a design file, table by table
+  tactcad schema --json       the same as JSON Schema, for editors that check TOML"""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print JSON Schema")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.design.schema import json_schema, text_schema
+
+    print(json.dumps(json_schema(), indent=1) if args.json else text_schema())
+    return 0

@@ -1,0 +1,70 @@
+"""What lies inside a contour."""
+
+from __future__ import annotations
+
+import heapq
+from math import atan2, dist, inf, pi, sqrt, tau
+
+from .contour import Contour
+from .intersect import crossings
+from .nearest import distance_to
+from .rounded import ROUNDING_MM
+from .segment import Line, Point, Segment
+
+
+def side(contour: Contour, p: Point) -> int:
+    """1 inside, 0 on the contour within rounding, -1 outside; the direction of the chain does not matter."""
+    if min(distance_to(s, p) for s in contour) <= ROUNDING_MM:
+        return 0
+    return 1 if round(sum(_turn(s, p) for s in contour) / tau) else -1
+
+
+def encloses(outer: Contour, inner: Contour) -> bool:
+    """Whether the inner contour lies wholly inside the outer one, without touching it."""
+    return side(outer, inner.segments[0].start) == 1 and not crossings(outer, inner)
+
+
+def clearance(contour: Contour, p: Point) -> float:
+    """Distance from p to the contour, negative outside, mm."""
+    return min(distance_to(s, p) for s in contour) * (1 if side(contour, p) >= 0 else -1)
+
+
+def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) -> Point | None:
+    """A centre at which a circle fits inside; None where none does, or only with less than `within` to spare (mm).
+
+    Squares are quartered, the most promising first: clearance changes at most by the distance moved, so a
+    square of half side h holds nothing better than its centre's clearance + sqrt(2) h.
+    """
+    needed = diameter / 2 - ROUNDING_MM
+    if clearance(contour, contour.centroid) >= needed:
+        return contour.centroid
+    x0, y0, x1, y1 = contour.box
+    squares = [(-inf, ((x0 + x1) / 2, (y0 + y1) / 2), max(x1 - x0, y1 - y0) / 2)]
+    while -squares[0][0] >= needed + within / 2:
+        _, (x, y), half = heapq.heappop(squares)
+        half /= 2
+        for p in ((x - half, y - half), (x + half, y - half), (x - half, y + half), (x + half, y + half)):
+            room = clearance(contour, p)
+            if room >= needed:
+                return p
+            heapq.heappush(squares, (-room - sqrt(2) * half, p, half))
+    return None
+
+
+def _turn(s: Segment, p: Point) -> float:
+    """Angle by which the view from p turns along the segment, radians, counter-clockwise positive.
+
+    An arc turns it as its chord does, and by a full turn more where p lies between arc and chord.
+    """
+    if not isinstance(s, Line) and s.start == s.end:
+        inside = dist(p, s.centre) < s.radius
+        return s.sweep if inside else 0.0
+    ax, ay = s.start[0] - p[0], s.start[1] - p[1]
+    bx, by = s.end[0] - p[0], s.end[1] - p[1]
+    left, ahead = ax * by - ay * bx, ax * bx + ay * by  # left > 0: p lies left of the chord
+    if isinstance(s, Line) or dist(p, s.centre) >= s.radius:
+        return atan2(left, ahead)
+    if left == 0.0:  # on the chord
+        return pi if s.ccw else -pi
+    beyond = (left < 0) == s.ccw
+    return atan2(left, ahead) + (tau * (1 if s.ccw else -1) if beyond else 0.0)

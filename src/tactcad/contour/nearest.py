@@ -1,0 +1,178 @@
+"""Nearest points and common points of exact segments (mm), in closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import atan2, cos, dist, hypot, sin, sqrt, tau
+
+from .rounded import ROUNDING_MM
+from .segment import Arc, Line, Point, Segment
+
+
+def feet(s: Segment, p: Point) -> list[Point]:
+    """Points of the segment at which the line from p meets it at a right angle; ends count.
+
+    For an arc these are the near and the far side; from its own centre every point is one, and its middle is given.
+    """
+    if isinstance(s, Line):
+        foot = s.at(_along(s, p))
+        return [foot] if on(s, foot) else []
+    away = dist(p, s.centre)
+    if away < ROUNDING_MM:
+        return [s.at(0.5)]
+    dx, dy = (p[0] - s.centre[0]) / away, (p[1] - s.centre[1]) / away
+    sides = ((s.centre[0] + k * s.radius * dx, s.centre[1] + k * s.radius * dy) for k in (1, -1))
+    return [q for q in sides if on(s, q)]
+
+
+def on(s: Segment, p: Point) -> bool:
+    """Whether a point of the segment's line or circle lies between its ends, within rounding."""
+    if min(dist(p, s.start), dist(p, s.end)) <= ROUNDING_MM:
+        return True
+    if isinstance(s, Line):
+        return 0.0 <= _along(s, p) <= 1.0
+    return s.spans(atan2(p[1] - s.centre[1], p[0] - s.centre[0]))
+
+
+def distance_to(s: Segment, p: Point) -> float:
+    """Distance from a point to the segment, mm."""
+    return min(dist(p, q) for q in (s.start, s.end, *feet(s, p)))
+
+
+def common_normals(a: Segment, b: Segment) -> Iterator[tuple[Point, Point]]:
+    """Pairs (on a, on b) whose connection is normal to both, an end counting as normal to everything.
+
+    The nearest points of two segments that do not meet are among them.
+    """
+    for p in (a.start, a.end):
+        for q in (b.start, b.end, *feet(b, p)):
+            yield p, q
+    for q in (b.start, b.end):
+        for p in feet(a, q):
+            yield p, q
+    if isinstance(a, Line) and isinstance(b, Line):
+        yield from _across_parallel_lines(a, b)
+    elif isinstance(a, Line) or isinstance(b, Line):
+        line, arc = (a, b) if isinstance(a, Line) else (b, a)
+        for foot in feet(line, arc.centre):
+            for q in _along_normal(arc, line):
+                yield (foot, q) if a is line else (q, foot)
+    elif dist(a.centre, b.centre) > ROUNDING_MM:
+        for p in feet(a, b.centre):
+            for q in feet(b, a.centre):
+                yield p, q
+    else:
+        yield from _across_concentric_arcs(a, b)
+
+
+def _across_parallel_lines(a: Line, b: Line) -> Iterator[tuple[Point, Point]]:
+    """The middle of the stretch along which parallel lines face each other."""
+    (ux, uy), (vx, vy) = ((s.end[0] - s.start[0], s.end[1] - s.start[1]) for s in (a, b))
+    if abs(ux * vy - uy * vx) > ROUNDING_MM * a.length * b.length:
+        return
+    first, last = sorted((_along(a, b.start), _along(a, b.end)))
+    first, last = max(first, 0.0), min(last, 1.0)
+    if first < last:
+        p = a.at((first + last) / 2)
+        yield p, b.at(_along(b, p))
+
+
+def _across_concentric_arcs(a: Arc, b: Arc) -> Iterator[tuple[Point, Point]]:
+    """The middles of the stretches along which arcs about one centre face each other."""
+    angles = sorted(angle % tau for s in (a, b) for angle in (s.start_angle, s.end_angle))
+    for i, angle in enumerate(angles):
+        before = angles[i - 1] - (tau if i == 0 else 0.0)
+        middle = (before + angle) / 2
+        c, s = cos(middle), sin(middle)
+        for k in (1, -1):
+            p = (a.centre[0] + a.radius * c, a.centre[1] + a.radius * s)
+            q = (b.centre[0] + k * b.radius * c, b.centre[1] + k * b.radius * s)
+            if on(a, p) and on(b, q):
+                yield p, q
+
+
+def _along_normal(arc: Arc, line: Line) -> list[Point]:
+    """Points of the arc where it is parallel to the line."""
+    (x, y), r = arc.centre, arc.radius
+    ux, uy = (line.end[0] - line.start[0]) / line.length, (line.end[1] - line.start[1]) / line.length
+    return [q for q in ((x - r * uy, y + r * ux), (x + r * uy, y - r * ux)) if on(arc, q)]
+
+
+def distance(a: Segment, b: Segment) -> float:
+    """Smallest distance of two segments, mm; 0 where they meet."""
+    return 0.0 if meeting_points(a, b) else min(dist(p, q) for p, q in common_normals(a, b))
+
+
+def meeting_points(a: Segment, b: Segment) -> list[Point]:
+    """Points in which two segments meet, within rounding; of a stretch in common, its ends."""
+    if not _discs_meet(a, b):
+        return []
+    if isinstance(a, Line) and isinstance(b, Line):
+        found = _lines_meet(a, b)
+    elif isinstance(a, Line):
+        found = _line_and_circle(a, b)
+    elif isinstance(b, Line):
+        found = _line_and_circle(b, a)
+    else:
+        found = _circles_meet(a, b)
+    return [p for p in found if on(a, p) and on(b, p)]
+
+
+def _lines_meet(a: Line, b: Line) -> list[Point]:
+    ux, uy = a.end[0] - a.start[0], a.end[1] - a.start[1]
+    vx, vy = b.end[0] - b.start[0], b.end[1] - b.start[1]
+    wx, wy = b.start[0] - a.start[0], b.start[1] - a.start[1]
+    cross = ux * vy - uy * vx
+    if abs(cross) > 1e-12 * a.length * b.length:
+        return [a.at((wx * vy - wy * vx) / cross)]
+    if abs(ux * wy - uy * wx) > ROUNDING_MM * a.length:  # parallel, side by side
+        return []
+    ends = [(p, b) for p in (a.start, a.end)] + [(p, a) for p in (b.start, b.end)]
+    return [p for p, other in ends if on(other, p)]
+
+
+def _line_and_circle(line: Line, arc: Arc) -> list[Point]:
+    u = _along(line, arc.centre)
+    foot = line.at(u)
+    r, h = arc.radius, dist(foot, arc.centre)
+    if abs(h - r) <= ROUNDING_MM:
+        return [foot]
+    if h > r:
+        return []
+    half = sqrt((r - h) * (r + h)) / line.length
+    return [line.at(u - half), line.at(u + half)]
+
+
+def _circles_meet(a: Arc, b: Arc) -> list[Point]:
+    ra, rb, d = a.radius, b.radius, dist(a.centre, b.centre)
+    if d <= ROUNDING_MM:
+        if abs(ra - rb) > ROUNDING_MM:
+            return []
+        ends = [(p, b) for p in (a.start, a.end)] + [(p, a) for p in (b.start, b.end)]
+        return [p for p, other in ends if on(other, p)]
+    if d > ra + rb + ROUNDING_MM or d < abs(ra - rb) - ROUNDING_MM:
+        return []
+    ux, uy = (b.centre[0] - a.centre[0]) / d, (b.centre[1] - a.centre[1]) / d
+    along = (d * d + (ra - rb) * (ra + rb)) / (2 * d)
+    touch = min(abs(d - ra - rb), abs(d - abs(ra - rb))) <= ROUNDING_MM
+    half = 0.0 if touch else sqrt(max(0.0, (ra - along) * (ra + along)))
+    x, y = a.centre[0] + along * ux, a.centre[1] + along * uy
+    return [(x - half * uy, y + half * ux)] + ([] if touch else [(x + half * uy, y - half * ux)])
+
+
+def _along(line: Line, p: Point) -> float:
+    """Parameter of the foot of p on the line, 0 at its start and 1 at its end."""
+    ux, uy = line.end[0] - line.start[0], line.end[1] - line.start[1]
+    return ((p[0] - line.start[0]) * ux + (p[1] - line.start[1]) * uy) / (ux * ux + uy * uy)
+
+
+def _discs_meet(a: Segment, b: Segment) -> bool:
+    (ax, ay, ar), (bx, by, br) = _disc(a), _disc(b)
+    return hypot(ax - bx, ay - by) <= ar + br + ROUNDING_MM
+
+
+def _disc(s: Segment) -> tuple[float, float, float]:
+    """Centre and radius of a disc around the segment."""
+    if isinstance(s, Arc):
+        return (*s.centre, s.radius)
+    return (*s.at(0.5), s.length / 2)

@@ -1,0 +1,145 @@
+"""Where a part, or the space around it, is narrow: webs, walls and slots, in closed form.
+
+A neck is a straight connection of two boundary points that is normal to the boundary at both
+(at a sharp corner: lies between the normals of its two edges) and that nothing else crosses. The smallest wall
+and the narrowest slot are necks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement
+from math import dist, hypot, pi
+from typing import Literal
+
+from .contour import Contour
+from .nearest import common_normals, meeting_points
+from .rounded import ROUNDING_MM
+from .segment import Arc, Line, Point, Segment
+
+# Directions that differ by less are one: sine of the angle, above the rounding of short segments' tangents.
+SAME_DIRECTION = 1e-6
+
+
+@dataclass(frozen=True)
+class Neck:
+    """A narrow place: its width (mm) from p to q on the two segments, in material or in the void."""
+
+    width: float
+    p: Point
+    q: Point
+    within: Literal["material", "void"]
+    segments: tuple[Segment, Segment]
+
+    @property
+    def names(self) -> tuple[str, str]:
+        return (self.segments[0].name, self.segments[1].name)
+
+    @property
+    def middle(self) -> Point:
+        return ((self.p[0] + self.q[0]) / 2, (self.p[1] + self.q[1]) / 2)
+
+
+@dataclass(frozen=True)
+class _Piece:
+    """A segment run with the material on its left, and the directions in which its neighbours join."""
+
+    segment: Segment
+    arriving: Point  # unit direction of the one before, where it ends
+    leaving: Point  # unit direction of the one after, where it starts
+
+
+def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
+    """All necks narrower than `below` (mm), the narrowest first; where walls run side by side, one for the pair."""
+    contours = [outer if outer.ccw else outer.reversed()]
+    contours += [c.reversed() if c.ccw else c for c in openings]
+    pieces = [piece for contour in contours for piece in _pieces(contour)]
+    found = []
+    for a, b in combinations_with_replacement(pieces, 2):
+        for p, q in _facing(a, b):
+            width = dist(p, q)
+            if ROUNDING_MM < width < below:
+                side = _side(a, p, q)
+                if side and side == _side(b, q, p) and _is_free(p, q, pieces):
+                    found.append(Neck(width, p, q, side, (a.segment, b.segment)))
+    different: list[Neck] = []
+    for neck in sorted(found, key=lambda n: (round(n.width / ROUNDING_MM), n.middle)):
+        if not any(_same(neck, other) for other in different):
+            different.append(neck)
+    return different
+
+
+def _same(a: Neck, b: Neck) -> bool:
+    """Whether two necks are one: equally wide, and on the same segments or on their neighbours."""
+
+    def joined(s: Segment, t: Segment) -> bool:
+        return s == t or s.end == t.start or s.start == t.end
+
+    (a1, a2), (b1, b2) = a.segments, b.segments
+    beside = (joined(a1, b1) and joined(a2, b2)) or (joined(a1, b2) and joined(a2, b1))
+    return beside and a.within == b.within and abs(a.width - b.width) <= 2 * ROUNDING_MM
+
+
+def _facing(a: _Piece, b: _Piece) -> Iterator[tuple[Point, Point]]:
+    """Candidates between two pieces, and across an arc of half a turn or more."""
+    if a is not b:
+        yield from common_normals(a.segment, b.segment)
+    elif isinstance(a.segment, Arc):
+        rest = 1 - pi / abs(a.segment.sweep)
+        if rest >= -SAME_DIRECTION:
+            yield a.segment.at(max(rest, 0.0) / 2), a.segment.at(1 - max(rest, 0.0) / 2)
+
+
+def _pieces(contour: Contour) -> list[_Piece]:
+    run = contour.segments
+    return [
+        _Piece(s, direction(run[i - 1], run[i - 1].end), direction(run[(i + 1) % len(run)], s.end))
+        for i, s in enumerate(run)
+    ]
+
+
+def direction(s: Segment, p: Point) -> Point:
+    """Unit direction in which the segment runs at one of its points."""
+    if isinstance(s, Line):
+        dx, dy = s.end[0] - s.start[0], s.end[1] - s.start[1]
+    else:
+        turn = 1 if s.ccw else -1
+        dx, dy = -turn * (p[1] - s.centre[1]), turn * (p[0] - s.centre[0])
+    size = hypot(dx, dy)
+    return (dx / size, dy / size)
+
+
+def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
+    """Which way the connection from p on the piece to q leaves it; None where it does not leave it along a normal."""
+    s = piece.segment
+    here = direction(s, p)
+    before = piece.arriving if dist(p, s.start) <= ROUNDING_MM else here
+    after = piece.leaving if dist(p, s.end) <= ROUNDING_MM else here
+    size = dist(p, q)
+    v = ((q[0] - p[0]) / size, (q[1] - p[1]) / size)
+    outward = [(t[1], -t[0]) for t in (before, after)]  # the material is on the left
+    corner = _cross(before, after)
+    if abs(corner) <= SAME_DIRECTION:
+        lean = v[0] * outward[0][0] + v[1] * outward[0][1]
+        if abs(_cross(v, outward[0])) > SAME_DIRECTION:
+            return None
+        return "void" if lean > 0 else "material"
+    sign = 1 if corner > 0 else -1  # a corner of the material opens to the void, an inside corner to the material
+    shares = _cross(v, outward[1]) / corner * sign, _cross(outward[0], v) / corner * sign
+    if min(shares) < -SAME_DIRECTION:
+        return None
+    return "void" if sign > 0 else "material"
+
+
+def _is_free(p: Point, q: Point, pieces: Sequence[_Piece]) -> bool:
+    """Whether nothing crosses the connection between its ends."""
+    connection = Line(p, q)
+    near = 10 * ROUNDING_MM
+    return all(
+        min(dist(x, p), dist(x, q)) <= near for piece in pieces for x in meeting_points(connection, piece.segment)
+    )
+
+
+def _cross(a: Point, b: Point) -> float:
+    return a[0] * b[1] - a[1] * b[0]

@@ -1,0 +1,93 @@
+"""The design file's fields as text and as JSON Schema, read off the parameter tree."""
+
+from __future__ import annotations
+
+import dataclasses
+import textwrap
+from typing import Any
+
+from .fields import Spec
+from .load import SECTION_TYPES
+from .tree import Design, Element, Hinge
+
+_TEXT_ORIGIN = "[origin] holds the source of any value by its path, as \"element.pad_length\" = \"paper: 2 x 3 mm2\"."
+
+
+def _rows(kind: type) -> list[tuple[str, Spec, str]]:
+    """Name, spec and default (as text) of every field of a table; override tables are left out."""
+    rows = []
+    for f in dataclasses.fields(kind):
+        if "spec" in f.metadata:
+            rows.append((f.name, f.metadata["spec"], _default(f)))
+    return rows
+
+
+def _default(f: dataclasses.Field) -> str:
+    if f.default is dataclasses.MISSING:
+        return "required"
+    if f.default is None:
+        return f"derived: {f.metadata['derived']}" if f.metadata["derived"] else "as in [element]"
+    if isinstance(f.default, tuple):
+        return str(list(f.default))
+    return f"{f.default:g}" if isinstance(f.default, float) else str(f.default)
+
+
+def text_schema() -> str:
+    """Every table with its fields: name, default, legal values, meaning."""
+    lines = ["Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.", ""]
+    optional = {f.name for f in dataclasses.fields(Design) if f.default is None}
+    for name, kind in SECTION_TYPES.items():
+        if name == "origin":
+            continue
+        lines += _table(name, kind, optional=name in optional)
+        if kind is Element:
+            lines += _table("element.override.N", Hinge, optional=True)
+    return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
+
+
+def _table(name: str, kind: type, optional: bool) -> list[str]:
+    lines = [f"[{name}]" + (" (may be left out)" if optional else "")]
+    for field, spec, default in _rows(kind):
+        lines.append(f"  {field:24} {spec.meaning}")
+        lines.append(f"  {'':24}   {spec.legal}; default: {default}")
+    return [*lines, ""]
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of the design file."""
+    tables = {name: _object(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}
+    override = {"type": "object", "patternProperties": {"^[1-9][0-9]{0,3}$": _object(Hinge)}, "additionalProperties": False}
+    tables["element"]["properties"]["override"] = override
+    gaps = tables["stop"]["properties"]["gaps"]
+    tables["stop"]["properties"]["gaps"] = {"type": "object", "additionalProperties": gaps}
+    tables["origin"] = {"type": "object"}
+    required = [
+        f.name for f in dataclasses.fields(Design)
+        if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
+    ]
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "tactcad design file",
+        "type": "object",
+        "properties": tables,
+        "required": required,
+        "additionalProperties": False,
+    }
+
+
+def _object(kind: type) -> dict[str, Any]:
+    properties, required = {}, []
+    for f in dataclasses.fields(kind):
+        if "spec" not in f.metadata:
+            continue
+        spec = f.metadata["spec"]
+        properties[f.name] = {**spec.schema(), "description": _described(spec)}
+        if f.default is dataclasses.MISSING:
+            required.append(f.name)
+        elif f.default is not None:
+            properties[f.name]["default"] = f.default
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+
+
+def _described(spec: Spec) -> str:
+    return f"{spec.meaning} ({spec.unit})" if spec.unit else spec.meaning
