@@ -11,7 +11,8 @@ import pytest
 
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.studies import examples, folder, report as reporting, validation
+from tactcad.studies import examples, folder, validation
+from tactcad.studies import report as reporting
 
 ROOT = Path(__file__).parents[2]
 CALIBRATION, GRASP = ROOT / "hardware/examples/calibration.csv", ROOT / "hardware/examples/grasp.csv"

@@ -7,7 +7,7 @@ to the ratio that the paper proposes, on the sample of Figure 6; K_r is the one 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, log, log10, nan, tan, radians
+from math import inf, log, log10, nan, radians, tan
 
 import numpy as np
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.studies.calibration import ElementCalibration, Estimate
-from tactcad.studies.csv_table import Field, read as read_table, refuse_duplicates
+from tactcad.studies.csv_table import Field, refuse_duplicates
+from tactcad.studies.csv_table import read as read_table
 from tactcad.studies.grasp import Sensitivity
 from tactcad.studies.report import plain
 

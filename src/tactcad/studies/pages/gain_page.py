@@ -7,7 +7,18 @@ import numpy as np
 from tactcad.studies import drawing as d
 from tactcad.studies.array import ArrayModel
 from tactcad.studies.gain import GainFit
-from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import (
+    Figure,
+    Marked,
+    Section,
+    Table,
+    exact,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
 
 
 def page(g: GainFit, array: ArrayModel) -> Section:

@@ -6,7 +6,18 @@ import numpy as np
 
 from tactcad.studies import drawing as d
 from tactcad.studies.array import ArrayModel
-from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import (
+    Figure,
+    Marked,
+    Section,
+    Table,
+    exact,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
 from tactcad.studies.residuals import WIRE_TOLERANCE, Residuals
 
 SMALL_FACTOR = 0.05  # a common factor within this is called none

@@ -6,7 +6,17 @@ import numpy as np
 
 from tactcad.studies import drawing as d
 from tactcad.studies.published import Published
-from tactcad.studies.report import Figure, Marked, Section, Table, exact, interval, listed, sig, signed_percent
+from tactcad.studies.report import (
+    Figure,
+    Marked,
+    Section,
+    Table,
+    exact,
+    interval,
+    listed,
+    sig,
+    signed_percent,
+)
 from tactcad.studies.table1_check import Product, Table1Check
 
 

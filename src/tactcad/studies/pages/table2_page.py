@@ -10,7 +10,17 @@ from tactcad.studies import drawing as d
 from tactcad.studies.published import Published
 from tactcad.studies.reference_element import ReferenceElement
 from tactcad.studies.reference_stiffness import UNITS, Fit, Table2Study
-from tactcad.studies.report import Figure, Marked, Section, Table, interval, listed, percent, sig, signed_percent
+from tactcad.studies.report import (
+    Figure,
+    Marked,
+    Section,
+    Table,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
 from tactcad.studies.residuals import Residuals
 
 ALIKE = 0.15  # models whose rms differ by less than this part are said to fit equally well
