@@ -103,7 +103,7 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
         a, b = x - 0.0, y
         root = a[0] - b[0] * (a[1] - a[0]) / (b[1] - b[0])
         for _ in range(4):  # secant steps on ln K against ln of the dimension, which is nearly straight
-            value = np.log(ladder.evaluate(s.rows([i]).with_(**{name: own[i] * np.exp(root)}), rung).stiffness[0] / K[i])
+            value = np.log(np.ravel(ladder.evaluate(s.rows([i]).with_(**{name: own[i] * np.exp(root)}), rung).stiffness)[0] / K[i])
             slope = (b[1] - b[0]) / (a[1] - a[0])
             root -= value / slope
         found[i] = own[i] * np.exp(root)

@@ -26,7 +26,7 @@ def origin(h: HingeFit) -> str:
 
 
 def findings(h: HingeFit) -> tuple[str, ...]:
-    own, strains = h.own, h.strains
+    own = h.own
     inside = own.design_low <= h.design_length <= own.design_high
     found = [
         f"At the design's fillet radius {h.design_radius:g} mm, t as the paper gives it, the {own.name} hinge that fits best is "
