@@ -37,9 +37,11 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.checks.run import run_checks
     from tactcad.checks.shop import DEFAULT, load_shop
 
+    from .progress import progress
+
     shop = Path(args.shop) if args.shop else DEFAULT
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
-    report = run_checks(design, names, shop)
+    report = run_checks(design, names, shop, progress().step)
     failed = report.failures
     if args.json:
         record = {
