@@ -1,7 +1,7 @@
 """K_v by one gain for all elements, and which combination of gain and hinge length the data identifies.
 
-The read-out turns strain into volts by one factor, excitation x amplifier gain x gauge factor/4; strain per deflection
-is geometric, t/(2 l_e L) for a short hinge. So K_v fixes gain over length, not the gain.
+The read-out turns strain into volts by one factor, excitation x amplifier gain x gauge factor/4; strain per
+deflection is geometric, t/(2 l_e L) for a short hinge. So K_v fixes gain over length, not the gain.
 """
 
 from __future__ import annotations
@@ -73,18 +73,36 @@ def fit(data: Published, array: ArrayModel) -> GainFit:
     effective = [_effective(s, length, array) for length in lengths]
     gains = np.array([g for g, _ in tried])
     gain = float(readout.volts_per_strain(array.gauge.factor, array.readout))
-    on, off = (how(array.readout.excitation, array.gauge, array.power) for how in (self_heating.continuous, self_heating.switched))
+    on, off = (
+        how(array.readout.excitation, array.gauge, array.power)
+        for how in (self_heating.continuous, self_heating.switched)
+    )
     strain = q * t1.deflection.value[here] * 1e-3
     volts = readout.unlimited_output(strain, array.gauge.factor, array.readout)
     held = readout.output(strain, array.gauge.factor, array.readout)
     return GainFit(
-        t1.element[here], t1.arm.value[here], measured, np.abs(t1.signal_per_force.value[here]), q, gain,
-        float(np.exp(log_gain)), float(np.exp(log_gain - half)), float(np.exp(log_gain + half)), scatter, lengths,
-        np.exp(gains), np.array([e for _, e in tried]), float(np.polyfit(np.log(effective), gains, 1)[0]),
-        gain * per_force, strain,
+        t1.element[here],
+        t1.arm.value[here],
+        measured,
+        np.abs(t1.signal_per_force.value[here]),
+        q,
+        gain,
+        float(np.exp(log_gain)),
+        float(np.exp(log_gain - half)),
+        float(np.exp(log_gain + half)),
+        scatter,
+        lengths,
+        np.exp(gains),
+        np.array([e for _, e in tried]),
+        float(np.polyfit(np.log(effective), gains, 1)[0]),
+        gain * per_force,
+        strain,
         held - readout.output(0.0, array.gauge.factor, array.readout),
-        readout.bridge_nonlinearity(array.gauge.factor * strain), held != volts,
-        2 * array.readout.averaged_noise / (gain * per_force), on, off,
+        readout.bridge_nonlinearity(array.gauge.factor * strain),
+        held != volts,
+        2 * array.readout.averaged_noise / (gain * per_force),
+        on,
+        off,
         *(abs(h.drift) / array.gauge.factor / per_force for h in (on, off)),
     )
 
