@@ -246,7 +246,11 @@ def test_stiffness_findings_follow_the_data(paper, array):
         and "still on the pad" in as_printed
         and "differ by up to 2.00 (nos. 8 and 1)" in as_printed
     )
-    assert "5 of 9 elements" in as_printed and "at the edge: no. 8" in as_printed and "no common factor is left" in as_printed
+    assert (
+        "5 of 9 elements" in as_printed
+        and "at the edge: no. 8" in as_printed
+        and "no common factor is left" in as_printed
+    )
     _, s = residuals.matched(paper, array)
     K = ladder.stiffness(s)
     healed = " ".join(

@@ -20,6 +20,7 @@ from tactcad.studies.regression import (
     extreme_deviates,
     fit_lines,
     ratio_interval,
+    require_level,
     t_quantile,
     variance_weights,
 )
@@ -83,8 +84,7 @@ def calibrate(
         raise InputError(
             "load cell", "stiffness must be positive", value=load_cell, legal="above 0 N/mm, or inf"
         )
-    if not 0.5 <= level < 1:
-        raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
+    require_level(level)
     return [
         _element(readings, int(n), load_cell, level, drop_outliers) for n in dict.fromkeys(readings.element)
     ]

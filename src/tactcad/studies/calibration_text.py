@@ -75,8 +75,8 @@ def to_text(rows: list[ElementCalibration], load_cell: float, level: float) -> s
     lines = ["  ".join(cell.rjust(w) for cell, w in zip(line, width)) for line in [head, *body]]
     lines += [
         "",
-        f"load cell in series: {load_cell:g} N/mm; K, K_v, K_v/K by weighted fit of all runs; 'as paper': "
-        f"averaged runs, force against deflection",
+        f"load cell in series: {load_cell:g} N/mm; K, K_v, K_v/K by weighted fit of all runs; 'as "
+        "paper': averaged runs, force against deflection",
     ]
     for r in rows:
         lines += [
@@ -112,7 +112,7 @@ def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
         if not (0 < r.stiffness.value < inf and isfinite(r.stiffness.standard_error)):
             raise CheckFailure(
                 f"element {r.element}: the readings do not give its stiffness, so there is no calibration "
-                f"to write"
+                "to write"
             )
     names = (
         "element",

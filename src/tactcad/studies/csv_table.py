@@ -117,7 +117,7 @@ def header(path: str | Path) -> tuple[str, ...]:
     return tuple(lines[0][1]) if lines else ()
 
 
-def refuse_duplicates(rows: Rows, names: tuple[str, ...]) -> None:
+def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Raise InputError at the second row that has the same values in the columns `names`."""
     seen: dict[tuple[float, ...], int] = {}
     for i, key in enumerate(zip(*(rows.values(n) for n in names))):
@@ -126,7 +126,7 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...]) -> None:
             raise InputError(
                 rows.where(i, names[0]),
                 f"{what} stands already on line {rows.lines[seen[key]]}",
-                legal="each once",
+                legal=legal,
             )
         seen[key] = i
 

@@ -19,7 +19,7 @@ from scipy.special import chdtrc, fdtrc
 
 from tactcad.design.messages import InputError
 from tactcad.studies.readings import GraspReadings
-from tactcad.studies.regression import t_quantile
+from tactcad.studies.regression import require_level, t_quantile
 
 STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
 DISAGREE = 0.01  # probability below which the elements are said to disagree
@@ -122,6 +122,7 @@ def evaluate(
 
     Raises InputError: an element without calibration, fewer than two elements or three loads in contact.
     """
+    require_level(level)
     touching = readings.load > 0
     if touching.sum() < 3 or len(readings.element) < 2:
         raise InputError(
@@ -145,8 +146,8 @@ def evaluate(
     dropped = int((~touching).sum())
     if dropped:
         notes.append(
-            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' "
-            f"heights enter"
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
+            "enter"
         )
     notes += _strays(readings.element, readings.signal[:, touching])
     if widened > 1:
@@ -211,8 +212,8 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
         own = ((centred[i] - g * vt[0]) ** 2).sum() / each / (1 + (g / size[0]) ** 2)
         if noise > 0 and fdtrc(each, each * (n - 2), own / noise) < STRAY / n:
             notes.append(
-                f"element {number} does not follow the approach of the others: late contact, a limit of the "
-                f"read-out, or a bad gauge"
+                f"element {number} does not follow the approach of the others: late contact, a limit of "
+                "the read-out, or a bad gauge"
             )
     return notes
 

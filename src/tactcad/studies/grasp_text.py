@@ -51,9 +51,9 @@ def to_text(found: list[Grasp], level: float) -> str:
         ]
         lines += [
             "",
-            f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees of "
-            f"freedom); the combined value uses all "
-            "elements at once, with the covariance of pairs that share the reference",
+            f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees "
+            "of freedom); the combined value uses all elements at once, with the covariance of pairs "
+            "that share the reference",
         ]
         lines += [*g.notes, ""]
     return "\n".join(lines)

@@ -52,7 +52,11 @@ class GraspReadings:
 def calibration(path: str | Path) -> CalibrationReadings:
     """Readings of `tactcad calibrate`. Raises InputError with file, line and column."""
     rows, scaled = _read(path, (ELEMENT, RUN), ("displacement", "force", "signal"))
-    refuse_duplicates(rows, ("element", "run", scaled["displacement"][0]))
+    refuse_duplicates(
+        rows,
+        ("element", "run", scaled["displacement"][0]),
+        "each displacement once a run; number an upward and a downward stroke as two runs",
+    )
     out = CalibrationReadings(
         rows.values("element").astype(int),
         rows.values("run").astype(int),

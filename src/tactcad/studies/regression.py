@@ -12,6 +12,8 @@ from math import inf, sqrt
 import numpy as np
 from scipy.special import fdtrc, stdtrit
 
+from tactcad.design.messages import InputError
+
 
 @dataclass(frozen=True)
 class Lines:
@@ -108,6 +110,12 @@ def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
         a, b = (square.mean(), 0.0) if b <= 0 else (0.0, max((square * u * u).sum() / (u**4).sum(), 0.0))
     variance = a + b * u * u
     return 1.0 / np.maximum(variance, variance.max() / 100) if variance.max() > 0 else np.ones_like(u)
+
+
+def require_level(level: float) -> None:
+    """Raises InputError for a level of intervals that is none."""
+    if not 0.5 <= level < 1:
+        raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
 
 
 def t_quantile(level: float, dof: float) -> float:

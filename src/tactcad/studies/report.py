@@ -200,15 +200,17 @@ def to_html(report: Report) -> str:
     e = html.escape
     contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
     body = "".join(_section(i, s) for i, s in enumerate(report.sections, 1))
-    return (
+    head = (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{e(report.title)}</title>\n'
         '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
         f"<style>{STYLE}</style></head>\n<body>"
+    )
+    top = (
         f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
         f"<h3>What stands out</h3>{_list(report.summary)}"
         f"<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
-        f"<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
     )
+    return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
 
 
 def _section(number: int, s: Section) -> str:
@@ -239,8 +241,8 @@ def _table(t: Table) -> str:
     rows = "".join("<tr>" + "".join(_cell(c, text[i]) for i, c in enumerate(row)) + "</tr>" for row in t.rows)
     note = f"<p class=note>{e(t.note)}</p>" if t.note else ""
     return (
-        f"<h3>{e(t.title)}</h3><div class=scroll><table><thead><tr>{head}</tr></thead>"
-        f"<tbody>{rows}</tbody></table></div>{note}"
+        f"<h3>{e(t.title)}</h3><div "
+        f"class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
     )
 
 

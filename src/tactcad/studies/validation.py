@@ -76,12 +76,11 @@ def validate(data: Published, array: ArrayModel) -> Report:
     )
     return Report(
         "Held against the paper: a spring-based tactile array",
-        "Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, the "
-        f"lumped pair, and the beam model of the "
-        f"design {array.name}.",
+        "Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, "
+        f"the lumped pair, and the beam model of the design {array.name}.",
         summary,
         sections,
         "Every number on this page was computed when it was made; sentences are chosen by the numbers. "
-        "Intervals are 95 %. Units: N, mm, V. "
-        f"Monte Carlo seed {SEED}; supported reference stiffness {sig(supported, 4)} N/mm.",
+        f"Intervals are 95 %. Units: N, mm, V. Monte Carlo seed {SEED}; supported reference stiffness "
+        f"{sig(supported, 4)} N/mm.",
     )

@@ -16,8 +16,7 @@ def page(b: Budget) -> Section:
         "budget",
         "Uncertainty budget",
         "Every effect with its size for this array, carried to K_obj of one pair: K_r = "
-        f"{sig(b.reference)}, K_m = {b.measuring:g}, "
-        f"K_obj = {b.object_stiffness:g} N/mm.",
+        f"{sig(b.reference)}, K_m = {b.measuring:g}, K_obj = {b.object_stiffness:g} N/mm.",
         findings(b),
         (_table(b),),
         (_plot(b),),
@@ -33,18 +32,15 @@ def findings(b: Budget) -> tuple[str, ...]:
     large = [e for e in b.effects if e.on_object > MATTERS]
     return (
         f"Largest are {listed(f'{e.name} ({percent(e.on_object)})' for e in top)}. {len(large)} of "
-        f"{len(b.effects)} effects move K_obj by more than "
-        f"{percent(MATTERS)} each.",
+        f"{len(b.effects)} effects move K_obj by more than {percent(MATTERS)} each.",
         f"An error of 1 % in K_r is {abs(b.sensitivity_reference):.2f} % in K_obj here, 1 % in K_m "
-        f"{abs(b.sensitivity_measuring):.2f} %, 1 % in R "
-        f"{abs(b.sensitivity_ratio):.2f} %.",
-        f"Together (root of squares) they make {percent(b.total())} as the paper's rig stood, with K from "
-        f"the drawing; with each remedy "
-        f"{percent(b.total(remaining=True))}. Then "
+        f"{abs(b.sensitivity_measuring):.2f} %, 1 % in R {abs(b.sensitivity_ratio):.2f} %.",
+        f"Together (root of squares) they make {percent(b.total())} as the paper's rig stood, with K "
+        f"from the drawing; with each remedy {percent(b.total(remaining=True))}. Then "
         f"{listed(f'{e.name} ({percent(e.remaining)})' for e in left)} lead.",
         f"The closed form's own error ({percent(small.short_arm)} of K, {percent(small.on_object)} of "
-        f"K_obj) is smaller than {len(above)} of the other "
-        f"{len(b.effects) - 1} effects: it is a sharp tool, not the answer.",
+        f"K_obj) is smaller than {len(above)} of the other {len(b.effects) - 1} effects: it is a sharp "
+        "tool, not the answer.",
     )
 
 
@@ -66,10 +62,9 @@ def _table(b: Budget) -> Table:
             ("remaining", "on K_obj"),
         ),
         rows,
-        "Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. 'assumed' "
-        "and 'chosen' values stand in the source. "
-        "Dimensions matter only where K is taken from the drawing; a calibrated element carries only its "
-        "calibration.",
+        "Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. "
+        "'assumed' and 'chosen' values stand in the source. Dimensions matter only where K is taken "
+        "from the drawing; a calibrated element carries only its calibration.",
     )
 
 

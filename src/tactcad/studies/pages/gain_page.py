@@ -39,16 +39,14 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
     change = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
     found = [
         f"One gain of {sig(g.fitted_gain)} V per unit of strain (95 % "
-        f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of "
-        f"{percent(g.scatter)} in K_v. Excitation {array.readout.excitation:g} V × amplifier "
-        f"{array.readout.gain:g} × gauge factor "
+        f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of {percent(g.scatter)} in K_v. "
+        f"Excitation {array.readout.excitation:g} V × amplifier {array.readout.gain:g} × gauge factor "
         f"{array.gauge.factor:g}/4 gives {sig(g.design_gain)}, {'inside' if inside else 'OUTSIDE'} that "
-        f"interval.",
+        "interval.",
         "What the data identify is gain over hinge length, not the gain: over slot lengths from "
-        f"{g.lengths[0]:.2f} to "
-        f"{g.lengths[-1]:.2f} mm the fitted gain runs from {sig(g.gain_at_length[0])} to "
-        f"{sig(g.gain_at_length[-1])} V in proportion "
-        f"to the effective length (exponent {g.per_length_exponent:.3f}), while the scatter changes by "
+        f"{g.lengths[0]:.2f} to {g.lengths[-1]:.2f} mm the fitted gain runs from "
+        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V in proportion to the effective "
+        f"length that K fixes (exponent {g.per_length_exponent:.3f}), while the scatter changes by "
         f"{percent(change)} of itself.",
         (
             f"Element{'s' if far.sum() > 1 else ''} {listed(f'no. {n}' for n in g.element[far])} "
@@ -58,26 +56,25 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
             "over all of them alike."
         ),
     ]
-    if g.limited.any():
+    if g.signal.limited.any():
         found.append(
             "At the paper's largest deflections the read-out of "
-            f"{listed(f'no. {n}' for n in g.element[g.limited])} "
-            "reaches a supply's or the converter's limit."
+            f"{listed(f'no. {n}' for n in g.element[g.signal.limited])} reaches a supply's or the "
+            "converter's limit."
         )
     found.append(
-        f"The quarter bridge is non-linear by up to {percent(np.abs(g.nonlinearity).max())} at the paper's "
-        f"largest deflections "
-        f"(strains up to {percent(g.strain_at_most.max())}); two standard deviations of the averaged "
-        f"reading are "
-        f"{interval(*(np.array([g.resolution.min(), g.resolution.max()]) * 1e3), 2)} mN, with the noise "
-        f"that the design assumes."
+        f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
+        f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
+        "deviations of the averaged reading are "
+        f"{interval(*(np.array([g.signal.resolution.min(), g.signal.resolution.max()]) * 1e3), 2)} mN, "
+        "with the noise that the design assumes."
     )
     found.append(
         f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at "
         f"{sig(g.always_on.power_density, 2)} kW/m² and reads up to "
         f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, "
-        f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN "
-        f"remain at the end of a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
+        f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN remain at the end of "
+        f"a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
     )
     return tuple(found)
 
@@ -114,8 +111,8 @@ def _heating(g: GainFit, array: ArrayModel) -> Table:
             ("largest", "mN"),
         ),
         rows,
-        "Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest moment. "
-        "The drift is what the reference gauges leave.",
+        "Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
+        "moment. The drift is what the reference gauges leave.",
     )
 
 
@@ -129,10 +126,10 @@ def _by_element(g: GainFit) -> Table:
             Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i],
             signed_percent(np.expm1(g.residual[i])),
             exact(g.measured_per_force[i]),
-            g.signal_per_force[i],
-            g.signal_at_most[i],
-            percent(g.nonlinearity[i]),
-            g.resolution[i] * 1e3,
+            g.signal.per_force[i],
+            g.signal.volts[i],
+            percent(g.signal.nonlinearity[i]),
+            g.signal.resolution[i] * 1e3,
         )
         for i, n in enumerate(g.element)
     )
@@ -152,10 +149,9 @@ def _by_element(g: GainFit) -> Table:
             ("resolution", "mN"),
         ),
         rows,
-        "The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's figure "
-        "would show. The last "
-        "four columns use the design's read-out, not the fitted gain. Resolution: two standard deviations "
-        "of the averaged reading.",
+        "The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's "
+        "figure would show. The last four columns use the design's read-out, not the fitted gain. "
+        "Resolution: two standard deviations of the averaged reading.",
     )
 
 

@@ -16,8 +16,8 @@ def page(six: Figure6, seven: Figure7, array: ArrayModel) -> Section:
     return Section(
         "figures",
         "Figures 6 and 7 redrawn",
-        "R against the grasping force, simulated with all elements in parallel on one sample; and R against "
-        "K_m/K_obj with the measured points.",
+        "R against the grasping force, simulated with all elements in parallel on one sample; and R "
+        "against K_m/K_obj with the measured points.",
         findings(six, seven, array),
         (_table6(six), _table7(seven)),
         (_figure6(six), _figure7(seven)),
@@ -31,28 +31,25 @@ def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]
     noise = float((six.as_supported.deviation / six.as_supported.true[:, None]).max())
     found = [
         f"For the {six.object_stiffness:g} N/mm sample the simulation with K_r = "
-        f"{sig(six.as_supported.reference_stiffness)} N/mm is "
-        f"{percent(_miss(six, six.as_supported))} (rms) from Table 2's R; with the printed "
-        f"{six.as_printed.reference_stiffness:g} it is "
+        f"{sig(six.as_supported.reference_stiffness)} N/mm is {percent(_miss(six, six.as_supported))} "
+        f"(rms) from Table 2's R; with the printed {six.as_printed.reference_stiffness:g} it is "
         f"{percent(_miss(six, six.as_printed))}. "
         + ("The supported one is closer." if better else "The printed one is closer."),
         "R does not depend on the load as long as pads are in one plane: read-out noise moves it by at "
-        f"most {percent(noise)} (one standard "
-        f"deviation, at {six.load[0]:g} N). Pads out of plane by ±{array.tolerance.pad_height * 1e3:g} µm "
-        f"move an R made of totals by {percent(uneven)} "
-        f"there, {'which Figure 6 would show' if uneven > VISIBLE else 'which Figure 6 would hardly show'}; "
-        f"made of slopes, R keeps to "
+        f"most {percent(noise)} (one standard deviation, at {six.load[0]:g} N). Pads out of plane by "
+        f"±{array.tolerance.pad_height * 1e3:g} µm move an R made of totals by {percent(uneven)} there, "
+        f"{'which Figure 6 would show' if uneven > VISIBLE else 'which Figure 6 would hardly show'}; "
+        "made of slopes, R keeps to "
         f"{percent(float(np.abs(six.slopes_with_pad_heights / six.with_pad_heights.true - 1).max()))}.",
         "At the largest load the simulated reference element deflects by "
         f"{sig(six.as_supported.reference_deflection[-1])} µm with the supported and by "
         f"{sig(six.as_printed.reference_deflection[-1])} µm with the printed stiffness (section 7 holds "
-        f"both against the printed range).",
+        "both against the printed range).",
     ]
     found.append(
         f"The paper's six straight lines of R over K_m/K_obj leave {sig(seven.line_rms)} (rms of R) with "
-        f"{seven.line_parameters} parameters; equation "
-        f"(2) leaves {sig(seven.model_rms)} with {seven.model_parameters}, and bends: R levels off at "
-        f"K_r/K_m. "
+        f"{seven.line_parameters} parameters; equation (2) leaves {sig(seven.model_rms)} with "
+        f"{seven.model_parameters}, and bends: R levels off at K_r/K_m. "
         + (
             "The points scatter too much to tell which is right."
             if seven.p_lines > 0.01
@@ -96,8 +93,8 @@ def _table6(six: Figure6) -> Table:
             ("the same", f"{six.load[-1]:.4g} N"),
         ),
         rows,
-        "s: standard deviation over simulated grasps. The element that did not function presses too: its "
-        "stiffness is the beam model's.",
+        "s: standard deviation over simulated grasps. The element that did not function presses too: "
+        "its stiffness is the beam model's.",
     )
 
 
@@ -159,9 +156,9 @@ def _figure6(six: Figure6) -> Figure:
         return Figure(
             "figure-6",
             d.svg(figure, "figure-6"),
-            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, bars "
-            f"of two standard deviations over "
-            "many. Open symbols at the right edge: Table 2's measured R.",
+            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, "
+            "bars of two standard deviations over many. Open symbols at the right edge: Table 2's "
+            "measured R.",
         )
 
 
@@ -196,6 +193,6 @@ def _figure7(seven: Figure7) -> Figure:
         return Figure(
             "figure-7",
             d.svg(figure, "figure-7"),
-            "Figure 7 again: measured R (symbols) and equation (2) (lines), with the printed and with the "
-            "supported reference stiffness.",
+            "Figure 7 again: measured R (symbols) and equation (2) (lines), with the printed and with "
+            "the supported reference stiffness.",
         )

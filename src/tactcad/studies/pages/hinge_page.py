@@ -14,21 +14,12 @@ def page(h: HingeFit, array: ArrayModel) -> Section:
     return Section(
         "hinge",
         "Which hinge fits Table 1 and the two strains",
-        "The paper gives the hinge's thickness, not its length, fillet radius or notch form. What do its "
-        "data say about them?",
+        "The paper gives the hinge's thickness, not its length, fillet radius or notch form. What do "
+        "its data say about them?",
         findings(h),
         (_forms(h), _strains(h, array), _left_out(h)),
         (_map(h),),
         h,
-    )
-
-
-def origin(h: HingeFit) -> str:
-    """One line for the design file: the fitted slot length with its interval."""
-    own = h.own
-    return (
-        f"fit of Table 1, {own.name}, at r = {h.design_radius:g} mm: {own.design_length:.2f} mm, "
-        f"95 % interval {own.design_low:.2f} to {own.design_high:.2f} mm (tactcad validate, section 2)"
     )
 
 
@@ -37,16 +28,13 @@ def findings(h: HingeFit) -> tuple[str, ...]:
     inside = own.design_low <= h.design_length <= own.design_high
     found = [
         f"At the design's fillet radius {h.design_radius:g} mm, t as the paper gives it, the {own.name} "
-        f"hinge that fits best is "
-        f"{own.design_length:.2f} mm long, 95 % interval {own.design_low:.2f} to {own.design_high:.2f} mm. "
-        f"The design's "
-        f"{h.design_length:g} mm lies {'inside' if inside else 'OUTSIDE'} it.",
-        f"Length and fillet radius cannot be told apart: along the valley from r = {_valley(h)[0]:.2f} to "
-        f"{_valley(h)[1]:.2f} mm "
-        f"the scatter stays within {percent(_valley(h)[2])} of its least. What K does fix is one effective "
-        f"length, "
-        f"E b t³/(12 K L²) = {sig(own.effective_length)} mm, and that only within "
-        f"{percent(own.effective_spread / 2)} either way.",
+        f"hinge that fits best is {own.design_length:.2f} mm long, 95 % interval {own.design_low:.2f} to "
+        f"{own.design_high:.2f} mm. The design's {h.design_length:g} mm lies "
+        f"{'inside' if inside else 'OUTSIDE'} it.",
+        f"Length and fillet radius cannot be told apart: along the valley from r = {_valley(h)[0]:.2f} "
+        f"to {_valley(h)[1]:.2f} mm the scatter stays within {percent(_valley(h)[2])} of its least. What "
+        f"K does fix is one effective length, E b t³/(12 K L²) = {sig(own.effective_length)} mm, and "
+        f"that only within {percent(own.effective_spread / 2)} either way.",
         (
             f"One-sided and two-sided notches fit equally well (ratio of square sums {h.f_ratio:.3f}; "
             f"only above {sig(h.f_limit)} would they differ): Table 1 does not tell the notch form."
@@ -62,8 +50,7 @@ def findings(h: HingeFit) -> tuple[str, ...]:
     within = own.design_low <= h.leave_out[moved] <= own.design_high
     found.append(
         f"No single element decides the length: without no. {moved} it moves most, by "
-        f"{signed_percent(change)}, "
-        f"{'inside' if within else 'to outside'} the interval."
+        f"{signed_percent(change)}, {'inside' if within else 'to outside'} the interval."
         if within
         else f"One element decides the length: without no. {moved} it moves by {signed_percent(change)}, "
         f"out of the interval."
@@ -76,7 +63,7 @@ def _load_point(h: HingeFit) -> str:
     centre = abs(s.offset - s.pad_half) <= max(0.02 * s.pad_half, s.offset_half)
     return (
         f"The two printed strains put the load {s.offset:.3f} ± {s.offset_half:.3f} mm from the tip "
-        f"(rounding of the print), "
+        "(rounding of the print), "
         + (
             f"which is the pad's centre ({s.pad_half:g} mm): L = a − {s.pad_half:g} mm."
             if centre
@@ -97,8 +84,8 @@ def _strain_form(h: HingeFit) -> str:
     if len(fits) == len(h.forms):
         return f"That factor fits {ranges}, within {own}: the strains do not tell the notch form either."
     return (
-        f"That factor fits {ranges}, within {own}; the other form does not: the only hint at the notch form "
-        "in the paper."
+        f"That factor fits {ranges}, within {own}; the other form does not: the only hint at the notch "
+        "form in the paper."
     )
 
 
@@ -110,6 +97,7 @@ def _valley(h: HingeFit) -> tuple[float, float, float]:
 
 
 def _forms(h: HingeFit) -> Table:
+    own = h.own
     rows = tuple(
         (
             f.name,
@@ -135,8 +123,10 @@ def _forms(h: HingeFit) -> Table:
         ),
         rows,
         "Least squares of ln K over l and r by the solid rung. Only length, radius and form, which the "
-        "paper omits, may be taken "
-        "into a design from here; thicknesses of single elements belong to this report.",
+        "paper omits, may be taken into a design from here, with their interval as the origin: l "
+        f"{own.design_length:.2f} mm ({own.design_low:.2f} to {own.design_high:.2f}) at r "
+        f"{h.design_radius:g} mm, {own.name}, by fit of Table 1. Thicknesses of single elements belong "
+        "to this report.",
     )
 
 
@@ -217,6 +207,5 @@ def _map(h: HingeFit) -> Figure:
             "hinge-map",
             d.svg(figure, "hinge-map"),
             "Scatter of ln K over slot length and fillet radius. Red: joint 95 % region; dashed: best "
-            "length at each radius; "
-            "dotted: full round, l = 2r.",
+            "length at each radius; dotted: full round, l = 2r.",
         )

@@ -36,11 +36,10 @@ def findings(v: Inversion) -> tuple[str, ...]:
     rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
     n = x.size * len(v.measuring)
     found = [
-        f"With the printed K_r = {v.printed.reference:g} N/mm {right['printed'].sum()} of {n} readings give "
-        f"a K_obj within a factor {FACTOR:g} of the sample's, "
-        f"with K_r = {sig(v.supported.reference)} N/mm {right['supported'].sum()}; the median is "
-        f"{sig(_median(v.printed, x))} and "
-        f"{sig(_median(v.supported, x))} times the sample's.",
+        f"With the printed K_r = {v.printed.reference:g} N/mm {right['printed'].sum()} of {n} readings "
+        f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
+        f"{sig(v.supported.reference)} N/mm {right['supported'].sum()}; the median is "
+        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's.",
         f"With the supported K_r {lost.sum()} readings give no positive K_obj at all"
         + (f" (K_m = {', '.join(rows_lost)} N/mm)." if lost.any() else ".")
         + f" The 95 % interval (R scatters by {percent(v.ratio_error)}) holds the sample's K_obj for "
@@ -51,9 +50,8 @@ def findings(v: Inversion) -> tuple[str, ...]:
         inside, outside = (_typical(error, m) for m in (well, ~well))
         found.append(
             f"The condition number says so beforehand: below {WELL:g} ({well.sum()} pairs) the typical "
-            f"error is {inside}, above it {outside}; rank "
-            f"correlation of condition number and error {v.rank_correlation:.2f}. Least is "
-            f"{sig(np.abs(v.supported.condition).min())}, so that "
+            f"error is {inside}, above it {outside}; rank correlation of condition number and error "
+            f"{v.rank_correlation:.2f}. Least is {sig(np.abs(v.supported.condition).min())}, so that "
             f"{percent(v.ratio_error)} in R are at best "
             f"{percent(v.ratio_error * np.abs(v.supported.condition).min())} in K_obj."
         )
@@ -100,8 +98,8 @@ def _table(v: Inversion, w: Inverted) -> Table:
         f"K_obj by equation (3) with K_r = {sig(w.reference)} N/mm, 95 % intervals by Fieller",
         (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
         tuple(rows),
-        f"Marked: not within a factor {FACTOR:g}. open: the interval runs through infinity. condition: dln "
-        f"K_obj/dln R at the sample's K_obj.",
+        f"Marked: not within a factor {FACTOR:g}. open: the interval runs through infinity. condition: "
+        "dln K_obj/dln R at the sample's K_obj.",
     )
 
 
@@ -202,6 +200,6 @@ def _plot(v: Inversion) -> Figure:
         return Figure(
             "inversion",
             d.svg(figure, "inversion"),
-            "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that runs "
-            "through infinity.",
+            "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that "
+            "runs through infinity.",
         )

@@ -38,8 +38,8 @@ def _ranges_said(e: ReferenceElement) -> str:
     factor = e.printed_k_v / high if e.printed_k_v > high else low / e.printed_k_v
     return (
         head + f"Table 1 has {e.printed_k_v:g}, at least {sig(factor)} times "
-        f"{'more' if e.printed_k_v > high else 'less'}. With that K_v the "
-        f"signals would mean {interval(*e.deflection_from_signal)} µm."
+        f"{'more' if e.printed_k_v > high else 'less'}. With that K_v the signals would mean "
+        f"{interval(*e.deflection_from_signal)} µm."
     )
 
 
@@ -56,8 +56,8 @@ ACCOUNTS = {
     ),
     "deflection scale of the reference element off": (
         "with its deflection scale off",
-        "Then its K and K_v in Table 1 may stand, and its deflections behind Table 2, hence every R, are "
-        "wrong by one factor.",
+        "Then its K and K_v in Table 1 may stand, and its deflections behind Table 2, hence every R, "
+        "are wrong by one factor.",
     ),
 }
 
@@ -71,9 +71,9 @@ def _loads(e: ReferenceElement) -> str:
     )
     text = (
         "At the grasping force that the softest element's largest deflection fixes (about "
-        f"{sig(first.load, 2)} N, or {first.weights:.0f} added weights, which "
-        f"the paper does not count) the reference element would show: {said}. Printed are "
-        f"{_printed(e.deflection)} µm and {_printed(e.signal)} V. "
+        f"{sig(first.load, 2)} N, or {first.weights:.0f} added weights, which the paper does not count) "
+        f"the reference element would show: {said}. Printed are {_printed(e.deflection)} µm and "
+        f"{_printed(e.signal)} V. "
     )
     both = [r.name for r in e.readings if r.deflection_agrees and r.signal_agrees]
     if len(both) == 1:
@@ -96,15 +96,14 @@ def _explained(e: ReferenceElement) -> list[str]:
     open_ = [x for x in e.explanations if x not in telling]
     ratio = e.stiffness / e.nominal_stiffness
     found = [
-        f"No. {e.element}'s K is {sig(ratio)} times the beam model's {sig(e.nominal_stiffness)} N/mm. "
-        f"By K_v, "
+        f"No. {e.element}'s K is {sig(ratio)} times the beam model's {sig(e.nominal_stiffness)} N/mm. By "
+        "K_v, "
         + listed(f"{x.name} ({_size(x)}) predicts {sig(x.signal_per_deflection)}" for x in e.explanations)
         + f" V/mm, where {e.printed_k_v:g} is printed. K_v of single elements scatters by "
         f"{percent(e.scatter)}: "
         + (
             f"{listed(x.name for x in telling)} {'are' if len(telling) > 1 else 'is'} unlikely (over two "
-            f"standard deviations off), "
-            f"{listed(x.name for x in open_)} cannot be told apart."
+            f"standard deviations off), {listed(x.name for x in open_)} cannot be told apart."
             if telling
             else "none can be ruled out."
         ),
@@ -144,8 +143,7 @@ def _ranges(e: ReferenceElement) -> Table:
         (("", ""), ("least", ""), ("largest", "")),
         rows,
         f"For the softest element the text's largest signal and deflection imply {sig(e.softest_k_v[0])} "
-        f"V/mm, where Table 1 has "
-        f"{sig(e.softest_k_v[1])}.",
+        f"V/mm, where Table 1 has {sig(e.softest_k_v[1])}.",
     )
 
 
@@ -174,8 +172,7 @@ def _accounts(e: ReferenceElement) -> Table:
         ),
         rows,
         "All elements in parallel on one sample, range over Table 2's samples; printed: "
-        f"{_printed(e.deflection)} µm, {_printed(e.signal)} V. "
-        "Marked: no overlap with the printed range.",
+        f"{_printed(e.deflection)} µm, {_printed(e.signal)} V. Marked: no overlap with the printed range.",
     )
 
 
@@ -210,9 +207,9 @@ def _explanations(e: ReferenceElement) -> Table:
             ("printed is off by", ""),
         ),
         rows,
-        f"With the gain of the other elements ({sig(e.gain)} V per strain, scatter {percent(e.scatter)}). "
-        f"Marked: over two standard deviations. K_v/K "
-        "adds nothing to K_v here, since every explanation gives the printed K.",
+        f"With the gain of the other elements ({sig(e.gain)} V per strain, scatter "
+        f"{percent(e.scatter)}). Marked: over two standard deviations. K_v/K adds nothing to K_v here, "
+        "since every explanation gives the printed K.",
     )
 
 
@@ -253,7 +250,7 @@ def _plot(e: ReferenceElement) -> Figure:
         ax.set_xlim(0)
         ax.set_xlabel(
             f"K_v of no. {e.element}, V/mm (bars: two standard deviations; blue: possible within the "
-            f"geometry)"
+            "geometry)"
         )
         return Figure(
             "reference-element",

@@ -28,8 +28,8 @@ def page(r: Residuals, array: ArrayModel) -> Section:
     return Section(
         "stiffness",
         "Table 1: stiffness, predicted and calibrated",
-        "Does the beam model explain the measured stiffnesses, and what would have to be different where it "
-        "does not?",
+        "Does the beam model explain the measured stiffnesses, and what would have to be different "
+        "where it does not?",
         found,
         (_rungs(r), _explained(r, array)),
         (_bands(r), _needed(r)),
@@ -50,8 +50,8 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     )
     found = [
         f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
-        f"{percent(r.scatter)} "
-        f"(standard deviation of ln K), whichever rung is used: the model's own error is far below that.",
+        f"{percent(r.scatter)} (standard deviation of ln K), whichever rung is used: the model's own "
+        "error is far below that.",
         f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
         + _cause(r, worst, array)
         + ".",
@@ -59,8 +59,7 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     if out_cut.any():
         found.append(
             f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
-            f"that cutting and "
-            f"clamping tolerances leave. With the contact anywhere on the pad, "
+            "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
             + (
                 f"still outside: {listed(f'no. {n}' for n in e[out_pad])}."
                 if out_pad.any()
@@ -120,8 +119,7 @@ def _equal_arms(r: Residuals) -> list[str]:
         return []
     return [
         f"Nominally equal elements differ by up to {sig(best)} (nos. {pair[0]} and {pair[1]}): no model "
-        f"that knows "
-        "only the arm length can fit both."
+        "that knows only the arm length can fit both."
     ]
 
 
@@ -150,10 +148,9 @@ def _rungs(r: Residuals) -> Table:
         "Stiffness by every rung of the model ladder",
         columns,
         (*rows, mean, scatter),
-        "Last two rows: mean and standard deviation of ln(measured/predicted). The rungs 'short', 'beam' "
-        "and 'section' "
-        "leave out physics; that they lie nearer to or further from Table 1 is no merit or fault of theirs "
-        "at this scatter.",
+        "Last two rows: mean and standard deviation of ln(measured/predicted). The rungs 'short', "
+        "'beam' and 'section' leave out physics; that they lie nearer to or further from Table 1 is no "
+        "merit or fault of theirs at this scatter.",
     )
 
 
@@ -189,9 +186,9 @@ def _explained(r: Residuals, array: ArrayModel) -> Table:
             ("load point change", "mm"),
         ),
         tuple(rows),
-        f"95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on the "
-        f"{array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, or off "
-        f"the pad.",
+        "95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on "
+        f"the {array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, "
+        "or off the pad.",
     )
 
 
@@ -251,8 +248,8 @@ def _bands(r: Residuals) -> Figure:
         return Figure(
             "stiffness-bands",
             d.svg(figure, "stiffness-bands"),
-            "Measured stiffness against the prediction and the spread to be expected, elements by "
-            "arm length.",
+            "Measured stiffness against the prediction and the spread to be expected, elements by arm "
+            "length.",
         )
 
 

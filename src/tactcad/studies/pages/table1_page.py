@@ -63,10 +63,9 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
             "one of the three is misprinted",
         ),
         f"With {cell:g} N/mm in series, the printed deflections and forces add up to travels of "
-        f"{interval(s.travel.min(), s.travel.max(), 4)} "
-        f"µm, not {travel:g}. Deflection against force over all elements is a line of "
-        f"{sig(s.line_stiffness)} N/mm in series "
-        f"(95 % {interval(s.line_low, s.line_high)}) from a travel of {s.line_travel:.0f} ± "
+        f"{interval(s.travel.min(), s.travel.max(), 4)} µm, not {travel:g}. Deflection against force over "
+        f"all elements is a line of {sig(s.line_stiffness)} N/mm in series (95 % "
+        f"{interval(s.line_low, s.line_high)}) from a travel of {s.line_travel:.0f} ± "
         f"{s.line_travel_half:.0f} µm: "
         + (
             "the printed load cell is compatible with that."
@@ -83,8 +82,8 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
     if early.any():
         found.append(
             f"Nos. {listed(c.element[early])} come nearest to a travel of "
-            f"{listed(sorted({f'{v:g}' for v in s.nearest_step[early]}))} µm, "
-            f"a whole number of {step:g} µm steps below {travel:g}: they may have been stopped early"
+            f"{listed(sorted({f'{v:g}' for v in s.nearest_step[early]}))} µm, a whole number of {step:g} "
+            f"µm steps below {travel:g}: they may have been stopped early"
             + (
                 f", as no. {_over(c, data)} had to be, which at full travel would pass the force sensor's "
                 f"{data.figure['load_cell_range']:g} N."
@@ -111,8 +110,7 @@ def _product(name: str, against: str, p: Product, element: np.ndarray, reason: s
     sign = "All are low: " if (p.difference[beyond] < 0).all() and beyond.sum() > 1 else ""
     return (
         f"{name} differs from {against} by more than rounding for {beyond.sum()} of {len(element)} "
-        f"elements, most for no. "
-        f"{element[worst]} ({signed_percent(p.difference[worst])}). "
+        f"elements, most for no. {element[worst]} ({signed_percent(p.difference[worst])}). "
         f"{sign}{reason[0].upper() + reason[1:] if not sign else reason}."
     )
 

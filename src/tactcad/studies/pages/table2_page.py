@@ -103,7 +103,7 @@ def _implied(s: Table2Study) -> str:
         return "The printed K_m/K_obj and the header's K_obj agree within rounding."
     return (
         f"The printed K_m/K_obj imply another K_obj than the header for {beyond.sum()} of {len(off)} "
-        f"samples, in every row alike: "
+        "samples, in every row alike: "
         + listed(
             f"{sig(a)} instead of {b:g}" for a, b in zip(s.object_implied[beyond], s.object_printed[beyond])
         )
@@ -117,14 +117,12 @@ def _equation(s: Table2Study) -> str:
     if abs(f.bias) < 0.1:
         return (
             "Equation (2) with the printed stiffnesses agrees with the measured R: mean "
-            f"{signed_percent(np.exp(f.bias) - 1)}, "
-            f"scatter {percent(f.rms)}."
+            f"{signed_percent(np.exp(f.bias) - 1)}, scatter {percent(f.rms)}."
         )
     way = "too large" if ratio > 1 else "too small"
     return (
         f"Equation (2) with the printed stiffnesses gives an R that is {way} by a factor "
-        f"{sig(max(ratio, 1 / ratio))} on average "
-        f"(from {sig((s.ratio_printed_model / s.ratio).min())} to "
+        f"{sig(max(ratio, 1 / ratio))} on average (from {sig((s.ratio_printed_model / s.ratio).min())} to "
         f"{sig((s.ratio_printed_model / s.ratio).max())} times the measured one)."
     )
 
@@ -136,14 +134,13 @@ def _supported(s: Table2Study) -> list[str]:
     head = (
         f"With only K_r free, Table 2 supports K_r = {sig(K)} N/mm (95 % {interval(f.low[0], f.high[0])}), "
         + (
-            f"{sig(max(printed / K, K / printed))} times {'below' if K < printed else 'above'} the printed "
-            f"{printed:g}, which lies far outside the interval"
+            f"{sig(max(printed / K, K / printed))} times {'below' if K < printed else 'above'} the "
+            f"printed {printed:g}, which lies far outside the interval"
             if outside
             else f"which agrees with the printed {printed:g}"
         )
         + f"; ln R then scatters by {percent(f.rms)} instead of {percent(s.fit('as printed').rms)}. Without "
-        f"the stiffest pair: "
-        f"{sig(rest.value[0])} ({interval(rest.low[0], rest.high[0])})."
+        f"the stiffest pair: {sig(rest.value[0])} ({interval(rest.low[0], rest.high[0])})."
     )
     stiffest = int(np.argmax(s.measuring))
     R = s.ratio[stiffest]
@@ -151,10 +148,9 @@ def _supported(s: Table2Study) -> list[str]:
     if outside and K < printed and near.sum() >= len(R) / 2:
         return [
             head,
-            f"The plainest sign stands in the first row: against K_m = {s.measuring[stiffest]:g} N/mm, R is "
-            f"near 1 for {near.sum()} of "
-            f"{len(R)} samples ({interval(R.min(), R.max())}). R near 1 means equal stiffness, whatever "
-            f"the object.",
+            f"The plainest sign stands in the first row: against K_m = {s.measuring[stiffest]:g} N/mm, R "
+            f"is near 1 for {near.sum()} of {len(R)} samples ({interval(R.min(), R.max())}). R near 1 "
+            "means equal stiffness, whatever the object.",
         ]
     return [head]
 
@@ -168,9 +164,8 @@ def _alternatives(s: Table2Study) -> str:
     if alike:
         text = (
             f"{listed(f'{_said(f)} (scatter {percent(f.rms)})' for f in alike)} fits as well as a K_r of "
-            f"{sig(base.value[0])} "
-            f"({percent(base.rms)}): Table 2 alone cannot tell a softer reference element from a wrong "
-            f"scale of its deflection. "
+            f"{sig(base.value[0])} ({percent(base.rms)}): Table 2 alone cannot tell a softer reference "
+            "element from a wrong scale of its deflection. "
         )
     if worse:
         text += f"{listed(f'{_said(f)} (scatter {percent(f.rms)})' for f in worse)} fits worse. "
@@ -197,8 +192,8 @@ def _left_over(s: Table2Study) -> str:
         return "What is left over does not run with the sample's stiffness."
     return (
         "What is left over runs with the sample: measured R over equation (2) goes from "
-        f"{sig(by_sample[stiff])} on the stiffest to "
-        f"{sig(by_sample[soft])} on the softest. The lumped pair has no term for that."
+        f"{sig(by_sample[stiff])} on the stiffest to {sig(by_sample[soft])} on the softest. The lumped "
+        "pair has no term for that."
     )
 
 
@@ -244,15 +239,14 @@ def _consequences(s: Table2Study, data: Published) -> list[str]:
     top, top_high = own.max(), f.high[0] / s.measuring.min()
     text = (
         "What follows if the reference element is the cause: the paper's K_r/K_m of "
-        f"{interval(printed.min(), printed.max())} are really "
-        f"{interval(own.min(), own.max())}. "
+        f"{interval(printed.min(), printed.max())} are really {interval(own.min(), own.max())}. "
     )
     text += (
         f"The advice that K_r/K_m be about {proposed:g} rests on the pair printed as "
         f"{sig(printed[nearest])}, which is {sig(own[nearest])}; "
         + (
             f"no pair reached {proposed:g} (at most {sig(top)}, by the interval {sig(top_high)}), so the "
-            f"experiment says nothing about it."
+            "experiment says nothing about it."
             if top_high < proposed
             else f"the largest that was reached is {sig(top)}."
         )
@@ -260,9 +254,8 @@ def _consequences(s: Table2Study, data: Published) -> list[str]:
     factor = s.fit("R times a factor")
     other = (
         "If instead the deflection scale of the reference element is the cause (R off by "
-        f"{sig(factor.value[0])}), the paper's K_r/K_m stand, "
-        "but its R are not ratios of deflections, and equation (3) needs R divided by that factor. Either "
-        "way the printed R and the printed "
+        f"{sig(factor.value[0])}), the paper's K_r/K_m stand, but its R are not ratios of deflections, "
+        "and equation (3) needs R divided by that factor. Either way the printed R and the printed "
         "stiffnesses do not belong together."
     )
     return [text, other]
@@ -313,8 +306,8 @@ def _models(s: Table2Study) -> Table:
             ("scatter of ln R", ""),
         ),
         tuple(rows),
-        "Least squares of ln R. Intervals by a two-way jackknife over elements and samples, whose readings "
-        "are not independent.",
+        "Least squares of ln R. Intervals by a two-way jackknife over elements and samples, whose "
+        "readings are not independent.",
     )
 
 
@@ -391,9 +384,8 @@ def _ratio_plot(s: Table2Study) -> Figure:
         return Figure(
             "table2-ratio",
             d.svg(figure, "table2-ratio"),
-            "Measured R against equation (2): with the printed reference stiffness, and with the one that "
-            "Table 2 supports. "
-            "On the line they agree.",
+            "Measured R against equation (2): with the printed reference stiffness, and with the one "
+            "that Table 2 supports. On the line they agree.",
         )
 
 
@@ -427,6 +419,6 @@ def _forest(s: Table2Study, who: tuple[Witness, ...]) -> Figure:
         return Figure(
             "reference-stiffness",
             d.svg(figure, "reference-stiffness"),
-            "Every witness for the reference element's stiffness. Shaded: what Table 2 supports; dashed: "
-            "what Table 1 prints.",
+            "Every witness for the reference element's stiffness. Shaded: what Table 2 supports; "
+            "dashed: what Table 1 prints.",
         )
