@@ -30,6 +30,7 @@ from .shape import Block, HingeShape
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
+SLIVER = 1e-5  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
@@ -83,7 +84,7 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
     """The same as scikit-fem's mesh."""
     corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
     points, cells = _merged(corners)
-    linear = MeshQuad(points.T, cells.T)
+    linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
     dofs = Dofs(linear, ElementQuad2())
     nodes = np.empty((2, dofs.N))
     for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
@@ -92,29 +93,32 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
 
 
 def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
-    """The plane mesh swept over half the width, from the mid-plane y = 0 to the free side; axes x, z, y.
-
-    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
-    """
-    first = SIDE_LAYER * mesh.shape.thickness
-    y = half_width * (1.0 - _graded(half_width, first, density)[::-1])
-    layers = len(y) // 2
-    n = len(mesh.cells)
-    cells = np.empty((layers, n, 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
-    cells[..., :2] = mesh.cells[None, :, :, :, None]
-    for k in range(layers):
-        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
-    cells = cells.reshape(-1, 3, 3, 3, 3)
+    """The plane mesh swept over half the width as scikit-fem's mesh; axes x, z, y."""
+    cells = swept(mesh, half_width, density)
     element = ElementHex2()
     places = np.rint(2 * element.doflocs).astype(int)
     corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
     points, index = _merged(corners)
-    linear = MeshHex(points.T, index.T)
+    linear = MeshHex(np.ascontiguousarray(points.T), np.ascontiguousarray(index.T))
     dofs = Dofs(linear, element)
     nodes = np.empty((3, dofs.N))
     for local, (u, v, w) in enumerate(places):
         nodes[:, dofs.element_dofs[local]] = cells[:, u, v, w].T
     return MeshHex2(nodes, linear.t)
+
+
+def swept(mesh: PlaneMesh, half_width: float, density: int) -> NDArray[np.float64]:
+    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index, from y = 0 to the free side.
+
+    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    """
+    y = half_width * (1.0 - _graded(half_width, SIDE_LAYER * mesh.shape.thickness, density)[::-1])
+    layers = len(y) // 2
+    cells = np.empty((layers, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(layers):
+        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
+    return cells.reshape(-1, 3, 3, 3, 3)
 
 
 def _merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -142,13 +146,17 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
     column = COLUMN * shape.thickness
-    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, column, density)]
-    for block, fillet in fillets:
+    # a straight part shorter than rounding of coordinates would be a sliver: the fillets meet instead
+    straight = [abs(f.wall - centre) - f.radius for _, f in fillets]
+    straight = [length if length > SLIVER * shape.thickness else 0.0 for length in straight]
+    grids = [_strip(*straight, sign * strip_height, column, density)] if sum(straight) > 0.0 else []
+    for (block, fillet), length in zip(fillets, straight):
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
         direction = 1.0 if block is shape.arm else -1.0
         root = _Root(
-            strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
+            strip_height=sign * strip_height, radius=abs(fillet.wall - centre) - length,
+            wall=abs(fillet.wall - centre),
             end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
         )
         grids += [grid * (direction, 1.0) for grid in root.grids(density)]
@@ -157,11 +165,8 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
 
 
 def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
-    """The hinge between the fillets' ends, x from -to_body to to_arm; without elements where they meet."""
-    length = to_arm + to_body
-    if length <= 1e-9:
-        return np.empty((1, 1, 2))
-    columns = max(1, ceil(length / column)) * density
+    """The hinge between the fillets' ends, x from -to_body to to_arm."""
+    columns = _count((to_arm + to_body) / column) * density
     x = np.linspace(-to_body, to_arm, 2 * columns + 1)
     z = np.linspace(0.0, height, 2 * ROWS * density + 1)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
@@ -191,7 +196,7 @@ class _Root:
         ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
 
         strip_end = self.wall - self.radius
-        columns = max(MOUTH, ceil(pi / 2.0 * self.radius / self.column)) * density
+        columns = max(MOUTH, _count(pi / 2.0 * self.radius / self.column)) * density
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
         arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
@@ -212,11 +217,11 @@ class _Root:
         grids += [_coons(foot, diagonal, ring[: rows + 1], right), _coons(diagonal, wall, ring[rows:], top)]
 
         if reach > side_x * (1.0 + 1e-12):
-            columns = max(1, ceil((reach - side_x) / side_z)) * density
+            columns = _count((reach - side_x) / side_z) * density
             x = np.linspace(self.wall + side_x, self.end, 2 * columns + 1)
             grids.append(np.stack(np.meshgrid(x, right[:, 1], indexing="ij"), axis=-1))
         if self.height > side_z * (1.0 + 1e-12):
-            tall = max(1, ceil((self.height - side_z) / side_x)) * density
+            tall = _count((self.height - side_z) / side_x) * density
             z = np.linspace(side_z, self.height, 2 * tall + 1)
             grids.append(np.stack(np.meshgrid(top[::-1, 0], z, indexing="ij"), axis=-1))
             if reach > side_x * (1.0 + 1e-12):
@@ -237,6 +242,11 @@ class _Root:
         return reach, tall
 
 
+def _count(lengths: float) -> int:
+    """Elements for that many element lengths, the same however the last digits were rounded."""
+    return max(1, ceil(lengths - 1e-6))
+
+
 def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
     start, end = np.asarray(start), np.asarray(end)
     return start + u[:, None] * (end - start)
@@ -244,7 +254,7 @@ def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
     """0 to 1 in steps that grow geometrically from about step/length."""
-    rings = max(1, round(log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
+    rings = max(1, round(1e-9 + log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
     rate = rings * log(GROWTH)
     return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
 
@@ -268,6 +278,5 @@ def _share(edge: Grid) -> NDArray[np.float64]:
 
 def _cells(grid: Grid) -> NDArray[np.float64]:
     """(n, 3, 3, 2) elements of a block's node grid."""
-    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2] \
-        if min(grid.shape[:2]) >= 3 else np.empty((0, 0, 2, 3, 3))
+    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2]
     return np.moveaxis(windows.reshape(-1, 2, 3, 3), 1, -1)

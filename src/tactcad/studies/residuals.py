@@ -111,30 +111,32 @@ def residuals(
 
 
 def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
-    """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own;
-    NaN if none.
+    """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
+
+    NaN where none does. A scan brackets the value nearest to the dimension's own, secant steps on ln K against
+    its logarithm, which is nearly straight, then find it.
     """
-    own = np.broadcast_to(getattr(s, name), s.shape)
+    own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
     factor = np.geomspace(least, most, 400)
-    grid = ladder.evaluate(_one_each(s, len(factor)).with_(**{name: np.outer(factor, own)}), rung).stiffness
-    found = np.full(s.shape, np.nan)
+    found = np.full(own.shape, np.nan)
     for i in range(len(own)):
-        side = np.sign(grid[:, i] - K[i])
-        cross = np.flatnonzero(side[:-1] * side[1:] <= 0)
+        one = s.rows([i])
+
+        def misfit(log_factor: np.ndarray, i: int = i, one: HingeSection = one) -> np.ndarray:
+            trial = one.with_(**{name: own[i] * np.exp(np.atleast_1d(log_factor))})
+            return np.log(ladder.evaluate(trial, rung).stiffness / K[i])
+
+        scan = misfit(np.log(factor))
+        cross = np.flatnonzero(np.sign(scan[:-1]) * np.sign(scan[1:]) <= 0)
         if not len(cross):
             continue
         j = cross[np.argmin(np.abs(np.log(factor[cross])))]
-        x, y = np.log(factor[j : j + 2]), np.log(grid[j : j + 2, i] / K[i])
-        a, b = x - 0.0, y
-        root = a[0] - b[0] * (a[1] - a[0]) / (b[1] - b[0])
-        for _ in range(4):  # secant steps on ln K against ln of the dimension, which is nearly straight
-            value = np.log(
-                ladder.evaluate(s.rows([i]).with_(**{name: own[i] * np.exp(root)}), rung).stiffness[0] / K[i]
-            )
-            slope = (b[1] - b[0]) / (a[1] - a[0])
-            root -= value / slope
+        slope = (scan[j + 1] - scan[j]) / np.log(factor[j + 1] / factor[j])
+        root = np.log(factor[j]) - scan[j] / slope
+        for _ in range(4):
+            root -= misfit(root)[0] / slope
         found[i] = own[i] * np.exp(root)
-    return found
+    return found.reshape(s.shape)
 
 
 def spread(
