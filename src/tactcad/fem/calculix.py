@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .elasticity import line_load
-from .mesh import PlaneMesh, swept
+from .mesh import PlaneMesh, merged, swept
 from .plane import parabola
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ def executable() -> str | None:
 
 def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
     """Input file of the plane-stress problem, unit force per THIN width; returns the nodal forces (nodes, 2)."""
-    points, cells = _numbered(np.stack([mesh.cells[:, u, v] for u, v in _QUAD], axis=1))
+    points, cells = merged(np.stack([mesh.cells[:, u, v] for u, v in _QUAD], axis=1))
     cells = _turned(points, cells, [0, 3, 2, 1, 7, 6, 5, 4])
     force = np.zeros_like(points)
     end = _on(points[:, 0], mesh.load_x)
@@ -48,7 +48,7 @@ def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
 def write_solid(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, path: Path) -> Array:
     """Input file of the solid problem on half the width with 20-node bricks; returns the nodal forces (nodes, 3)."""
     bricks = swept(mesh, width / 2.0, across)
-    points, cells = _numbered(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
+    points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
     flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
     cells = _turned(points, cells, flipped)
     force = np.zeros_like(points)
@@ -75,14 +75,6 @@ def solid_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, across: 
     """Tip stiffness by CalculiX's C3D20, N/mm."""
     force = write_solid(mesh, E, nu, width, across, folder / "solid.inp")
     return 1.0 / ((4.0 if mesh.half else 2.0) * run(folder / "solid.inp", force))
-
-
-def _numbered(nodes: Array) -> tuple[Array, NDArray[np.int64]]:
-    flat = nodes.reshape(-1, nodes.shape[-1])
-    step = 1e-7 * np.ptp(flat, axis=0).max()
-    keys = np.rint(flat / step + 0.37).astype(np.int64)
-    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    return flat[first], index.reshape(nodes.shape[:2])
 
 
 def _turned(points: Array, cells: NDArray[np.int64], flipped: list[int]) -> NDArray[np.int64]:

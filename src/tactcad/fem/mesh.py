@@ -14,11 +14,13 @@ and rings grow outwards to the block's rectangle::
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from skfem import ElementHex2, ElementQuad2, MeshHex2, MeshQuad2
 from skfem.assembly.dofs import Dofs
 from skfem.mesh import MeshHex, MeshQuad
@@ -30,7 +32,8 @@ from .shape import Block, HingeShape
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
-SLIVER = 1e-5  # straight parts of the hinge shorter than this times its thickness are none
+SAME_POINT = 1e-10  # of the mesh's size: rounding, far below any element
+SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
@@ -65,6 +68,7 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
     A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
     slots from both faces differ in length or radius.
     """
+    shape = _without_slivers(shape)
     if not shape.two_sided:
         cells = _half(shape, shape.low, upper=True, density=density)
         return PlaneMesh(cells, shape, False, shape.low)
@@ -83,7 +87,7 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
 def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
     """The same as scikit-fem's mesh."""
     corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
-    points, cells = _merged(corners)
+    points, cells = merged(corners)
     linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
     dofs = Dofs(linear, ElementQuad2())
     nodes = np.empty((2, dofs.N))
@@ -98,7 +102,7 @@ def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
     element = ElementHex2()
     places = np.rint(2 * element.doflocs).astype(int)
     corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
-    points, index = _merged(corners)
+    points, index = merged(corners)
     linear = MeshHex(np.ascontiguousarray(points.T), np.ascontiguousarray(index.T))
     dofs = Dofs(linear, element)
     nodes = np.empty((3, dofs.N))
@@ -121,12 +125,42 @@ def swept(mesh: PlaneMesh, half_width: float, density: int) -> NDArray[np.float6
     return cells.reshape(-1, 3, 3, 3, 3)
 
 
-def _merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Unique points (those nearer than 1e-7 of the size are one), and each element's indices into them."""
+def merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Unique points of (elements, corners, dim), and each element's indices into them.
+
+    Points are one where they share a cell of either of two shifted grids, so that no grid line can
+    part two that differ by rounding.
+    """
     flat = corners.reshape(-1, corners.shape[-1])
-    step = 1e-7 * np.ptp(flat, axis=0).max()
-    _, first, index = np.unique(np.rint(flat / step + 0.37).astype(np.int64), axis=0, return_index=True, return_inverse=True)
+    step = SAME_POINT * np.ptp(flat, axis=0).max()
+    count = len(flat)
+    links = [_first_of_group(np.floor(flat / step + shift).astype(np.int64)) for shift in (0.0, 0.5)]
+    graph = coo_matrix((np.ones(2 * count), (np.tile(np.arange(count), 2), np.concatenate(links))), shape=(count, count))
+    _, index = connected_components(graph, directed=False)
+    _, first = np.unique(index, return_index=True)
     return flat[first], index.reshape(corners.shape[:2])
+
+
+def _first_of_group(keys: NDArray[np.int64]) -> NDArray[np.int64]:
+    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return first[index.ravel()]
+
+
+def _without_slivers(shape: HingeShape) -> HingeShape:
+    """A straight part that is next to nothing would be a sliver: the fillets take it and meet."""
+
+    def met(block: Block, other: Block, side: str) -> Block:
+        mine, theirs = getattr(block, side), getattr(other, side)
+        if mine is None:
+            return block
+        half = abs(mine.wall - theirs.wall) / 2.0
+        near = half - mine.radius <= SLIVER * shape.thickness
+        return replace(block, **{side: replace(mine, radius=half)}) if near else block
+
+    arm, body = shape.arm, shape.body
+    for side in ("low_fillet", "high_fillet"):
+        arm, body = met(arm, shape.body, side), met(body, shape.arm, side)
+    return replace(shape, arm=arm, body=body)
 
 
 def _symmetric(shape: HingeShape, middle: float) -> bool:
@@ -146,17 +180,14 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
     column = COLUMN * shape.thickness
-    # a straight part shorter than rounding of coordinates would be a sliver: the fillets meet instead
-    straight = [abs(f.wall - centre) - f.radius for _, f in fillets]
-    straight = [length if length > SLIVER * shape.thickness else 0.0 for length in straight]
+    straight = [max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets]
     grids = [_strip(*straight, sign * strip_height, column, density)] if sum(straight) > 0.0 else []
-    for (block, fillet), length in zip(fillets, straight):
+    for block, fillet in fillets:
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
         direction = 1.0 if block is shape.arm else -1.0
         root = _Root(
-            strip_height=sign * strip_height, radius=abs(fillet.wall - centre) - length,
-            wall=abs(fillet.wall - centre),
+            strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
             end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
         )
         grids += [grid * (direction, 1.0) for grid in root.grids(density)]

@@ -2,7 +2,7 @@
 
 Closed forms for factors over the nominal strain, fitted on plane elements like the stiffness; how
 well each fits stands in the fit report. In three dimensions strain per newton goes down as the
-stiffness goes up; strain per deflection stays.
+stiffness goes up; strain per deflection nearly stays.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def gauge(s: HingeSection, force, grid_length, rung: str = ladder.DEFAULT_RUNG) 
     Raises CheckFailure out of the rung's range.
     """
     ladder.require_range(s, rung)
-    return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung)
+    return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
 
 
 def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
@@ -44,7 +44,7 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
         factor = fillet_factor(s)
     else:
         factor = 1.0 if rung == "short" else 1.0 + s.straight_length / 2.0 / s.load_arm
-    return nominal(s, force) * factor * width_reduction(s, rung)
+    return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
 
 
 def peak_stress(s: HingeSection, force) -> Array:
@@ -60,11 +60,21 @@ def face_stress(s: HingeSection, force) -> Array:
     return nominal(s, force) * s.youngs_modulus * face_factor(s)
 
 
-def width_reduction(s: HingeSection, rung: str) -> Array | float:
-    """Strain per newton over the plane value: K2D/K3D on the solid rung, 1 on the others."""
+def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
+    """Strain per newton at mid-width over the plane value; 1 on all rungs but solid.
+
+    `at` is "grid" or "fillet": K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
+    """
     if rung != "solid":
         return 1.0
-    return ladder.COMPLIANCE["solid"](s) / ladder.COMPLIANCE["plane"](s)
+    return ladder.COMPLIANCE["solid"](s) / ladder.COMPLIANCE["plane"](s) * mid_width(s, at)
+
+
+def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
+    """Strain per deflection at mid-width over the plane value: 1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b."""
+    k = k or by_sides(f"mid-width {at}", s.two_sided)
+    x, y, nu = s.hinge_length / s.width, s.hinge_thickness / s.width, s.poisson
+    return 1.0 + nu * nu * (x * (k["a"] * x + k["d"] * y) + k["e"] * y * y)
 
 
 def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:

@@ -22,6 +22,8 @@ SIDES = {"two": 1.0, "one": 0.0}
 WEIGHT_OUTSIDE = 0.3  # of samples outside the promised box: they widen the range, the box decides
 HALF_FILLET = 1.0  # grids on two-sided hinges are fitted up to straight part + this times r
 
+MID_WIDTH = {"grid": "mid_grid_ratio", "fillet": "mid_peak_ratio"}
+
 # Where the search starts: the order of magnitude that beam theory and the first look at the data gave.
 START = {
     "root": {
@@ -36,6 +38,8 @@ START = {
         "two": dict(a=0.4, b=0.3, c=0.15, m=0.85, d=0.2, e=20.0),
         "one": dict(a=0.6, b=0.4, c=0.2, m=0.85, d=0.15, e=20.0),
     },
+    "mid-width grid": {"two": dict(a=0.0, d=0.0, e=0.0), "one": dict(a=0.0, d=0.0, e=0.0)},
+    "mid-width fillet": {"two": dict(a=0.0, d=0.0, e=0.0), "one": dict(a=0.0, d=0.0, e=0.0)},
     "face": {"one": dict(a=1.0, b=0.2, c=0.05, d=0.3, e=4.0)},
     "grid": {
         "two": dict(u=3.6, v=0.9, m=0.064, x=0.24, y=5.8, z=0.12),
@@ -52,6 +56,8 @@ def fit(samples: Columns, held_out: Columns, today: date, seeds: dict[str, int])
         root = constants["root"][side] = _fit_root(rows, START["root"][side])
         with_solid = _rows(rows, np.isfinite(rows["width_factor"]))
         constants["width"][side] = _fit_width(with_solid, root, START["width"][side])
+        for at, column in MID_WIDTH.items():
+            constants[f"mid-width {at}"][side] = _fit_mid_width(with_solid, at, column, START[f"mid-width {at}"][side])
         constants["fillet"][side] = _fit_factor(rows, strain.fillet_factor, "slot_peak", START["fillet"][side])
         if side == "one":
             constants["face"][side] = _fit_factor(rows, strain.face_factor, "flat_peak", START["face"][side])
@@ -89,6 +95,11 @@ def _fit_width(rows: Columns, root: Constants, start: Constants) -> Constants:
     s = section(rows)
     flat = plane.compliance(s, root)
     return _search(lambda k: solid.width_factor(s, flat, k) / rows["width_factor"] - 1.0, start, _weights(rows))
+
+
+def _fit_mid_width(rows: Columns, at: str, column: str, start: Constants) -> Constants:
+    s, measured = section(rows), rows[column] * rows["width_factor"]
+    return _search(lambda k: strain.mid_width(s, at, k) / measured - 1.0, start, _weights(rows), worst_case=False)
 
 
 def _fit_factor(rows: Columns, factor: Callable, column: str, start: Constants) -> Constants:
@@ -193,7 +204,10 @@ def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]
         / r[f"grid_{grid:g}"] - 1.0
         for grid, r in _grid_cases(rows, side).items()
     ])
-    found["strain per deflection, solid over plane"] = rows["mid_grid_ratio"] * rows["width_factor"] - 1.0
+    for at, column in MID_WIDTH.items():
+        measured = rows[column] * rows["width_factor"]
+        found[f"strain per deflection at mid-width, {at}"] = \
+            strain.mid_width(s, at, data[f"mid-width {at}"][side]) / measured - 1.0
     return {name: _summary(e) for name, e in found.items()}
 
 
