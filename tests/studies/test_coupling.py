@@ -30,8 +30,9 @@ def test_a_thick_layer_is_a_half_space_and_a_thin_one_a_row_of_springs():
 
 
 def test_layer_factor_against_its_limits():
-    """Compressible thin layer: phi -> c (1 - 2 nu)/(2 (1 - nu)^2), so that the surface sinks as a bonded film,
-    sigma h (1 + nu)(1 - 2 nu)/(E (1 - nu)); incompressible: phi -> (2c)^3/12."""
+    """Compressible thin layer: phi -> c (1 - 2 nu)/(2 (1 - nu)^2), so that the surface sinks as a
+    bonded film, sigma h (1 + nu)(1 - 2 nu)/(E (1 - nu)); incompressible: phi -> (2c)^3/12.
+    """
     c = 1e-3
     assert float(sc.layer_factor(np.array([c]), 0.3)[0]) == pytest.approx(c * 0.4 / (2 * 0.7**2), rel=1e-4)
     c = 1e-2
@@ -53,7 +54,11 @@ def test_elements_far_apart_are_independent_springs():
 
 
 def test_a_neighbour_softens_an_array_on_a_half_space():
-    """Two equal pads side by side: each sinks by its own and its neighbour's share, 1/(1/K + (1 + s)/x) each."""
+    """Two equal pads side by side: each sinks by its own and its neighbour's share, 1/(1/K + (1 + s)/x)
+    each.
+    """
     s = float(sc.influence(np.array([4.0]), np.array([0.0]), 2.0, 3.0, np.inf, 0.49)[0])
-    found = sc.coupling(np.array([20.0, 20.0]), np.array([0.0, 4.0]), np.zeros(2), 5.0, 0, 2.0, 3.0, np.inf, 0.49)
+    found = sc.coupling(
+        np.array([20.0, 20.0]), np.array([0.0, 4.0]), np.zeros(2), 5.0, 0, 2.0, 3.0, np.inf, 0.49
+    )
     assert found.stiffness == pytest.approx((1 / 20 + 1 / 5) / (1 / 20 + (1 + s) / 5), rel=1e-9)

@@ -1,4 +1,6 @@
-"""Object stiffness from grasp readings: against known truth, against Fieller's formula and dense least squares."""
+"""Object stiffness from grasp readings: against known truth, against Fieller's formula and dense least
+squares.
+"""
 
 from __future__ import annotations
 
@@ -14,13 +16,19 @@ from tactcad.studies.readings import CalibrationReadings, GraspReadings
 
 CELL = 57.04
 LOAD = 3.235 + 0.980665 * np.arange(8)
-TRUTH = simulate.Truth(np.array([1, 2, 3, 4]), np.array([80.0, 38.0, 12.0, 6.0]), np.array([-9.0, -7.3, -4.9, 3.8]),
-                       np.array([0.2, -1.0, 0.1, -2.1]))
+TRUTH = simulate.Truth(
+    np.array([1, 2, 3, 4]),
+    np.array([80.0, 38.0, 12.0, 6.0]),
+    np.array([-9.0, -7.3, -4.9, 3.8]),
+    np.array([0.2, -1.0, 0.1, -2.1]),
+)
 
 
 def exact(truth=TRUTH) -> Sensitivity:
     zero = np.zeros(len(truth.element))
-    return Sensitivity(truth.element, truth.stiffness.copy(), zero, truth.signal_per_deflection, zero, zero, zero + 1e6)
+    return Sensitivity(
+        truth.element, truth.stiffness.copy(), zero, truth.signal_per_deflection, zero, zero, zero + 1e6
+    )
 
 
 def grasped(x, noise=0.0, seed=0, heights=None, truth=TRUTH, load=LOAD) -> GraspReadings:
@@ -45,16 +53,21 @@ def test_pad_heights_drop_out_of_slopes_but_not_of_totals():
     d = (uneven.signal - TRUTH.zero_signal[:, None]) / TRUTH.signal_per_deflection[:, None]
     assert abs(d[3, 0] / d[0, 0] / ((80 + 3.85) / (6 + 3.85)) - 1) > 0.01  # the totals' R is off
     assert grasp.evaluate(uneven, exact()).combined.estimate == pytest.approx(
-        grasp.evaluate(even, exact()).combined.estimate, rel=1e-6)
+        grasp.evaluate(even, exact()).combined.estimate, rel=1e-6
+    )
 
 
 def test_errors_of_the_load_drop_out():
-    """Friction in the guide or a wrong weight moves all pads alike: R keeps, and so does the noise estimate."""
+    """Friction in the guide or a wrong weight moves all pads alike: R keeps, and so does the noise
+    estimate.
+    """
     held = 0
     for seed in range(100):
         wrong = LOAD + np.random.default_rng(seed).normal(0, 0.3, len(LOAD))
         reading = grasped(3.85, 1e-4, seed=seed, load=wrong)
-        found = grasp.evaluate(GraspReadings(1, TRUTH.element, LOAD, np.zeros(8, int), reading.signal), exact())
+        found = grasp.evaluate(
+            GraspReadings(1, TRUTH.element, LOAD, np.zeros(8, int), reading.signal), exact()
+        )
         assert found.noise == pytest.approx(1e-4, rel=0.6)
         held += found.combined.low < 3.85 < found.combined.high
     assert held >= binom.ppf(1e-4, 100, 0.95)
@@ -63,8 +76,15 @@ def test_errors_of_the_load_drop_out():
 def test_a_pair_has_fieller_s_interval():
     """Against mechanics' formula for the same deflections, variances and quantile."""
     reading = grasped(25.0, 4e-3, seed=3)
-    known = Sensitivity(TRUTH.element, TRUTH.stiffness, TRUTH.stiffness * 0.004, TRUTH.signal_per_deflection,
-                        np.abs(TRUTH.signal_per_deflection) * 0.003, np.zeros(4), np.full(4, 1e9))
+    known = Sensitivity(
+        TRUTH.element,
+        TRUTH.stiffness,
+        TRUTH.stiffness * 0.004,
+        TRUTH.signal_per_deflection,
+        np.abs(TRUTH.signal_per_deflection) * 0.003,
+        np.zeros(4),
+        np.full(4, 1e9),
+    )
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, known)
     found, _, _ = grasp.combine(slopes, 0.95, [3, 0])
     n, d = slopes.f[0] - slopes.f[3], slopes.s[3] - slopes.s[0]
@@ -80,7 +100,9 @@ def test_a_pair_has_fieller_s_interval():
 
 
 def test_all_elements_together_are_the_pairs_least_squares_with_their_full_covariance():
-    """z_m = (f_m - f_r) + x (s_m - s_r), covariance V_m on the diagonal and the reference's V_r everywhere."""
+    """z_m = (f_m - f_r) + x (s_m - s_r), covariance V_m on the diagonal and the reference's V_r
+    everywhere.
+    """
     reading = grasped(8.0, 2e-3, seed=4)
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, exact())
     found, _, _ = grasp.combine(slopes, 0.95)
@@ -97,14 +119,24 @@ def test_all_elements_together_are_the_pairs_least_squares_with_their_full_covar
     assert square_sum(found.low) == pytest.approx(square_sum(found.high), rel=1e-4)
 
 
-def simulated_sensitivity(rng, noise=simulate.Noise()) -> Sensitivity:
-    rows = simulate.calibration_rows(TRUTH, CELL, 0.025 * np.arange(7), 3, noise, rng)
-    made = calibration.calibrate(CalibrationReadings(rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T,
-                                                     np.arange(len(rows))), CELL)
+def simulated_sensitivity(rng) -> Sensitivity:
+    rows = simulate.calibration_rows(TRUTH, CELL, 0.025 * np.arange(7), 3, simulate.Noise(), rng)
+    made = calibration.calibrate(
+        CalibrationReadings(
+            rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows))
+        ),
+        CELL,
+    )
     pick = lambda f: np.array([f(r) for r in made])  # noqa: E731
-    return Sensitivity(pick(lambda r: r.element), pick(lambda r: r.stiffness.value), pick(lambda r: r.stiffness.standard_error),
-                       pick(lambda r: r.signal_per_deflection.value), pick(lambda r: r.signal_per_deflection.standard_error),
-                       pick(lambda r: r.correlation), pick(lambda r: r.dof))
+    return Sensitivity(
+        pick(lambda r: r.element),
+        pick(lambda r: r.stiffness.value),
+        pick(lambda r: r.stiffness.standard_error),
+        pick(lambda r: r.signal_per_deflection.value),
+        pick(lambda r: r.signal_per_deflection.standard_error),
+        pick(lambda r: r.correlation),
+        pick(lambda r: r.dof),
+    )
 
 
 @pytest.mark.parametrize("x", [3.85, 60.0])
@@ -125,11 +157,18 @@ def test_stated_intervals_hold_the_truth_as_often_as_they_say(x):
 
 def test_says_when_the_data_do_not_bound_the_object():
     stiff = grasp.evaluate(grasped(1e6, 2e-3, seed=2), exact()).combined
-    assert np.isinf(stiff.high) and stiff.low > 20 and "from below only" in stiff.verdict and not stiff.bounded
+    assert (
+        np.isinf(stiff.high) and stiff.low > 20 and "from below only" in stiff.verdict and not stiff.bounded
+    )
     soft = grasp.evaluate(grasped(0.01, 0.02, seed=2), exact()).combined
     assert soft.low == 0 and "from above only" in soft.verdict
-    twins = simulate.Truth(TRUTH.element[:2], np.array([10.0, 10.0]), TRUTH.signal_per_deflection[:2], TRUTH.zero_signal[:2])
-    assert "not bounded" in grasp.evaluate(grasped(3.85, 1e-3, seed=1, truth=twins), exact(twins)).combined.verdict
+    twins = simulate.Truth(
+        TRUTH.element[:2], np.array([10.0, 10.0]), TRUTH.signal_per_deflection[:2], TRUTH.zero_signal[:2]
+    )
+    assert (
+        "not bounded"
+        in grasp.evaluate(grasped(3.85, 1e-3, seed=1, truth=twins), exact(twins)).combined.verdict
+    )
 
 
 def test_coverage_where_the_interval_is_not_bounded():
@@ -147,7 +186,9 @@ def test_elements_that_disagree_are_named_and_widen_the_interval():
     found = grasp.evaluate(grasped(3.85, 2e-4, seed=6), wrong)
     assert found.widened > 2 and any("disagree" in note for note in found.notes)
     honest = grasp.evaluate(grasped(3.85, 2e-4, seed=6), exact())
-    assert honest.widened == 1 and found.combined.high - found.combined.low > 3 * (honest.combined.high - honest.combined.low)
+    assert honest.widened == 1 and found.combined.high - found.combined.low > 3 * (
+        honest.combined.high - honest.combined.low
+    )
 
 
 def test_an_element_that_touches_late_is_named():
@@ -155,7 +196,10 @@ def test_an_element_that_touches_late_is_named():
     notes = grasp.evaluate(late, exact()).notes
     assert any("element 4 does not follow" in note for note in notes)
     assert sum("does not follow" in note for note in notes) == 1
-    good = [grasp.evaluate(grasped(3.85, 2e-4, seed=s, heights=np.array([0, 0.01, -0.01, 0])), exact()).notes for s in range(200)]
+    good = [
+        grasp.evaluate(grasped(3.85, 2e-4, seed=s, heights=np.array([0, 0.01, -0.01, 0])), exact()).notes
+        for s in range(200)
+    ]
     assert sum(bool(n) for n in good) <= 8  # by chance: one in 10 000 here, and one in 100 for disagreement
 
 
@@ -167,11 +211,14 @@ def test_readings_before_contact_are_left_out():
     assert found.combined.estimate == pytest.approx(3.85, rel=1e-4)
 
 
-@pytest.mark.parametrize("change, named", [
-    (lambda g: GraspReadings(1, g.element, g.load[:2], g.run[:2], g.signal[:, :2]), "too little"),
-    (lambda g: GraspReadings(1, g.element[:1], g.load, g.run, g.signal[:1]), "too little"),
-    (lambda g: GraspReadings(1, g.element + 90, g.load, g.run, g.signal), "element 91"),
-])
+@pytest.mark.parametrize(
+    "change, named",
+    [
+        (lambda g: GraspReadings(1, g.element, g.load[:2], g.run[:2], g.signal[:, :2]), "too little"),
+        (lambda g: GraspReadings(1, g.element[:1], g.load, g.run, g.signal[:1]), "too little"),
+        (lambda g: GraspReadings(1, g.element + 90, g.load, g.run, g.signal), "element 91"),
+    ],
+)
 def test_too_little_is_refused(change, named):
     with pytest.raises(InputError, match=named):
         grasp.evaluate(change(grasped(3.85)), exact())

@@ -13,15 +13,43 @@ from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import REFERENCE
 from tactcad.mechanics.self_heating import Power
 
-GAUGE = Gauge(factor=2.1, grid_length=0.5, grid_width=0.65, grid_height=0.03, carrier_width=1.5, carrier_modulus=3000.0,
-              foil_thickness=0.005, foil_modulus=162000.0, foil_coverage=0.5)
-READOUT = ReadOut(excitation=2.7, gain=100.0, supply_positive=5.0, supply_negative=-5.0, headroom=1.5, bridge_offset=0.0, noise=5e-4,
-                  adc_bits=16, adc_range=5.0, samples=10)
-POWER = Power(resistance=120.0, conductivity=0.2, resistance_per_kelvin=-17e-6, reference_mismatch=0.2, on_time=0.005, period=1.0)
+GAUGE = Gauge(
+    factor=2.1,
+    grid_length=0.5,
+    grid_width=0.65,
+    grid_height=0.03,
+    carrier_width=1.5,
+    carrier_modulus=3000.0,
+    foil_thickness=0.005,
+    foil_modulus=162000.0,
+    foil_coverage=0.5,
+)
+READOUT = ReadOut(
+    excitation=2.7,
+    gain=100.0,
+    supply_positive=5.0,
+    supply_negative=-5.0,
+    headroom=1.5,
+    bridge_offset=0.0,
+    noise=5e-4,
+    adc_bits=16,
+    adc_range=5.0,
+    samples=10,
+)
+POWER = Power(
+    resistance=120.0,
+    conductivity=0.2,
+    resistance_per_kelvin=-17e-6,
+    reference_mismatch=0.2,
+    on_time=0.005,
+    period=1.0,
+)
 
 
 def solved_bridge(x):
-    """Output over supply by Kirchhoff's laws: nodes a and b between 120 ohm resistors, the upper left one active."""
+    """Output over supply by Kirchhoff's laws: nodes a and b between 120 ohm resistors, the upper left
+    one active.
+    """
     R = 120.0
     conductance = np.array([[1 / (R * (1 + x)) + 1 / R, 0], [0, 2 / R]])
     a, b = np.linalg.solve(conductance, np.array([1 / R, 1 / R]))  # the active gauge from node a to ground
@@ -31,16 +59,22 @@ def solved_bridge(x):
 @pytest.mark.parametrize("x", [-0.05, -1e-3, 1e-9, 1e-3, 0.0133, 0.1])
 def test_quarter_bridge_is_exact(x):
     assert float(readout.bridge_output(x)) == pytest.approx(solved_bridge(x), rel=1e-6, abs=1e-16)
-    assert float(readout.bridge_nonlinearity(x)) == pytest.approx(solved_bridge(x) / (x / 4) - 1, rel=1e-4, abs=1e-7)
+    assert float(readout.bridge_nonlinearity(x)) == pytest.approx(
+        solved_bridge(x) / (x / 4) - 1, rel=1e-4, abs=1e-7
+    )
     assert float(readout.resistance_change(readout.bridge_output(x))) == pytest.approx(x, rel=1e-12)
 
 
 def test_strain_and_volts_invert_each_other_with_an_offset():
     r = replace(READOUT, bridge_offset=-0.03)
     eps = np.linspace(-5e-3, 5e-3, 7)
-    assert readout.strain_from_output(readout.unlimited_output(eps, 2.1, r), 2.1, r) == pytest.approx(eps, abs=1e-14)
+    assert readout.strain_from_output(readout.unlimited_output(eps, 2.1, r), 2.1, r) == pytest.approx(
+        eps, abs=1e-14
+    )
     step = 1e-7
-    slope = (readout.unlimited_output(2e-3 + step, 2.1, r) - readout.unlimited_output(2e-3 - step, 2.1, r)) / (2 * step)
+    slope = (
+        readout.unlimited_output(2e-3 + step, 2.1, r) - readout.unlimited_output(2e-3 - step, 2.1, r)
+    ) / (2 * step)
     assert float(readout.volts_per_strain(2.1, r, 2e-3)) == pytest.approx(float(slope), rel=1e-6)
 
 
@@ -68,8 +102,15 @@ def test_averaged_noise_against_simulated_samples():
 def test_composite_section_against_fine_layers():
     """Moment and neutral axis by summing 200 000 thin layers."""
     t, b, E = 0.25, 3.0, 69000.0
-    layers = [(0.0, t, E * b), (t, GAUGE.grid_height, GAUGE.carrier_modulus * GAUGE.carrier_width),
-              (t + GAUGE.grid_height, GAUGE.foil_thickness, GAUGE.foil_modulus * GAUGE.foil_coverage * GAUGE.grid_width)]
+    layers = [
+        (0.0, t, E * b),
+        (t, GAUGE.grid_height, GAUGE.carrier_modulus * GAUGE.carrier_width),
+        (
+            t + GAUGE.grid_height,
+            GAUGE.foil_thickness,
+            GAUGE.foil_modulus * GAUGE.foil_coverage * GAUGE.grid_width,
+        ),
+    ]
     n = 20000
     y = np.concatenate([a + (np.arange(n) + 0.5) * h / n for a, h, _ in layers])
     w = np.concatenate([np.full(n, e * h / n) for _, h, e in layers])
@@ -85,8 +126,12 @@ def test_without_a_gauge_nothing_changes():
     none = replace(GAUGE, grid_height=0.0, foil_thickness=0.0, carrier_modulus=0.0)
     assert float(gauge_signal.composite(REFERENCE, none).stiffening) == pytest.approx(1.0, rel=1e-12)
     assert float(gauge_signal.composite(REFERENCE, none).reading) == pytest.approx(1.0, rel=1e-12)
-    assert float(gauge_signal.stiffness(REFERENCE, none)) == pytest.approx(float(ladder.stiffness(REFERENCE)), rel=1e-12)
-    assert float(gauge_signal.foil_strain_per_force(REFERENCE, none)) == pytest.approx(float(strain.gauge(REFERENCE, 1.0, 0.5)), rel=1e-12)
+    assert float(gauge_signal.stiffness(REFERENCE, none)) == pytest.approx(
+        float(ladder.stiffness(REFERENCE)), rel=1e-12
+    )
+    assert float(gauge_signal.foil_strain_per_force(REFERENCE, none)) == pytest.approx(
+        float(strain.gauge(REFERENCE, 1.0, 0.5)), rel=1e-12
+    )
 
 
 def test_a_stiff_backing_far_from_the_face_reads_at_most_one_plus_two_h_over_t():
@@ -125,5 +170,7 @@ def test_power_always_on_is_the_limit_of_switching():
     always = self_heating.continuous(2.7, GAUGE, POWER)
     assert always.power == pytest.approx(2.7**2 / 4 / 120)
     assert always.rise == pytest.approx(always.power * 0.03e-3 / (0.2 * 0.5e-3 * 0.65e-3))
-    assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=0.999999)).rise == pytest.approx(always.rise, rel=1e-3)
+    assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=0.999999)).rise == pytest.approx(
+        always.rise, rel=1e-3
+    )
     assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=1e-4)).rise < 0.05 * always.rise

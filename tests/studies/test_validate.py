@@ -1,4 +1,6 @@
-"""The report as files: whole or not at all, offline, equal bytes, numbers in JSON; commands from end to end."""
+"""The report as files: whole or not at all, offline, equal bytes, numbers in JSON; commands from end to
+end.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,9 @@ def test_json_is_strict_and_says_what_the_page_says(report):
     data = json.loads(reporting.to_json(report), parse_constant=lambda c: pytest.fail(f"{c} is not JSON"))
     assert data["sections"]["table2"]["findings"] == list(report.sections[4].findings)
     assert data["sections"]["stiffness"]["values"]["measured"][0] == 40.12
-    assert {"fem-plane", "fem-solid", "solid", "plane", "section", "beam", "short"} <= set(data["sections"]["stiffness"]["values"]["predicted"])
+    assert {"fem-plane", "fem-solid", "solid", "plane", "section", "beam", "short"} <= set(
+        data["sections"]["stiffness"]["values"]["predicted"]
+    )
 
 
 def test_finite_elements_agree_with_their_closed_forms(report):
@@ -96,7 +100,11 @@ def test_a_failed_write_leaves_the_earlier_report(tmp_path, monkeypatch, exchang
 
     monkeypatch.setattr(os, "rename", rename)
     if exchange:  # the disk is full while the new one is written
-        monkeypatch.setattr(Path, "write_bytes", lambda self, data: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        monkeypatch.setattr(
+            Path,
+            "write_bytes",
+            lambda self, data: (_ for _ in ()).throw(OSError(28, "No space left on device")),
+        )
     with pytest.raises(CheckFailure, match="No space left"):
         folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": b"new"}, "s")
     assert (out / "a/b.json").read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == ["r"]
@@ -142,7 +150,9 @@ def test_from_readings_to_object_stiffness(tmp_path, capsys):
     assert "load cell in series: 57.04" in capsys.readouterr().out
     assert main(["stiffness", str(GRASP), "--calibration", str(table), "--json"]) == 0
     soft, stiff = json.loads(capsys.readouterr().out)["samples"]
-    assert soft["combined"]["low"] < 3.85 < soft["combined"]["high"] and soft["combined"]["verdict"] == "bounded"
+    assert (
+        soft["combined"]["low"] < 3.85 < soft["combined"]["high"] and soft["combined"]["verdict"] == "bounded"
+    )
     assert len(soft["pairs"]) == 8 and {p["reference"] for p in soft["pairs"]} == {8}
     assert stiff["combined"]["low"] < 3000 and any(p["object"]["high"] == "inf" for p in stiff["pairs"])
     assert main(["stiffness", str(GRASP), "--calibration", str(table)]) == 0
@@ -157,13 +167,16 @@ def test_calibration_as_json_serves_as_well(tmp_path, capsys):
     assert "sample 1: K_obj = 3.8" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("arguments, named", [
-    (["calibrate", "none.csv"], "cannot be read"),
-    (["calibrate", str(CALIBRATION), "--load-cell", "-1"], "stiffness must be positive"),
-    (["calibrate", str(CALIBRATION), "--level", "2"], "level"),
-    (["stiffness", str(GRASP), "--calibration", str(CALIBRATION)], "'stiffness_N_per_mm' is missing"),
-    (["stiffness", str(GRASP), "--calibration", "none.json"], "cannot be read"),
-])
+@pytest.mark.parametrize(
+    "arguments, named",
+    [
+        (["calibrate", "none.csv"], "cannot be read"),
+        (["calibrate", str(CALIBRATION), "--load-cell", "-1"], "stiffness must be positive"),
+        (["calibrate", str(CALIBRATION), "--level", "2"], "level"),
+        (["stiffness", str(GRASP), "--calibration", str(CALIBRATION)], "'stiffness_N_per_mm' is missing"),
+        (["stiffness", str(GRASP), "--calibration", "none.json"], "cannot be read"),
+    ],
+)
 def test_bad_requests_exit_2_with_one_line(arguments, named, capsys):
     assert main(arguments) == 2
     error = capsys.readouterr().err

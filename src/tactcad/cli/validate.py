@@ -18,8 +18,13 @@ The folder is replaced in one step by a finished one. It may be missing, empty, 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
-    parser.add_argument("--design", default="macro-array", metavar="DESIGN",
-                        help="the design that is held against the paper: a path, or a name in hardware/ (default macro-array)")
+    parser.add_argument(
+        "--design",
+        default="macro-array",
+        metavar="DESIGN",
+        help="the design that is held against the paper: a path, or a name in hardware/ (default "
+        "macro-array)",
+    )
     parser.add_argument("--table1", metavar="FILE", help="a CSV file in place of the paper's Table 1")
     parser.add_argument("--table2", metavar="FILE", help="a CSV file in place of the paper's Table 2")
 
@@ -33,7 +38,9 @@ def run(args: argparse.Namespace) -> int:
     as_json = report.to_json(made)
     if args.out:
         files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}
-        files |= {f"plots/{f.name}.svg": report.standalone(f).encode() for s in made.sections for f in s.figures}
+        files |= {
+            f"plots/{f.name}.svg": report.standalone(f).encode() for s in made.sections for f in s.figures
+        }
         folder.replace(Path(args.out), files, report.SCHEMA)
     if args.json:
         sys.stdout.write(as_json)

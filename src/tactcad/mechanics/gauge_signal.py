@@ -1,7 +1,7 @@
 """From a force on the element to the strain of the gauge's foil, and what the gauge does to the leaf.
 
-The foil lies above the leaf's face by its backing and glue, and it and its carrier stiffen the leaf. Both follow
-from one composite beam section: leaf, carrier and foil bend about their common neutral axis.
+The foil lies above the leaf's face by its backing and glue, and it and its carrier stiffen the leaf. Both
+follow from one composite beam section: leaf, carrier and foil bend about their common neutral axis.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ from .section import Array, HingeSection
 class Gauge:
     """A foil gauge centred on the hinge; lengths mm, moduli MPa.
 
-    grid_height: from the leaf's face to the foil, backing and glue. foil_coverage: share of the grid's width that
-    is metal. carrier_width may not exceed the sheet's thickness; what is wider does not lie on the leaf.
+    grid_height: from the leaf's face to the foil, backing and glue. foil_coverage: share of the grid's
+    width that is metal. carrier_width may not exceed the sheet's thickness; what is wider does not lie on
+    the leaf.
     """
 
     factor: float
@@ -35,15 +36,18 @@ class Gauge:
 
 @dataclass(frozen=True)
 class Composite:
-    """Leaf with its gauge: bending stiffness over the bare leaf's, and foil strain over the bare leaf's surface strain
-    at the same moment."""
+    """Leaf with its gauge: bending stiffness over the bare leaf's, and foil strain over the bare leaf's
+    surface strain at the same moment.
+    """
 
     stiffening: Array
     reading: Array
 
 
 def composite(s: HingeSection, gauge: Gauge) -> Composite:
-    """Section of leaf, carrier and foil by the theory of composite beams (plane sections, E-weighted areas)."""
+    """Section of leaf, carrier and foil by the theory of composite beams (plane sections, E-weighted
+    areas).
+    """
     t, b, E = s.hinge_thickness, s.width, s.youngs_modulus
     h, f = gauge.grid_height, gauge.foil_thickness
     # E A, centre (from the leaf's mid-plane) and own E I of each layer
@@ -67,7 +71,9 @@ def leaf_share(s: HingeSection, rung: str = ladder.DEFAULT_RUNG) -> Array:
 
 
 def stiffness(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Tip stiffness with the gauge on, N/mm; an upper bound, since the carrier is taken to cover the whole hinge."""
+    """Tip stiffness with the gauge on, N/mm; an upper bound, since the carrier is taken to cover the whole
+    hinge.
+    """
     K = ladder.stiffness(s, rung)
     return K / (1 - leaf_share(s, rung) * (1 - 1 / composite(s, gauge).stiffening))
 

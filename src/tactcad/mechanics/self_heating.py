@@ -1,7 +1,8 @@
 """How warm a gauge makes itself, with power on all the time and with power on only while it is read.
 
-The grid's heat (U/2)^2/R goes through the backing into the leaf, a good conductor. Grid and half the backing store
-heat, so a short reading ends before the grid is warm: an exponential approach with one time constant.
+The grid's heat (U/2)^2/R goes through the backing into the leaf, a good conductor. Grid and half the
+backing store heat, so a short reading ends before the grid is warm: an exponential approach with one time
+constant.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ BACKING_HEAT = 1.55e6  # J/(m3 K), polyimide: 1420 kg/m3 x 1090 J/(kg K)
 class Power:
     """What heats a gauge. resistance ohm; conductivity of the backing W/(m K); on_time and period s.
 
-    resistance_per_kelvin: dR/R of a grid warmer than its leaf, 1/K. reference_mismatch: share of it that the three
-    reference gauges do not cancel.
+    resistance_per_kelvin: dR/R of a grid warmer than its leaf, 1/K. reference_mismatch: share of it that
+    the three reference gauges do not cancel.
     """
 
     resistance: float
@@ -33,7 +34,9 @@ class Power:
 
 @dataclass(frozen=True)
 class Heating:
-    """power W at the grid, power_density kW/m2 of grid, rise K of grid over leaf, drift dR/R left in the bridge."""
+    """power W at the grid, power_density kW/m2 of grid, rise K of grid over leaf, drift dR/R left in the
+    bridge.
+    """
 
     power: float
     power_density: float
@@ -48,7 +51,9 @@ def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
 
 
 def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
-    """Power on for on_time in every period: the warmest moment, at the end of a reading, in the settled cycle."""
+    """Power on for on_time in every period: the warmest moment, at the end of a reading, in the settled
+    cycle.
+    """
     steady = continuous(excitation, gauge, power)
     tau = time_constant(gauge, power)
     on, off = exp(-power.on_time / tau), exp(-(power.period - power.on_time) / tau)
@@ -73,5 +78,9 @@ def _area(gauge: Gauge) -> float:
 
 
 def _heating(watts: float, rise: float, gauge: Gauge, power: Power) -> Heating:
-    return Heating(watts, watts / _area(gauge) * 1e-3, rise,
-                   rise * power.resistance_per_kelvin * power.reference_mismatch)
+    return Heating(
+        watts,
+        watts / _area(gauge) * 1e-3,
+        rise,
+        rise * power.resistance_per_kelvin * power.reference_mismatch,
+    )

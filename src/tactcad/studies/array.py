@@ -70,28 +70,51 @@ class ArrayModel:
 
 
 def from_design(design: Design) -> ArrayModel:
-    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig tables."""
+    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig
+    tables.
+    """
     for name in ("calibration", "sample", "grasping"):
         if getattr(design, name) is None:
             raise InputError(f"design {design.name}", f"has no [{name}] table, which a validation needs")
     layout = Layout(design)
     places = layout.elements
-    side = np.array([1.0 if p.row == 1 else -1.0 for p in places])  # row two is row one's kind turned by 180 degrees
+    side = np.array(
+        [1.0 if p.row == 1 else -1.0 for p in places]
+    )  # row two is row one's kind turned by 180 degrees
     gauge, readout, rig = design.gauge, design.readout, design.calibration
     return ArrayModel(
-        design.name, np.array([p.number for p in places]), np.array([float(p.arm) for p in places]),
+        design.name,
+        np.array([p.number for p in places]),
+        np.array([float(p.arm) for p in places]),
         # friction acts at the pad of a calibration rig, and is asked for there
         hinge_section(layout, places).with_(pad_height=0.0, friction=0.0),
-        design.element.pad_length, design.element.pad_height,
-        side * design.array.row_pitch / 2, side * np.array([p.y for p in places]),
+        design.element.pad_length,
+        design.element.pad_height,
+        side * design.array.row_pitch / 2,
+        side * np.array([p.y for p in places]),
         _pick(Gauge, gauge),
         replace(_pick(ReadOut, readout), adc_bits=int(readout.adc_bits), samples=int(readout.samples)),
-        Power(gauge.resistance, gauge.carrier_conductivity, gauge.resistance_per_kelvin, readout.reference_mismatch,
-              readout.on_time, readout.period),
+        Power(
+            gauge.resistance,
+            gauge.carrier_conductivity,
+            gauge.resistance_per_kelvin,
+            readout.reference_mismatch,
+            readout.on_time,
+            readout.period,
+        ),
         _pick(Tolerance, design.tolerance),
-        Rig(rig.load_cell_stiffness, rig.load_cell_resolution, rig.micrometer_resolution, rig.load_point, rig.friction,
-            design.sample.thickness, design.sample.poisson, design.grasping.moving_weight, design.grasping.weight,
-            int(design.grasping.weights)),
+        Rig(
+            rig.load_cell_stiffness,
+            rig.load_cell_resolution,
+            rig.micrometer_resolution,
+            rig.load_point,
+            rig.friction,
+            design.sample.thickness,
+            design.sample.poisson,
+            design.grasping.moving_weight,
+            design.grasping.weight,
+            int(design.grasping.weights),
+        ),
     )
 
 

@@ -1,7 +1,8 @@
 """Uncertainty budget: every effect on K and on K_obj with its size for this array, largest first.
 
-Sizes are half-widths. The pair is the reference element and the measuring element whose printed K_r/K_m comes nearest
-to the ratio that the paper proposes, on the sample of Figure 6; K_r is the one that Table 2 supports.
+Sizes are half-widths. The pair is the reference element and the measuring element whose printed K_r/K_m
+comes nearest to the ratio that the paper proposes, on the sample of Figure 6; K_r is the one that Table 2
+supports.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ from tactcad.studies.simulate import approach
 MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
 ROOM_SWING = 5.0  # K; hardware's own figure
 RELAXATION_PER_DECADE = 0.04  # assumed: filled rubber loses 2 to 8 % of its force each decade of time
-SAMPLE_TEST_TIME, GRASP_TIME = 10.0, 300.0  # s, assumed: reading a step in the sample test, a grasp with its weights
+SAMPLE_TEST_TIME, GRASP_TIME = (
+    10.0,
+    300.0,
+)  # s, assumed: reading a step in the sample test, a grasp with its weights
 SLIPPERY = 0.02  # friction of a ball-bearing roller under the force sensor, chosen
 CELL_ACCURACY = 0.02  # to which a load cell's own stiffness is known after one measurement, chosen
 CLOSED_FORM_ERROR = 0.0035  # goal that the closed forms are held to against finite elements
@@ -32,7 +36,9 @@ CLOSED_FORM_ERROR = 0.0035  # goal that the closed forms are held to against fin
 
 @dataclass(frozen=True)
 class Effect:
-    """One effect. Sizes are relative half-widths; NaN where it does not act on K. `common` acts on all elements alike."""
+    """One effect. Sizes are relative half-widths; NaN where it does not act on K. `common` acts on all
+    elements alike.
+    """
 
     name: str
     how: str
@@ -114,8 +120,15 @@ def budget(data: Published, array: ArrayModel, study: Table2Study) -> Budget:
         *_sample(pair, data, array),
         *_electronics(pair, data, array),
     ]
-    return Budget(K_r, K_m, pair.x, pair.by_reference, pair.by_measuring, -pair.by_ratio,
-                  tuple(sorted(effects, key=lambda e: -e.on_object)))
+    return Budget(
+        K_r,
+        K_m,
+        pair.x,
+        pair.by_reference,
+        pair.by_measuring,
+        -pair.by_ratio,
+        tuple(sorted(effects, key=lambda e: -e.on_object)),
+    )
 
 
 def _reference(pair: _Pair, study: Table2Study, data: Published, array: ArrayModel) -> Effect:
@@ -124,9 +137,15 @@ def _reference(pair: _Pair, study: Table2Study, data: Published, array: ArrayMod
     off = abs(float(lumped.object_stiffness(study.reference_printed, pair.K_m, R)) / pair.x - 1)
     half = log(study.supported.high[0] / pair.K_r)
     stage = _stage_error(data, array)
-    return Effect("reference stiffness, printed against supported",
-                  f"equation (3) with either; the supported one's own interval is ±{half:.0%} of K_r", size, nan, off,
-                  "calibrate the reference element again", abs(pair.by_reference) * stage)
+    return Effect(
+        "reference stiffness, printed against supported",
+        f"equation (3) with either; the supported one's own interval is ±{half:.0%} of K_r",
+        size,
+        nan,
+        off,
+        "calibrate the reference element again",
+        abs(pair.by_reference) * stage,
+    )
 
 
 def _dimensions(pair: _Pair, array: ArrayModel) -> list[Effect]:
@@ -136,38 +155,83 @@ def _dimensions(pair: _Pair, array: ArrayModel) -> list[Effect]:
 
     def one(title: str, name: str, half: float, remedy: str, better: float) -> Effect:
         now, then = pair.change(name, half), pair.change(name, better)
-        return Effect(title, f"±{half:g} mm by the closed form", *now, pair.apart(*now), remedy, pair.apart(*then))
+        return Effect(
+            title, f"±{half:g} mm by the closed form", *now, pair.apart(*now), remedy, pair.apart(*then)
+        )
 
     pad = array.pad_length / 2
     wire = WIRE_TOLERANCE["1 pass"]
     sheet = pair.change("width", tol.sheet_thickness)
     return [
-        one("load point anywhere on the pad", "load_arm", pad, f"roller within {array.rig.load_point:g} mm",
-            array.rig.load_point),
+        one(
+            "load point anywhere on the pad",
+            "load_arm",
+            pad,
+            f"roller within {array.rig.load_point:g} mm",
+            array.rig.load_point,
+        ),
         one("hinge thickness, one pass of the wire", "hinge_thickness", wire, measured, 0.0),
         one("hinge thickness, as toleranced", "hinge_thickness", tol.hinge_thickness, measured, 0.0),
         one("hinge length", "hinge_length", tol.hinge_length, measured, 0.0),
         one("arm height", "arm_height", tol.arm_height, measured, 0.0),
-        Effect("sheet thickness", f"±{tol.sheet_thickness:g} mm, all elements alike", *sheet, pair.together(*sheet),
-               "measure the sheet to 0.01 mm", pair.together(*sheet) * 0.01 / tol.sheet_thickness),
+        Effect(
+            "sheet thickness",
+            f"±{tol.sheet_thickness:g} mm, all elements alike",
+            *sheet,
+            pair.together(*sheet),
+            "measure the sheet to 0.01 mm",
+            pair.together(*sheet) * 0.01 / tol.sheet_thickness,
+        ),
     ]
 
 
 def _models(pair: _Pair, array: ArrayModel) -> list[Effect]:
     """What a computed K leaves out."""
-    width = [float(np.log(ladder.stiffness(s, "solid") / ladder.stiffness(s, "plane")).item()) for s in (pair.short, pair.long)]
-    gauge = [float(np.log(gauge_signal.stiffness(s, array.gauge) / ladder.stiffness(s)).item()) for s in (pair.short, pair.long)]
+    width = [
+        float(np.log(ladder.stiffness(s, "solid") / ladder.stiffness(s, "plane")).item())
+        for s in (pair.short, pair.long)
+    ]
+    gauge = [
+        float(np.log(gauge_signal.stiffness(s, array.gauge) / ladder.stiffness(s)).item())
+        for s in (pair.short, pair.long)
+    ]
     warm = MODULUS_PER_KELVIN * ROOM_SWING
     error = CLOSED_FORM_ERROR
     return [
-        Effect("plane stress instead of a solid", "solid rung over plane rung", *width, pair.together(*width),
-               "solid rung", pair.apart(error, error)),
-        Effect("gauge stiffens the leaf", "composite beam; upper bound", *gauge, pair.together(*gauge),
-               "calibrate with the gauge on", 0.0),
-        Effect("closed form against finite elements", "what the ladder is held to", error, error, pair.apart(error, error),
-               "finite-element rung, 0.1 %", pair.apart(0.001, 0.001)),
-        Effect("Young's modulus with temperature", f"{ROOM_SWING:g} K at {MODULUS_PER_KELVIN:g} 1/K", warm, warm,
-               pair.together(warm, warm), "1 K room", pair.together(warm, warm) / ROOM_SWING),
+        Effect(
+            "plane stress instead of a solid",
+            "solid rung over plane rung",
+            *width,
+            pair.together(*width),
+            "solid rung",
+            pair.apart(error, error),
+        ),
+        Effect(
+            "gauge stiffens the leaf",
+            "composite beam; upper bound",
+            *gauge,
+            pair.together(*gauge),
+            "calibrate with the gauge on",
+            0.0,
+        ),
+        Effect(
+            "closed form against finite elements",
+            "what the ladder is held to",
+            error,
+            error,
+            pair.apart(error, error),
+            "finite-element rung, 0.1 %",
+            pair.apart(0.001, 0.001),
+        ),
+        Effect(
+            "Young's modulus with temperature",
+            f"{ROOM_SWING:g} K at {MODULUS_PER_KELVIN:g} 1/K",
+            warm,
+            warm,
+            pair.together(warm, warm),
+            "1 K room",
+            pair.together(warm, warm) / ROOM_SWING,
+        ),
     ]
 
 
@@ -175,16 +239,35 @@ def _calibration(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
     """The paper's calibration: force sensor on the pad."""
     rig = array.rig
     friction = [
-        [float(np.log(ladder.stiffness(s.with_(pad_height=array.pad_height, friction=mu)) / ladder.stiffness(s)).item())
-         for s in (pair.short, pair.long)]
+        [
+            float(
+                np.log(
+                    ladder.stiffness(s.with_(pad_height=array.pad_height, friction=mu)) / ladder.stiffness(s)
+                ).item()
+            )
+            for s in (pair.short, pair.long)
+        ]
         for mu in (rig.friction, SLIPPERY)
     ]
     stage = _stage_error(data, array)
     return [
-        Effect("friction at the force sensor's tip", f"µ {rig.friction:g}, K L/(L − µH), H = pad height + t/2",
-               *friction[0], pair.together(*friction[0]), "roller instead of a flat tip", pair.together(*friction[1])),
-        Effect("micrometer of the calibration", f"{rig.micrometer_resolution * 1e3:g} µm on the slope of one run",
-               stage, stage, pair.apart(stage, stage), "three runs", pair.apart(stage, stage) / 3**0.5),
+        Effect(
+            "friction at the force sensor's tip",
+            f"µ {rig.friction:g}, K L/(L − µH), H = pad height + t/2",
+            *friction[0],
+            pair.together(*friction[0]),
+            "roller instead of a flat tip",
+            pair.together(*friction[1]),
+        ),
+        Effect(
+            "micrometer of the calibration",
+            f"{rig.micrometer_resolution * 1e3:g} µm on the slope of one run",
+            stage,
+            stage,
+            pair.apart(stage, stage),
+            "three runs",
+            pair.apart(stage, stage) / 3**0.5,
+        ),
     ]
 
 
@@ -207,9 +290,24 @@ def _grasp(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
     slopes = "slopes against load, not totals"
     at = f"at the first load, {array.rig.moving_weight:g} N, approach {z * 1e3:.3g} µm"
     return [
-        Effect("pad height", f"±{height * 1e3:g} µm {at}", nan, nan, pair.by_ratio * 2**0.5 * height / z, slopes, 0.0),
-        Effect("tilt of the array", f"{array.tolerance.tilt:g} degree over {span:g} mm: {tilted * 1e3:.3g} µm {at}", nan, nan,
-               pair.by_ratio * tilted / z, slopes, 0.0),
+        Effect(
+            "pad height",
+            f"±{height * 1e3:g} µm {at}",
+            nan,
+            nan,
+            pair.by_ratio * 2**0.5 * height / z,
+            slopes,
+            0.0,
+        ),
+        Effect(
+            "tilt of the array",
+            f"{array.tolerance.tilt:g} degree over {span:g} mm: {tilted * 1e3:.3g} µm {at}",
+            nan,
+            nan,
+            pair.by_ratio * tilted / z,
+            slopes,
+            0.0,
+        ),
     ]
 
 
@@ -220,24 +318,51 @@ def _sample(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
     stiffest = float(data.table2.object_stiffness.value.max())
     taken = cell / (cell - x) - 1
     known = x / cell * CELL_ACCURACY
-    # Tangential over normal stiffness of a pad on incompressible rubber, 2(1 - nu)/(2 - nu): Johnson, Contact Mechanics.
+    # Tangential over normal stiffness of a pad, 2(1 - nu)/(2 - nu): Johnson, Contact Mechanics.
     lateral = x * 2 * (1 - rig.sample_poisson) / (2 - rig.sample_poisson)
     lever = array.pad_height + float(pair.short.hinge_thickness.item()) / 2
-    shear = [lateral * (lever / float(s.load_arm.item())) ** 2 / K for s, K in ((pair.short, pair.K_r), (pair.long, pair.K_m))]
+    shear = [
+        lateral * (lever / float(s.load_arm.item())) ** 2 / K
+        for s, K in ((pair.short, pair.K_r), (pair.long, pair.K_m))
+    ]
     relaxed = RELAXATION_PER_DECADE * abs(log10(GRASP_TIME / SAMPLE_TEST_TIME))
     ratio = {h: _coupled(pair, data, array, h) for h in (inf, rig.sample_thickness)}
     return [
-        Effect("load cell's own compliance in the sample test",
-               f"{stiffest:g} N/mm becomes {stiffest * cell / (cell - stiffest):.3g} uncorrected", nan, nan, taken,
-               f"subtract it, known to {CELL_ACCURACY:.0%}", known),
-        Effect("pads coupled through one sample", "elastic half-space against separate springs", nan, nan,
-               pair.by_ratio * abs(log(ratio[inf])), f"sample {rig.sample_thickness:g} mm thick, bonded",
-               pair.by_ratio * abs(log(ratio[rig.sample_thickness]))),
-        Effect("rubber shears on stuck pads", "lateral stiffness of the sample on the pad's lever (H/L)^2", *shear,
-               pair.together(*shear), "lubricate the sample: a fifth of it", pair.together(*shear) / 5),
-        Effect("relaxation between sample test and grasp",
-               f"assumed {RELAXATION_PER_DECADE:.0%} a decade, {SAMPLE_TEST_TIME:g} s to {GRASP_TIME:g} s", nan, nan, relaxed,
-               "same waiting time in both, within a factor of two", RELAXATION_PER_DECADE * log10(2)),
+        Effect(
+            "load cell's own compliance in the sample test",
+            f"{stiffest:g} N/mm becomes {stiffest * cell / (cell - stiffest):.3g} uncorrected",
+            nan,
+            nan,
+            taken,
+            f"subtract it, known to {CELL_ACCURACY:.0%}",
+            known,
+        ),
+        Effect(
+            "pads coupled through one sample",
+            "elastic half-space against separate springs",
+            nan,
+            nan,
+            pair.by_ratio * abs(log(ratio[inf])),
+            f"sample {rig.sample_thickness:g} mm thick, bonded",
+            pair.by_ratio * abs(log(ratio[rig.sample_thickness])),
+        ),
+        Effect(
+            "rubber shears on stuck pads",
+            "lateral stiffness of the sample on the pad's lever (H/L)^2",
+            *shear,
+            pair.together(*shear),
+            "lubricate the sample: a fifth of it",
+            pair.together(*shear) / 5,
+        ),
+        Effect(
+            "relaxation between sample test and grasp",
+            f"assumed {RELAXATION_PER_DECADE:.0%} a decade, {SAMPLE_TEST_TIME:g} s to {GRASP_TIME:g} s",
+            nan,
+            nan,
+            relaxed,
+            "same waiting time in both, within a factor of two",
+            RELAXATION_PER_DECADE * log10(2),
+        ),
     ]
 
 
@@ -249,8 +374,17 @@ def _coupled(pair: _Pair, data: Published, array: ArrayModel, thickness: float) 
     reference = int(array.rows(np.array([data.table1.element[data.reference]]))[0])
     K[reference] = pair.K_r
     measuring = int(np.argmin(np.abs(np.log(K / pair.K_m))))
-    found = coupling(K, array.pad_x, array.pad_y, pair.x, reference, array.pad_length,
-                     float(np.max(array.section.width)), thickness, array.rig.sample_poisson)
+    found = coupling(
+        K,
+        array.pad_x,
+        array.pad_y,
+        pair.x,
+        reference,
+        array.pad_length,
+        float(np.max(array.section.width)),
+        thickness,
+        array.rig.sample_poisson,
+    )
     return float(found.ratio[measuring])
 
 
@@ -261,7 +395,9 @@ def _electronics(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
     K[reference] = pair.K_r
     _, deflection = approach(np.array([array.rig.moving_weight]), K, pair.x)
     d = np.array([deflection[reference, 0], deflection[int(np.argmin(np.abs(K - pair.K_m))), 0]])
-    q = np.array([gauge_signal.foil_strain_per_deflection(s, array.gauge).item() for s in (pair.short, pair.long)])
+    q = np.array(
+        [gauge_signal.foil_strain_per_deflection(s, array.gauge).item() for s in (pair.short, pair.long)]
+    )
     factor = array.gauge.factor
     bend = np.abs(readout.bridge_nonlinearity(factor * q * d))
     per_mm = readout.volts_per_strain(factor, array.readout) * q
@@ -270,13 +406,33 @@ def _electronics(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect
     warm = float((drift / (factor * q * d)).max())
     at = f"at the first load, {array.rig.moving_weight:g} N"
     return [
-        Effect("bridge non-linearity", f"quarter bridge {at}", nan, nan, pair.by_ratio * float(abs(bend[1] - bend[0])),
-               "invert the bridge exactly", 0.0),
-        Effect("noise of the averaged reading", f"{array.readout.averaged_noise * 1e3:.2g} mV {at}, two standard deviations",
-               nan, nan, pair.by_ratio * 2 * noise, "slope over all weights", pair.by_ratio * 2 * noise *
-               array.rig.moving_weight / max(_span(array), 1e-9)),
-        Effect("gauge warms itself", f"power on all the time; drift against the signal {at}, R of totals", nan, nan,
-               pair.by_ratio * warm, "power on only while reading; slopes, since what is left is the same in each reading", 0.0),
+        Effect(
+            "bridge non-linearity",
+            f"quarter bridge {at}",
+            nan,
+            nan,
+            pair.by_ratio * float(abs(bend[1] - bend[0])),
+            "invert the bridge exactly",
+            0.0,
+        ),
+        Effect(
+            "noise of the averaged reading",
+            f"{array.readout.averaged_noise * 1e3:.2g} mV {at}, two standard deviations",
+            nan,
+            nan,
+            pair.by_ratio * 2 * noise,
+            "slope over all weights",
+            pair.by_ratio * 2 * noise * array.rig.moving_weight / max(_span(array), 1e-9),
+        ),
+        Effect(
+            "gauge warms itself",
+            f"power on all the time; drift against the signal {at}, R of totals",
+            nan,
+            nan,
+            pair.by_ratio * warm,
+            "power on only while reading; slopes, since what is left is the same in each reading",
+            0.0,
+        ),
     ]
 
 

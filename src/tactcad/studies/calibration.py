@@ -1,9 +1,9 @@
 """From force, deflection and signal readings to Table 1's columns with intervals.
 
-The stage's displacement X is shared by two springs, element K and load cell K_c, so F = k X + c with
-k = K K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, and the series spring is removed
-from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c, as the paper
-did, puts the force's noise on both axes; that estimate is given beside it.
+The stage's displacement X is shared by two springs, element K and load cell K_c, so F = k X + c with k = K
+K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, and the series spring is
+removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
+as the paper did, puts the force's noise on both axes; that estimate is given beside it.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from tactcad.studies.regression import (
     extreme_deviates,
     fit_lines,
     ratio_interval,
+    require_level,
     t_quantile,
     variance_weights,
 )
@@ -72,17 +73,21 @@ class ElementCalibration:
     notes: tuple[str, ...]
 
 
-def calibrate(readings: CalibrationReadings, load_cell: float, *, level: float = 0.95,
-              drop_outliers: bool = False) -> list[ElementCalibration]:
+def calibrate(
+    readings: CalibrationReadings, load_cell: float, *, level: float = 0.95, drop_outliers: bool = False
+) -> list[ElementCalibration]:
     """One row an element, in the order of the file.
 
     load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval.
     """
     if not load_cell > 0:
-        raise InputError("load cell", "stiffness must be positive", value=load_cell, legal="above 0 N/mm, or inf")
-    if not 0.5 <= level < 1:
-        raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
-    return [_element(readings, int(n), load_cell, level, drop_outliers) for n in dict.fromkeys(readings.element)]
+        raise InputError(
+            "load cell", "stiffness must be positive", value=load_cell, legal="above 0 N/mm, or inf"
+        )
+    require_level(level)
+    return [
+        _element(readings, int(n), load_cell, level, drop_outliers) for n in dict.fromkeys(readings.element)
+    ]
 
 
 def series_removed(slope: float, load_cell: float) -> float:
@@ -92,8 +97,9 @@ def series_removed(slope: float, load_cell: float) -> float:
     return slope * load_cell / (load_cell - slope) if slope < load_cell else inf
 
 
-def _element(all_: CalibrationReadings, number: int, load_cell: float, level: float,
-             drop: bool) -> ElementCalibration:
+def _element(
+    all_: CalibrationReadings, number: int, load_cell: float, level: float, drop: bool
+) -> ElementCalibration:
     here = np.flatnonzero(all_.element == number)
     x, run = all_.displacement[here], all_.run[here]
     y = np.column_stack([all_.force[here], all_.signal[here]])
@@ -117,12 +123,21 @@ def _element(all_: CalibrationReadings, number: int, load_cell: float, level: fl
     averaged = _averaged(x, y, run)
     paper = _as_paper(*averaged, load_cell, level, notes)
     return ElementCalibration(
-        number, len(x), len(set(run.tolist())), stiffness, paper[0], per_deflection, paper[1], per_force,
-        _correlation(k, v, covariance, load_cell), dof,
+        number,
+        len(x),
+        len(set(run.tolist())),
+        stiffness,
+        paper[0],
+        per_deflection,
+        paper[1],
+        per_force,
+        _correlation(k, v, covariance, load_cell),
+        dof,
         float(lines.intercept[1] - v * lines.intercept[0] / k),
         *_extremes(*averaged, load_cell),
         *_linearity(*averaged),
-        outliers, tuple(notes),
+        outliers,
+        tuple(notes),
     )
 
 
@@ -132,7 +147,10 @@ def _covariance(lines: Lines, notes: list[str]) -> tuple[np.ndarray, float]:
         return lines.covariance, lines.dof
     slopes = lines.run_slope[np.isfinite(lines.run_slope).all(1)]
     which = "force" if lines.run_p.argmin() == 0 else "signal"
-    notes.append(f"the runs' {which} slopes differ beyond noise (p {lines.run_p.min():.1g}): interval from {len(slopes)} runs")
+    notes.append(
+        f"the runs' {which} slopes differ beyond noise (p {lines.run_p.min():.1g}): interval from "
+        f"{len(slopes)} runs"
+    )
     return np.cov(slopes.T) / len(slopes), len(slopes) - 1
 
 
@@ -140,15 +158,24 @@ def _stiffness(k: float, se: float, load_cell: float, t: float, notes: list[str]
     """The transform of k is monotonic, so the interval's ends transform exactly."""
     low, high = k - t * se, k + t * se
     if low <= 0:
-        notes.append("the force does not rise with displacement beyond noise: the data do not tell the stiffness from zero")
+        notes.append(
+            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
+            "from zero"
+        )
     if high >= load_cell:
         notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")
     slope = (1 - k / load_cell) ** -2 if k < load_cell else inf
-    return Estimate(series_removed(k, load_cell), max(series_removed(low, load_cell), 0.0),
-                    series_removed(high, load_cell), se * slope)
+    return Estimate(
+        series_removed(k, load_cell),
+        max(series_removed(low, load_cell), 0.0),
+        series_removed(high, load_cell),
+        se * slope,
+    )
 
 
-def _sensitivities(k: float, v: float, covariance: np.ndarray, load_cell: float, t: float) -> tuple[Estimate, Estimate]:
+def _sensitivities(
+    k: float, v: float, covariance: np.ndarray, load_cell: float, t: float
+) -> tuple[Estimate, Estimate]:
     """K_v = v/(1 - k/K_c) and K_v/K = v/k, both by Fieller."""
     share = 1 - k / load_cell
     to_share = np.array([[0.0, 1.0], [-1 / load_cell, 0.0]])  # (k, v) -> (v, share)
@@ -172,7 +199,9 @@ def _correlation(k: float, v: float, covariance: np.ndarray, load_cell: float) -
 
 
 def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean readings at each displacement (equal within 1e-9 mm) that every run has; all readings where none is shared."""
+    """Mean readings at each displacement (equal within 1e-9 mm) that every run has; all readings where none
+    is shared.
+    """
     step, index = np.unique(np.round(x, 9), return_inverse=True)
     count = np.bincount(index)
     shared = count == len(np.unique(run))
@@ -182,7 +211,9 @@ def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray
     return step[shared], mean[shared]
 
 
-def _as_paper(x: np.ndarray, y: np.ndarray, load_cell: float, level: float, notes: list[str]) -> tuple[Estimate, Estimate]:
+def _as_paper(
+    x: np.ndarray, y: np.ndarray, load_cell: float, level: float, notes: list[str]
+) -> tuple[Estimate, Estimate]:
     """Slopes with intercept of the averaged readings against d = X - F/K_c, each with its own t interval."""
     d = x - y[:, 0] / load_cell
     lines = fit_lines(d, y, np.zeros(len(d), int))

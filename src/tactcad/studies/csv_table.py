@@ -84,8 +84,8 @@ class Rows:
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
     """The numeric columns `fields` (and `optional` where present) of a CSV file.
 
-    Raises InputError: file not there, not text, no header, column missing or twice, a row of another length, text
-    for a number, a number outside its legal range.
+    Raises InputError: file not there, not text, no header, column missing or twice, a row of another
+    length, text for a number, a number outside its legal range.
     """
     shown = str(path)
     lines = _lines(Path(path), shown)
@@ -98,8 +98,12 @@ def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...
     cells: dict[str, list[Cell]] = {f.name: [] for f in chosen}
     for number, row in lines[1:]:
         if len(row) != len(header):
-            raise InputError(f"{shown}:{number}:{min(len(row), len(header)) + 1}", "a row of another length than the header",
-                             value=len(row), legal=f"{len(header)} columns")
+            raise InputError(
+                f"{shown}:{number}:{min(len(row), len(header)) + 1}",
+                "a row of another length than the header",
+                value=len(row),
+                legal=f"{len(header)} columns",
+            )
         for field, place in zip(chosen, places):
             cells[field.name].append(_cell(row[place], field, f"{shown}:{number}:{place + 1}"))
     if len(lines) == 1:
@@ -113,21 +117,26 @@ def header(path: str | Path) -> tuple[str, ...]:
     return tuple(lines[0][1]) if lines else ()
 
 
-def refuse_duplicates(rows: Rows, names: tuple[str, ...]) -> None:
+def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Raise InputError at the second row that has the same values in the columns `names`."""
     seen: dict[tuple[float, ...], int] = {}
     for i, key in enumerate(zip(*(rows.values(n) for n in names))):
         if key in seen:
             what = " and ".join(f"{n} {v:g}" for n, v in zip(names, key))
-            raise InputError(rows.where(i, names[0]), f"{what} stands already on line {rows.lines[seen[key]]}",
-                             legal="each once")
+            raise InputError(
+                rows.where(i, names[0]),
+                f"{what} stands already on line {rows.lines[seen[key]]}",
+                legal=legal,
+            )
         seen[key] = i
 
 
 def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
     try:
         if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise InputError(shown, "file too large", value=path.stat().st_size, legal=f"up to {LARGEST_FILE} bytes")
+            raise InputError(
+                shown, "file too large", value=path.stat().st_size, legal=f"up to {LARGEST_FILE} bytes"
+            )
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
@@ -156,7 +165,9 @@ def _check_header(shown: str, line: int, header: list[str], fields: tuple[Field,
             raise InputError(f"{shown}:{line}:{i + 1}", "column named twice", value=name)
     for field in fields:
         if field.name not in header:
-            raise InputError(f"{shown}:{line}:{len(header) + 1}", f"column {field.name!r} is missing", legal=_names(fields))
+            raise InputError(
+                f"{shown}:{line}:{len(header) + 1}", f"column {field.name!r} is missing", legal=_names(fields)
+            )
 
 
 def _names(fields: tuple[Field, ...]) -> str:
@@ -167,7 +178,9 @@ def _cell(text: str, field: Field, where: str) -> Cell:
     try:
         value = float(text)
     except ValueError:
-        raise InputError(where, f"column {field.name!r} is not a number", value=text, legal=field.legal) from None
+        raise InputError(
+            where, f"column {field.name!r} is not a number", value=text, legal=field.legal
+        ) from None
     if not field.allows(value):
         raise InputError(where, f"column {field.name!r} is out of range", value=text, legal=field.legal)
     return Cell(text, value)

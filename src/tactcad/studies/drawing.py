@@ -9,7 +9,13 @@ from contextlib import contextmanager
 
 # Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
-    "#000000", "#E69F00", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7",
+    "#000000",
+    "#E69F00",
+    "#56B4E9",
+    "#009E73",
+    "#0072B2",
+    "#D55E00",
+    "#CC79A7",
 )
 SERIES = (BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
@@ -57,7 +63,7 @@ def svg(figure, name: str) -> str:
     with matplotlib.rc_context({"svg.hashsalt": name}):
         figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Title": name})
     text = out.getvalue()
-    text = text[text.index("<svg"):]
+    text = text[text.index("<svg") :]
     # Several pictures share one page: ids get the picture's name before them.
     text = re.sub(r'(\bid="|xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
     return re.sub(r"[ \t]+\n", "\n", text)

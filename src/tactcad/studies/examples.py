@@ -30,13 +30,17 @@ def truth() -> Truth:
 def calibration_csv(rng: np.random.Generator) -> str:
     """Three runs an element, in the paper's steps."""
     figure = published.load().figure
-    step, travel, cell = figure["calibration_step"] * 1e-3, figure["calibration_travel"] * 1e-3, figure["load_cell_stiffness"]
+    step, travel, cell = (
+        figure["calibration_step"] * 1e-3,
+        figure["calibration_travel"] * 1e-3,
+        figure["load_cell_stiffness"],
+    )
     displacement = step * np.arange(round(travel / step) + 1)
     rows = calibration_rows(truth(), cell, displacement, int(figure["calibration_runs"]), NOISE, rng)
     lines = [
         "# SIMULATED readings, not measured ones (python -m tactcad.studies.examples).",
-        f"# Truth: the paper's Table 1; load cell {cell:g} N/mm in series; noise {NOISE.force * 1e3:g} mN, {NOISE.displacement * 1e3:g} um, "
-        f"{NOISE.signal * 1e3:g} mV.",
+        f"# Truth: the paper's Table 1; load cell {cell:g} N/mm in series; noise {NOISE.force * 1e3:g} "
+        f"mN, {NOISE.displacement * 1e3:g} um, {NOISE.signal * 1e3:g} mV.",
         "element,run,displacement_um,force_N,signal_V",
     ]
     lines += [f"{e:.0f},{r:.0f},{x * 1e3:.0f},{f:.4f},{v:.5f}" for e, r, x, f, v in rows]
@@ -52,8 +56,8 @@ def grasp_csv(rng: np.random.Generator) -> str:
     height = PAD_HEIGHT * rng.standard_normal(len(array.element))
     lines = [
         "# SIMULATED readings, not measured ones (python -m tactcad.studies.examples).",
-        f"# Truth: the paper's Table 1; sample 1 is {SAMPLES[0]:g} N/mm, sample 2 {SAMPLES[1]:g} N/mm under one pad; pad heights +-{PAD_HEIGHT * 1e3:g} um, "
-        f"noise {READING_NOISE * 1e3:g} mV.",
+        f"# Truth: the paper's Table 1; sample 1 is {SAMPLES[0]:g} N/mm, sample 2 {SAMPLES[1]:g} N/mm "
+        f"under one pad; pad heights +-{PAD_HEIGHT * 1e3:g} um, noise {READING_NOISE * 1e3:g} mV.",
         "sample,load_N,element,signal_V",
     ]
     for number, x in enumerate(SAMPLES, 1):

@@ -24,7 +24,10 @@ def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
     found = {"fem-plane": np.empty(len(distinct)), "fem-solid": np.empty(len(distinct))}
     for i, row in enumerate(distinct):
         one = HingeSection(*row)
-        shape, material = reference_shape(one), (float(one.youngs_modulus), float(one.poisson), float(one.width))
+        shape, material = (
+            reference_shape(one),
+            (float(one.youngs_modulus), float(one.poisson), float(one.width)),
+        )
         found["fem-plane"][i] = solve_plane(shape, *material, density=PLANE_DENSITY).stiffness
         found["fem-solid"][i] = solve_solid(shape, *material, density=SOLID_DENSITY).stiffness
     return {name: values[index.ravel()] for name, values in found.items()}

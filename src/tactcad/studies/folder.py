@@ -1,7 +1,7 @@
 """A report's folder appears whole or not at all.
 
-It is written beside its place and then moved there in one step; an earlier report is exchanged for it in one step where
-the system can (Linux's renameat2), else moved aside first and back if the second move fails.
+It is written beside its place and then moved there in one step; an earlier report is exchanged for it in
+one step where the system can (Linux's renameat2), else moved aside first and back if the second move fails.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ AT_FDCWD, RENAME_EXCHANGE = -100, 2
 def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
     """Make `out` a folder of exactly these files; their names may have one folder in them.
 
-    `out` may be missing, empty, or an earlier report (a report.json of that schema beside files of these kinds only).
-    Raises InputError where it is something else, CheckFailure where the disk refuses; then `out` is as before.
+    `out` may be missing, empty, or an earlier report (a report.json of that schema beside files of these
+    kinds only). Raises InputError where it is something else, CheckFailure where the disk refuses; then
+    `out` is as before.
     """
     out = Path(os.path.abspath(out))
     _require_ours(out, files, schema)
@@ -36,7 +37,9 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
             (part / name).write_bytes(content)
         _move(part, out)
     except OSError as error:
-        raise CheckFailure(f"{out}: cannot be written: {error.strerror or error}; nothing was changed") from None
+        raise CheckFailure(
+            f"{out}: cannot be written: {error.strerror or error}; nothing was changed"
+        ) from None
     finally:
         if part is not None:
             shutil.rmtree(part, ignore_errors=True)
@@ -46,7 +49,9 @@ def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
     if not os.path.lexists(out):
         return
     if out.is_symlink() or not out.is_dir():
-        raise InputError(str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report")
+        raise InputError(
+            str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report"
+        )
     there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
     endings = {Path(name).suffix for name in files}
     if not there:
@@ -57,8 +62,12 @@ def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
         ours = False
     foreign = [name for name in there if Path(name).suffix not in endings]
     if not ours or foreign:
-        raise InputError(str(out), "holds files that are not an earlier report's", value=foreign[0] if foreign else there[0],
-                         legal="a folder that is missing, empty, or an earlier report")
+        raise InputError(
+            str(out),
+            "holds files that are not an earlier report's",
+            value=foreign[0] if foreign else there[0],
+            legal="a folder that is missing, empty, or an earlier report",
+        )
 
 
 def _move(part: Path, out: Path) -> None:

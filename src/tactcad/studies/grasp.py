@@ -1,10 +1,12 @@
-"""Object stiffness from grasp readings: per pair by Fieller, combined over all elements with their covariance.
+"""Object stiffness from grasp readings: per pair by Fieller, combined over all elements with their
+covariance.
 
-One approach p(load) moves every pad, so signal = offset + g p: pad height and tilt go into the offset, and errors
-of the load, friction and relaxation into p, which all elements share. With s = g/K_v (deflection) and f = K s (force)
-per unit approach, equation (1) is f + x s = the same for all elements, x = K_obj. A pair gives equation (3),
-x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All elements together give the x that makes f + x s most equal;
-pairs that share a reference element are correlated, and this is their generalised least squares.
+One approach p(load) moves every pad, so signal = offset + g p: pad height and tilt go into the offset, and
+errors of the load, friction and relaxation into p, which all elements share. With s = g/K_v (deflection)
+and f = K s (force) per unit approach, equation (1) is f + x s = the same for all elements, x = K_obj. A
+pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All elements together give
+the x that makes f + x s most equal; pairs that share a reference element are correlated, and this is their
+generalised least squares.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from scipy.special import chdtrc, fdtrc
 
 from tactcad.design.messages import InputError
 from tactcad.studies.readings import GraspReadings
-from tactcad.studies.regression import t_quantile
+from tactcad.studies.regression import require_level, t_quantile
 
 STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
 DISAGREE = 0.01  # probability below which the elements are said to disagree
@@ -26,7 +28,9 @@ ANGLES = 721  # scan of the projective line of K_obj
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of freedom."""
+    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of
+    freedom.
+    """
 
     element: np.ndarray
     stiffness: np.ndarray
@@ -41,7 +45,8 @@ class Sensitivity:
 class Interval:
     """K_obj (N/mm) within [low, high]; high is inf and low 0 where the data do not bound it.
 
-    estimate may be negative or inf: then no soft object explains the readings. empty: no K_obj >= 0 lies within it.
+    estimate may be negative or inf: then no soft object explains the readings. empty: no K_obj >= 0 lies
+    within it.
     """
 
     estimate: float
@@ -110,23 +115,29 @@ class Slopes:
         return self.from_signal + self.from_calibration
 
 
-def evaluate(readings: GraspReadings, calibration: Sensitivity, *, reference: int | None = None,
-             level: float = 0.95) -> Grasp:
+def evaluate(
+    readings: GraspReadings, calibration: Sensitivity, *, reference: int | None = None, level: float = 0.95
+) -> Grasp:
     """K_obj of one sample. The reference is the stiffest element of those read, unless given.
 
     Raises InputError: an element without calibration, fewer than two elements or three loads in contact.
     """
+    require_level(level)
     touching = readings.load > 0
     if touching.sum() < 3 or len(readings.element) < 2:
-        raise InputError(f"sample {readings.sample}", "too little to tell a slope from noise",
-                         value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
-                         legal="two elements and three loads at least")
+        raise InputError(
+            f"sample {readings.sample}",
+            "too little to tell a slope from noise",
+            value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
+            legal="two elements and three loads at least",
+        )
     slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
     stiffness = slopes.f / slopes.s
     number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
     if number not in readings.element:
-        raise InputError("reference", "was not read in this grasp", value=number,
-                         legal=str(readings.element.tolist()))
+        raise InputError(
+            "reference", "was not read in this grasp", value=number, legal=str(readings.element.tolist())
+        )
     r = int(np.flatnonzero(readings.element == number)[0])
     others = [i for i in np.argsort(-stiffness, kind="stable") if i != r]
     pairs = tuple(_pair(slopes, int(m), r, level) for m in others)
@@ -134,19 +145,35 @@ def evaluate(readings: GraspReadings, calibration: Sensitivity, *, reference: in
     notes = []
     dropped = int((~touching).sum())
     if dropped:
-        notes.append(f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter")
+        notes.append(
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
+            "enter"
+        )
     notes += _strays(readings.element, readings.signal[:, touching])
     if widened > 1:
-        notes.append(f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened {widened:.2g} times")
-    return Grasp(readings.sample, pairs, combined, noise, slopes.signal_dof, p, widened, int(touching.sum()), dropped,
-                 tuple(notes))
+        notes.append(
+            f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened "
+            f"{widened:.2g} times"
+        )
+    return Grasp(
+        readings.sample,
+        pairs,
+        combined,
+        noise,
+        slopes.signal_dof,
+        p,
+        widened,
+        int(touching.sum()),
+        dropped,
+        tuple(notes),
+    )
 
 
 def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitivity) -> tuple[Slopes, float]:
     """Slopes of all elements against their common approach, and the noise of one signal (V).
 
-    signal[element, state] less each element's mean is g p + noise, equal noise in every channel: its best rank-one
-    approximation. Errors of p are errors of all g alike, which K_obj does not see.
+    signal[element, state] less each element's mean is g p + noise, equal noise in every channel: its best
+    rank-one approximation. Errors of p are errors of all g alike, which K_obj does not see.
     """
     rows = [_row(calibration, int(n)) for n in element]
     centred = signal - signal.mean(1, keepdims=True)
@@ -168,7 +195,9 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
 
 
 def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
-    """Elements whose signals do not follow the approach that the others share (F test against the others' noise)."""
+    """Elements whose signals do not follow the approach that the others share (F test against the others'
+    noise).
+    """
     n, each = len(element), signal.shape[1] - 2
     if n < 3:
         return []
@@ -182,16 +211,19 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
         # the others' approach is known to noise/size[0] at each load, and g carries that over
         own = ((centred[i] - g * vt[0]) ** 2).sum() / each / (1 + (g / size[0]) ** 2)
         if noise > 0 and fdtrc(each, each * (n - 2), own / noise) < STRAY / n:
-            notes.append(f"element {number} does not follow the approach of the others: late contact, a limit of the read-out, or a bad gauge")
+            notes.append(
+                f"element {number} does not follow the approach of the others: late contact, a limit of "
+                "the read-out, or a bad gauge"
+            )
     return notes
 
 
 def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> tuple[Interval, float, float]:
-    """K_obj that makes f + x s most equal over the members (default all), its interval, p of their disagreement,
-    and the factor by which that widens the standard error.
+    """K_obj that makes f + x s most equal over the members (default all), its interval, p of their
+    disagreement, and the factor by which that widens the standard error.
 
-    Two members: the interval is Fieller's. The line of x is closed at infinity (x = scale tan(angle)), so that an
-    interval that runs through infinity is found like any other.
+    Two members: the interval is Fieller's. The line of x is closed at infinity (x = scale tan(angle)), so
+    that an interval that runs through infinity is found like any other.
     """
     m = list(range(len(slopes.s))) if members is None else members
     f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
@@ -224,16 +256,32 @@ def _pair(slopes: Slopes, m: int, r: int, level: float) -> Pair:
     var = [slopes.covariance[i][1, 1] / slopes.s[i] ** 2 for i in (m, r)]
     half = t_quantile(level, _satterthwaite(slopes, [m, r], 0.0)) * sum(var) ** 0.5 * abs(ratio)
     x = object_.estimate
-    condition = inf if x == 0 or k_r == k_m else abs((k_r + x) * (k_m + x) / (x * (k_r - k_m))) if not isinf(x) else inf
-    return Pair(int(slopes.element[m]), int(slopes.element[r]), float(ratio), float(ratio - half), float(ratio + half),
-                object_, float(condition))
+    condition = (
+        inf
+        if x == 0 or k_r == k_m
+        else abs((k_r + x) * (k_m + x) / (x * (k_r - k_m)))
+        if not isinf(x)
+        else inf
+    )
+    return Pair(
+        int(slopes.element[m]),
+        int(slopes.element[r]),
+        float(ratio),
+        float(ratio - half),
+        float(ratio + half),
+        object_,
+        float(condition),
+    )
 
 
 def _row(calibration: Sensitivity, number: int) -> int:
     found = np.flatnonzero(calibration.element == number)
     if not len(found):
-        raise InputError("calibration", f"element {number} of the grasp is not there",
-                         legal=str(calibration.element.tolist()))
+        raise InputError(
+            "calibration",
+            f"element {number} of the grasp is not there",
+            legal=str(calibration.element.tolist()),
+        )
     return int(found[0])
 
 
@@ -243,8 +291,12 @@ def _satterthwaite(slopes: Slopes, m: list[int], x: float) -> float:
     signal = np.array([along @ slopes.from_signal[i] @ along for i in m])
     parts = np.array([along @ slopes.from_calibration[i] @ along for i in m])
     weight = 1 / (signal + parts)
-    weight = weight * (1 - weight / weight.sum())  # what each element's noise does to the contrast between them
-    bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + ((weight * parts) ** 2 / slopes.calibration_dof[m]).sum()
+    weight = weight * (
+        1 - weight / weight.sum()
+    )  # what each element's noise does to the contrast between them
+    bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + (
+        (weight * parts) ** 2 / slopes.calibration_dof[m]
+    ).sum()
     return float((weight * (signal + parts)).sum() ** 2 / bottom)
 
 
@@ -280,14 +332,17 @@ def _interval(misfit, best: float, limit: float, scale: float) -> Interval:
     for shift in (0.0, pi, -pi):
         a, b = max(low, shift), min(high, shift + pi / 2)
         if a <= b:
-            return Interval(estimate, _value(a - shift, scale) if a > shift else 0.0,
-                            inf if b >= shift + pi / 2 else _value(b - shift, scale))
+            return Interval(
+                estimate,
+                _value(a - shift, scale) if a > shift else 0.0,
+                inf if b >= shift + pi / 2 else _value(b - shift, scale),
+            )
     return Interval(estimate, inf, 0.0, empty=True)
 
 
 def _value(angle: float, scale: float) -> float:
     """K_obj of an angle; inf at a right angle."""
     reduced = angle - pi * np.floor((angle + pi / 2) / pi)
-    return inf if abs(reduced - pi / 2) < 1e-15 or abs(reduced + pi / 2) < 1e-15 else float(scale * tan(reduced))
-
-
+    return (
+        inf if abs(reduced - pi / 2) < 1e-15 or abs(reduced + pi / 2) < 1e-15 else float(scale * tan(reduced))
+    )

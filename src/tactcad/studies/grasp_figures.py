@@ -1,4 +1,6 @@
-"""Figures 6 and 7 again: R against the grasping force, simulated, and R against K_m/K_obj, measured and by equation (2)."""
+"""Figures 6 and 7 again: R against the grasping force, simulated, and R against K_m/K_obj, measured and by
+equation (2).
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ REPEATS = 400  # simulated grasps for the error bars
 
 @dataclass(frozen=True)
 class Simulated:
-    """R [measuring element, load] of one simulated array: one grasp as drawn, standard deviation over many, truth."""
+    """R [measuring element, load] of one simulated array: one grasp as drawn, standard deviation over many,
+    truth.
+    """
 
     reference_stiffness: float
     ratio: np.ndarray
@@ -36,11 +40,14 @@ class Figure6:
     as_printed: Simulated
     as_supported: Simulated
     with_pad_heights: Simulated  # supported stiffness, pads out of plane by the tolerance: R from totals
-    slopes_with_pad_heights: np.ndarray  # R from slopes of the same grasps, mean over many, by measuring element
+    slopes_with_pad_heights: (
+        np.ndarray
+    )  # R from slopes of the same grasps, mean over many, by measuring element
 
 
 def elements_in_parallel(data: Published, array: ArrayModel) -> tuple[Truth, int]:
-    """All elements that press on the sample: Table 1's, and by the beam model those of the design that it leaves out.
+    """All elements that press on the sample: Table 1's, and by the beam model those of the design that it
+    leaves out.
 
     Returns the truth for a simulation and the index of the reference element.
     """
@@ -91,7 +98,9 @@ def figure_6(data: Published, array: ArrayModel, supported: float, rng: np.rando
 
 @dataclass(frozen=True)
 class Figure7:
-    """Measured points [measuring element, sample] and equation (2) over K_m/K_obj for two reference stiffnesses."""
+    """Measured points [measuring element, sample] and equation (2) over K_m/K_obj for two reference
+    stiffnesses.
+    """
 
     measuring: np.ndarray
     relative: np.ndarray  # K_m/K_obj of the points
@@ -100,7 +109,9 @@ class Figure7:
     printed: np.ndarray  # [measuring element, axis]
     supported: np.ndarray
     supported_stiffness: float
-    slope: np.ndarray  # straight line R = c + slope K_m/K_obj through each element's points, as the paper draws
+    slope: (
+        np.ndarray
+    )  # straight line R = c + slope K_m/K_obj through each element's points, as the paper draws
     line_rms: float  # of R about these lines
     model_rms: float  # of R about equation (2) with the supported stiffness
     line_parameters: int
@@ -118,13 +129,27 @@ def figure_7(study: Table2Study) -> Figure7:
     straight = np.array([np.polyval(p, a) for p, a in zip(lines, relative)])
     model = lumped.deflection_ratio(K_r, k[:, None], x[None, :])
     curve = lambda r: lumped.deflection_ratio(r, k[:, None], k[:, None] / axis[None, :])  # noqa: E731
-    return Figure7(k, relative, R, axis, curve(study.reference_printed), curve(K_r), K_r,
-                   np.array([p[0] for p in lines]), float(((R - straight) ** 2).mean() ** 0.5),
-                   float(((R - model) ** 2).mean() ** 0.5), 2 * len(k), 1, _chance(R, straight, model, 2 * len(k)))
+    return Figure7(
+        k,
+        relative,
+        R,
+        axis,
+        curve(study.reference_printed),
+        curve(K_r),
+        K_r,
+        np.array([p[0] for p in lines]),
+        float(((R - straight) ** 2).mean() ** 0.5),
+        float(((R - model) ** 2).mean() ** 0.5),
+        2 * len(k),
+        1,
+        _chance(R, straight, model, 2 * len(k)),
+    )
 
 
 def _chance(R: np.ndarray, straight: np.ndarray, model: np.ndarray, parameters: int) -> float:
-    """F test of the lines against a model with one parameter, which they do not contain: a guide, not a proof."""
+    """F test of the lines against a model with one parameter, which they do not contain: a guide, not a
+    proof.
+    """
     lines, one = ((R - straight) ** 2).sum(), ((R - model) ** 2).sum()
     extra, rest = parameters - 1, R.size - parameters
     return float(fdtrc(extra, rest, max(one - lines, 0.0) / extra / (lines / rest)))

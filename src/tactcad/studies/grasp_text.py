@@ -16,17 +16,45 @@ def to_text(found: list[Grasp], level: float) -> str:
     lines = []
     for g in found:
         c = g.combined
-        lines += [f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {level:.0%} interval {_interval(c)} ({c.verdict})", ""]
-        head = ("measuring", "reference", "R", f"{level:.0%} interval", "K_obj N/mm", f"{level:.0%} interval", "condition", "verdict")
+        lines += [
+            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {level:.0%} interval {_interval(c)} "
+            f"({c.verdict})",
+            "",
+        ]
+        head = (
+            "measuring",
+            "reference",
+            "R",
+            f"{level:.0%} interval",
+            "K_obj N/mm",
+            f"{level:.0%} interval",
+            "condition",
+            "verdict",
+        )
         body = [
-            (str(p.measuring), str(p.reference), f"{p.ratio:.4f}", f"{p.ratio_low:.4f} to {p.ratio_high:.4f}", _number(p.object.estimate),
-             _interval(p.object), f"{p.condition:.1f}", p.object.verdict)
+            (
+                str(p.measuring),
+                str(p.reference),
+                f"{p.ratio:.4f}",
+                f"{p.ratio_low:.4f} to {p.ratio_high:.4f}",
+                _number(p.object.estimate),
+                _interval(p.object),
+                f"{p.condition:.1f}",
+                p.object.verdict,
+            )
             for p in g.pairs
         ]
         width = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
-        lines += ["  ".join(cell.rjust(w) for cell, w in zip(line[:-1], width)) + "  " + line[-1] for line in [head, *body]]
-        lines += ["", f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees of freedom); the combined value uses all "
-                      "elements at once, with the covariance of pairs that share the reference"]
+        lines += [
+            "  ".join(cell.rjust(w) for cell, w in zip(line[:-1], width)) + "  " + line[-1]
+            for line in [head, *body]
+        ]
+        lines += [
+            "",
+            f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees "
+            "of freedom); the combined value uses all elements at once, with the covariance of pairs "
+            "that share the reference",
+        ]
         lines += [*g.notes, ""]
     return "\n".join(lines)
 

@@ -1,8 +1,8 @@
 """Which hinge fits Table 1 and the paper's two strains best, and what they cannot tell apart.
 
 The thickness is the paper's. Length, fillet radius and notch form, which the paper leaves out, are varied:
-ln K has one unknown standard error, so the regions are those of least squares (F), and the strains enter by the
-accuracy that one may expect of a plane finite-element model.
+ln K has one unknown standard error, so the regions are those of least squares (F), and the strains enter by
+the accuracy that one may expect of a plane finite-element model.
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ STRAIN_ACCURACY = 0.01
 
 @dataclass(frozen=True)
 class Form:
-    """One notch form: best fit and regions. Lengths mm; square sums of ln K over the grid [radius, length]."""
+    """One notch form: best fit and regions. Lengths mm; square sums of ln K over the grid [radius,
+    length].
+    """
 
     name: str
     two_sided: bool
@@ -43,7 +45,9 @@ class Form:
     design_high: float
     effective_length: float  # mean E b t^3/(12 K L^2) of the fitted elements: what K identifies
     effective_spread: float  # over the 95 % region: (largest - least)/mean
-    radius_from_strain: tuple[float, float]  # radii whose face strain agrees with the printed strains; NaN if none
+    radius_from_strain: tuple[
+        float, float
+    ]  # radii whose face strain agrees with the printed strains; NaN if none
 
 
 @dataclass(frozen=True)
@@ -105,8 +109,18 @@ def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
         rest = np.arange(n) != i
         square = ((logs[own][at][:, rest] - np.log(K[rest])) ** 2).sum(-1)
         leave[int(number)] = float(LENGTHS[np.nanargmin(square)])
-    return HingeFit(data.table1.element[here], tuple(forms), strains, design_l, design_r, own, float(region),
-                    float(max(sums) / min(sums)), float(fdtri(n - 2, n - 2, 0.95)), leave)
+    return HingeFit(
+        data.table1.element[here],
+        tuple(forms),
+        strains,
+        design_l,
+        design_r,
+        own,
+        float(region),
+        float(max(sums) / min(sums)),
+        float(fdtri(n - 2, n - 2, 0.95)),
+        leave,
+    )
 
 
 def _grid(s: HingeSection, rung: str) -> np.ndarray:
@@ -122,8 +136,15 @@ def _grid(s: HingeSection, rung: str) -> np.ndarray:
     return np.log(ladder.evaluate(grid, rung).stiffness)
 
 
-def _form(name: str, two: bool, log_k: np.ndarray, K: np.ndarray, s: HingeSection, design_r: float,
-          strains: StrainCheck) -> Form:
+def _form(
+    name: str,
+    two: bool,
+    log_k: np.ndarray,
+    K: np.ndarray,
+    s: HingeSection,
+    design_r: float,
+    strains: StrainCheck,
+) -> Form:
     n = len(K)
     square = ((log_k - np.log(K)) ** 2).sum(-1)
     i, j = np.unravel_index(np.nanargmin(square), square.shape)
@@ -140,10 +161,20 @@ def _form(name: str, two: bool, log_k: np.ndarray, K: np.ndarray, s: HingeSectio
     agrees = np.abs(factor / strains.factor - 1) <= 2 * STRAIN_ACCURACY
     radii = (float(RADII[agrees].min()), float(RADII[agrees].max())) if agrees.any() else (np.nan, np.nan)
     return Form(
-        name, two, square, float(LENGTHS[j]), float(RADII[i]), float((square[i, j] / (n - 2)) ** 0.5), at_radius,
-        np.sqrt(filled.min(1) / (n - 1)), float(LENGTHS[own.argmin()]), float(LENGTHS[inside].min()),
-        float(LENGTHS[inside].max()), float(effective[i, j]),
-        float((effective[region].max() - effective[region].min()) / effective[i, j]), radii,
+        name,
+        two,
+        square,
+        float(LENGTHS[j]),
+        float(RADII[i]),
+        float((square[i, j] / (n - 2)) ** 0.5),
+        at_radius,
+        np.sqrt(filled.min(1) / (n - 1)),
+        float(LENGTHS[own.argmin()]),
+        float(LENGTHS[inside].min()),
+        float(LENGTHS[inside].max()),
+        float(effective[i, j]),
+        float((effective[region].max() - effective[region].min()) / effective[i, j]),
+        radii,
     )
 
 
@@ -167,6 +198,13 @@ def _strains(data: Published, t: float, array: ArrayModel) -> StrainCheck:
     offset, factor = solve(eps)
     corners = [solve(eps + half * np.array(sign)) for sign in ((1, -1), (-1, 1), (1, 1), (-1, -1))]
     pad_half = array.pad_length / 2
-    return StrainCheck(arms, tuple(eps.tolist()), tuple(unit * (a - pad_half) for a in arms), float(offset),
-                       float(max(abs(c[0] - offset) for c in corners)), float(factor),
-                       float(max(abs(c[1] - factor) for c in corners)), pad_half)
+    return StrainCheck(
+        arms,
+        tuple(eps.tolist()),
+        tuple(unit * (a - pad_half) for a in arms),
+        float(offset),
+        float(max(abs(c[0] - offset) for c in corners)),
+        float(factor),
+        float(max(abs(c[1] - factor) for c in corners)),
+        pad_half,
+    )

@@ -1,4 +1,6 @@
-"""Equation (3) turned on Table 2: K_obj from R, how far off, and what the condition number says beforehand."""
+"""Equation (3) turned on Table 2: K_obj from R, how far off, and what the condition number says
+beforehand.
+"""
 
 from __future__ import annotations
 
@@ -47,27 +49,40 @@ class Inversion:
 
 
 def invert(study: Table2Study) -> Inversion:
-    """With the printed reference stiffness and with the one that Table 2 supports; the same noise of R for both."""
+    """With the printed reference stiffness and with the one that Table 2 supports; the same noise of R
+    for both.
+    """
     spread = study.supported.rms
     fit = study.supported
     half = np.log(fit.high[0] / fit.value[0]) / t_quantile(0.95, min(study.ratio.shape) - 1)
     printed = _invert(study, study.reference_printed, 0.0, spread)
     supported = _invert(study, fit.value[0], fit.value[0] * half, spread)
     error = np.abs(np.log(np.where(supported.physical(), supported.estimate, np.nan) / study.object_printed))
-    return Inversion(study.measuring, study.object_printed, spread, printed, supported,
-                     _spearman(np.abs(supported.condition), np.where(np.isnan(error), np.inf, error)))
+    return Inversion(
+        study.measuring,
+        study.object_printed,
+        spread,
+        printed,
+        supported,
+        _spearman(np.abs(supported.condition), np.where(np.isnan(error), np.inf, error)),
+    )
 
 
 def _invert(study: Table2Study, K_r: float, K_r_se: float, spread: float) -> Inverted:
     k, x, R = study.measuring[:, None], study.object_printed[None, :], study.ratio
     var = (spread * R) ** 2
-    interval = fieller.ratio_interval(K_r - R * k, R - 1, k * k * var + K_r_se**2, var, -k * var,
-                                      quantile=t_quantile(0.95, R.size - 1))
+    interval = fieller.ratio_interval(
+        K_r - R * k, R - 1, k * k * var + K_r_se**2, var, -k * var, quantile=t_quantile(0.95, R.size - 1)
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         condition = lumped.condition_in_ratio(K_r, k, x)
-    return Inverted(K_r, lumped.object_stiffness(K_r, k, R), interval.lower, interval.upper, interval.bounded, condition)
+    return Inverted(
+        K_r, lumped.object_stiffness(K_r, k, R), interval.lower, interval.upper, interval.bounded, condition
+    )
 
 
 def _spearman(a: np.ndarray, b: np.ndarray) -> float:
-    rank = lambda v: np.argsort(np.argsort(v.ravel(), kind="stable"), kind="stable").astype(float)  # noqa: E731
+    def rank(v: np.ndarray) -> np.ndarray:
+        return np.argsort(np.argsort(v.ravel(), kind="stable"), kind="stable").astype(float)
+
     return float(np.corrcoef(rank(a), rank(b))[0, 1])

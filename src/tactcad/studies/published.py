@@ -98,8 +98,8 @@ class Published:
 def load(table1: str | Path | None = None, table2: str | Path | None = None) -> Published:
     """The paper's data; another file of the same form may stand in for a table.
 
-    Raises InputError with file, line and column for a missing column, text for a number, a value out of range, an
-    element that stands twice, a grid of Table 2 that has gaps.
+    Raises InputError with file, line and column for a missing column, text for a number, a value out of
+    range, an element that stands twice, a grid of Table 2 that has gaps.
     """
     data = files("tactcad.studies") / "data"
     figures = _figures(data / "printed.csv")
@@ -117,7 +117,9 @@ def _column(rows: Rows, field: Field) -> Column:
 def _table1(rows: Rows) -> Table1:
     refuse_duplicates(rows, ("element",))
     if len(rows) < 3:
-        raise InputError(f"{rows.path}:{rows.lines[-1]}:1", "too few elements", value=len(rows), legal="three at least")
+        raise InputError(
+            f"{rows.path}:{rows.lines[-1]}:1", "too few elements", value=len(rows), legal="three at least"
+        )
     number = rows.values("element").astype(int)
     return Table1(number, *(_column(rows, f) for f in TABLE_1_FIELDS[1:]))
 
@@ -128,11 +130,18 @@ def _table2(rows: Rows) -> Table2:
     k, x = rows.values(measuring), rows.values(sample)
     k_once, x_once = list(dict.fromkeys(k)), list(dict.fromkeys(x))
     if len(rows) != len(k_once) * len(x_once):
-        raise InputError(f"{rows.path}:{rows.lines[-1]}:1", "not every measuring element has every sample",
-                         value=len(rows), legal=f"{len(k_once)} x {len(x_once)} rows")
+        raise InputError(
+            f"{rows.path}:{rows.lines[-1]}:1",
+            "not every measuring element has every sample",
+            value=len(rows),
+            legal=f"{len(k_once)} x {len(x_once)} rows",
+        )
     if len(k_once) < 3 or len(x_once) < 2:
-        raise InputError(f"{rows.path}:{rows.lines[-1]}:1", "too few rows",
-                         legal="three measuring elements and two samples at least")
+        raise InputError(
+            f"{rows.path}:{rows.lines[-1]}:1",
+            "too few rows",
+            legal="three measuring elements and two samples at least",
+        )
     order = np.lexsort(([x_once.index(v) for v in x], [k_once.index(v) for v in k]))
     shape = (len(k_once), len(x_once))
 
@@ -140,12 +149,18 @@ def _table2(rows: Rows) -> Table2:
         column = _column(rows, field)
         return Column(column.value[order].reshape(shape), column.half_step[order].reshape(shape), field.unit)
 
-    return Table2(grid(TABLE_2_FIELDS[0])[:, 0], grid(TABLE_2_FIELDS[1])[0], grid(TABLE_2_FIELDS[2]),
-                  grid(TABLE_2_FIELDS[3]))
+    return Table2(
+        grid(TABLE_2_FIELDS[0])[:, 0],
+        grid(TABLE_2_FIELDS[1])[0],
+        grid(TABLE_2_FIELDS[2]),
+        grid(TABLE_2_FIELDS[3]),
+    )
 
 
 def _figures(path) -> tuple[dict, dict, dict, dict]:
-    lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][1:]
+    lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
+        1:
+    ]
     cells = {name: csv_table.Cell(text, float(text)) for name, text, _, _ in lines}
     return (
         {name: cell.value for name, cell in cells.items()},

@@ -52,7 +52,11 @@ class GraspReadings:
 def calibration(path: str | Path) -> CalibrationReadings:
     """Readings of `tactcad calibrate`. Raises InputError with file, line and column."""
     rows, scaled = _read(path, (ELEMENT, RUN), ("displacement", "force", "signal"))
-    refuse_duplicates(rows, ("element", "run", scaled["displacement"][0]))
+    refuse_duplicates(
+        rows,
+        ("element", "run", scaled["displacement"][0]),
+        "each displacement once a run; number an upward and a downward stroke as two runs",
+    )
     out = CalibrationReadings(
         rows.values("element").astype(int),
         rows.values("run").astype(int),
@@ -63,8 +67,12 @@ def calibration(path: str | Path) -> CalibrationReadings:
         here = np.flatnonzero(out.element == number)
         runs = len(set(out.run[here]))
         if len(here) < runs + 3 or len(set(out.displacement[here])) < 3:
-            raise InputError(rows.where(int(here[-1]), "element"), f"too few readings of element {number}",
-                             value=len(here), legal="three more than runs, at three displacements at least")
+            raise InputError(
+                rows.where(int(here[-1]), "element"),
+                f"too few readings of element {number}",
+                value=len(here),
+                legal="three more than runs, at three displacements at least",
+            )
     return out
 
 
@@ -91,16 +99,26 @@ def grasps(path: str | Path) -> list[GraspReadings]:
             grid[elements.index(element[i]), states.index((run[i], load[i]))] = signal[i]
         if np.isnan(grid).any():
             e, s = np.argwhere(np.isnan(grid))[0]
-            raise InputError(rows.where(int(here[-1]), "element"),
-                             f"element {elements[e]} has no signal at load {states[s][1]:g} N",
-                             legal="every element at every load")
-        found.append(GraspReadings(int(number), np.array(elements), np.array([s[1] for s in states]),
-                                   np.array([s[0] for s in states]), grid))
+            raise InputError(
+                rows.where(int(here[-1]), "element"),
+                f"element {elements[e]} has no signal at load {states[s][1]:g} N",
+                legal="every element at every load",
+            )
+        found.append(
+            GraspReadings(
+                int(number),
+                np.array(elements),
+                np.array([s[1] for s in states]),
+                np.array([s[0] for s in states]),
+                grid,
+            )
+        )
     return found
 
 
-def _read(path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...],
-          optional: tuple[Field, ...] = ()) -> tuple[Rows, dict[str, tuple[str, float]]]:
+def _read(
+    path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...], optional: tuple[Field, ...] = ()
+) -> tuple[Rows, dict[str, tuple[str, float]]]:
     """Rows, and for each measured quantity its column's name and factor to mm, N, V."""
     there = header(path)
     scaled, fields = {}, []
@@ -110,6 +128,8 @@ def _read(path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...],
         name = names[0] if names else quantity
         factor = factors[name.removeprefix(quantity)]
         low = 0.0 if quantity == "load" else -most / factor
-        fields.append(Field(name, name.removeprefix(quantity + "_") if "_" in name else unit, low, most / factor))
+        fields.append(
+            Field(name, name.removeprefix(quantity + "_") if "_" in name else unit, low, most / factor)
+        )
         scaled[quantity] = (name, factor)
     return read(path, (*fixed, *fields), optional), scaled

@@ -1,8 +1,8 @@
 """Table 2: which reference stiffness do the measured ratios R support?
 
-Equation (2) with one thing freed at a time: K_r; a common factor on R; a scale on K_obj; and two at once. ln R is
-fitted. Readings share elements (rows) and samples (columns), so standard errors are two-way jackknife ones, rows and
-columns added: wider than from 48 independent readings, and honest.
+Equation (2) with one thing freed at a time: K_r; a common factor on R; a scale on K_obj; and two at once.
+ln R is fitted. Readings share elements (rows) and samples (columns), so standard errors are two-way
+jackknife ones, rows and columns added: wider than from 48 independent readings, and honest.
 """
 
 from __future__ import annotations
@@ -25,9 +25,15 @@ MODELS: dict[str, tuple[tuple[str, ...], tuple[float, ...], Formula]] = {
     "R times a factor": (("factor",), (0.7,), lambda p, r, m, x: p[0] * lumped.deflection_ratio(r, m, x)),
     "K_obj times a factor": (("scale",), (2.0,), lambda p, r, m, x: lumped.deflection_ratio(r, m, p[0] * x)),
     "K_r free, K_obj times a factor": (
-        ("K_r", "scale"), (30.0, 1.5), lambda p, r, m, x: lumped.deflection_ratio(p[0], m, p[1] * x)),
+        ("K_r", "scale"),
+        (30.0, 1.5),
+        lambda p, r, m, x: lumped.deflection_ratio(p[0], m, p[1] * x),
+    ),
     "K_r free, R times a factor": (
-        ("K_r", "factor"), (60.0, 0.7), lambda p, r, m, x: p[1] * lumped.deflection_ratio(p[0], m, x)),
+        ("K_r", "factor"),
+        (60.0, 0.7),
+        lambda p, r, m, x: p[1] * lumped.deflection_ratio(p[0], m, x),
+    ),
 }
 UNITS = {"K_r": "N/mm", "factor": "1", "scale": "1"}
 
@@ -77,12 +83,21 @@ def study(data: Published) -> Table2Study:
     k, x, R = t.measuring_stiffness.value, t.object_stiffness.value, t.ratio.value
     K_r = data.figure["reference_stiffness"]
     implied = k[:, None] / t.printed_ratio.value
-    rounding = (t.printed_ratio.half_step / t.printed_ratio.value + (t.measuring_stiffness.half_step / k)[:, None]).max(0)
+    rounding = (
+        t.printed_ratio.half_step / t.printed_ratio.value + (t.measuring_stiffness.half_step / k)[:, None]
+    ).max(0)
     rounding = rounding + t.object_stiffness.half_step / x
     rest = np.arange(len(k)) != np.argmax(k)
     return Table2Study(
-        k, x, implied.mean(0), np.array([implied.min(0), implied.max(0)]), rounding, R,
-        lumped.deflection_ratio(K_r, k[:, None], x[None, :]), K_r, R * (k[:, None] + x) - x,
+        k,
+        x,
+        implied.mean(0),
+        np.array([implied.min(0), implied.max(0)]),
+        rounding,
+        R,
+        lumped.deflection_ratio(K_r, k[:, None], x[None, :]),
+        K_r,
+        R * (k[:, None] + x) - x,
         tuple(_fit(name, K_r, k, x, R) for name in MODELS),
         tuple(_fit(name, K_r, k[rest], x, R[rest]) for name in MODELS),
         _fit("K_r free", K_r, k, implied.mean(0), R),
@@ -104,8 +119,16 @@ def _fit(model: str, K_r: float, k: np.ndarray, x: np.ndarray, R: np.ndarray) ->
     by_column = [np.log(solve(model, K_r, k, x[keep], R[:, keep])) for keep in columns]
     se = (_jackknife(by_row) + _jackknife(by_column)) ** 0.5
     half = t_quantile(0.95, min(len(k), len(x)) - 1) * se
-    return Fit(model, names, tuple(p.tolist()), tuple((p * np.exp(-half)).tolist()), tuple((p * np.exp(half)).tolist()),
-               float((error**2).mean() ** 0.5), float(error.mean()), float((np.array(seen_not) ** 2).mean() ** 0.5))
+    return Fit(
+        model,
+        names,
+        tuple(p.tolist()),
+        tuple((p * np.exp(-half)).tolist()),
+        tuple((p * np.exp(half)).tolist()),
+        float((error**2).mean() ** 0.5),
+        float(error.mean()),
+        float((np.array(seen_not) ** 2).mean() ** 0.5),
+    )
 
 
 def solve(model: str, K_r: float, k: np.ndarray, x: np.ndarray, R: np.ndarray) -> np.ndarray:

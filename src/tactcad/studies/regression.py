@@ -12,6 +12,8 @@ from math import inf, sqrt
 import numpy as np
 from scipy.special import fdtrc, stdtrit
 
+from tactcad.design.messages import InputError
+
 
 @dataclass(frozen=True)
 class Lines:
@@ -33,7 +35,9 @@ class Lines:
 
 
 def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
-    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x; weights need only be right in proportion."""
+    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x; weights need only be right in
+    proportion.
+    """
     w = np.ones(len(x)) if weight is None else weight / weight.mean()
     runs, index = np.unique(run, return_inverse=True)
     total = np.bincount(index, w)
@@ -68,8 +72,14 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
     )
 
 
-def _homogeneity(run_slope: np.ndarray, sxx: np.ndarray, slope: np.ndarray, scatter: np.ndarray,
-                 dof: int, smallest: np.ndarray) -> np.ndarray:
+def _homogeneity(
+    run_slope: np.ndarray,
+    sxx: np.ndarray,
+    slope: np.ndarray,
+    scatter: np.ndarray,
+    dof: int,
+    smallest: np.ndarray,
+) -> np.ndarray:
     """F test of one slope for all runs, by response; 1 with a single run."""
     extra = len(sxx) - 1
     rest = dof - extra
@@ -86,10 +96,11 @@ def rounding(y: np.ndarray) -> np.ndarray:
 
 
 def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
-    """Weights 1/(s0^2 + s1^2 u^2) with u = x/max x, the two variances fitted to the squared residuals of response k.
+    """Weights 1/(s0^2 + s1^2 u^2) with u = x/max x, the two variances fitted to the squared residuals of
+    response k.
 
-    Noise that grows with the reading (a force sensor's per cent of value) gets its due; constant noise gives equal
-    weights. Both variances are kept non-negative, and the weights' range within 100.
+    Noise that grows with the reading (a force sensor's per cent of value) gets its due; constant noise
+    gives equal weights. Both variances are kept non-negative, and the weights' range within 100.
     """
     u = np.abs(x - x.min()) / max(np.ptp(x), np.finfo(float).tiny)
     square = lines.residual[:, k] ** 2 / np.maximum(1 - lines.leverage, 0.1)
@@ -99,6 +110,12 @@ def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
         a, b = (square.mean(), 0.0) if b <= 0 else (0.0, max((square * u * u).sum() / (u**4).sum(), 0.0))
     variance = a + b * u * u
     return 1.0 / np.maximum(variance, variance.max() / 100) if variance.max() > 0 else np.ones_like(u)
+
+
+def require_level(level: float) -> None:
+    """Raises InputError for a level of intervals that is none."""
+    if not 0.5 <= level < 1:
+        raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
 
 
 def t_quantile(level: float, dof: float) -> float:

@@ -1,4 +1,6 @@
-"""A report as data: sections of findings, tables and figures; written as one offline HTML page and as JSON."""
+"""A report as data: sections of findings, tables and figures; written as one offline HTML page and as
+JSON.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ from math import isfinite, isinf, isnan
 import numpy as np
 
 SCHEMA = "tactcad-validation-1"
-UNREPORTED = {"unreported": True}  # metadata of a field that is a picture's raw material, left out of the JSON
+UNREPORTED = {
+    "unreported": True
+}  # metadata of a field that is a picture's raw material, left out of the JSON
 
 STYLE = """
 :root{color-scheme:light}
@@ -154,7 +158,11 @@ def to_json(report: Report) -> str:
 def plain(value: object) -> object:
     """Dataclasses, arrays and numbers as JSON's kinds; numbers that JSON lacks as 'nan', 'inf', '-inf'."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if not f.metadata.get("unreported")}
+        return {
+            f.name: plain(getattr(value, f.name))
+            for f in dataclasses.fields(value)
+            if not f.metadata.get("unreported")
+        }
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
@@ -179,7 +187,12 @@ def to_text(report: Report) -> str:
 def standalone(figure: Figure) -> str:
     """The picture as a file of its own, on white."""
     start = figure.svg.index(">") + 1
-    return ('<?xml version="1.0" encoding="utf-8"?>\n' + figure.svg[:start] + '<rect width="100%" height="100%" fill="#ffffff"/>' + figure.svg[start:])
+    return (
+        '<?xml version="1.0" encoding="utf-8"?>\n'
+        + figure.svg[:start]
+        + '<rect width="100%" height="100%" fill="#ffffff"/>'
+        + figure.svg[start:]
+    )
 
 
 def to_html(report: Report) -> str:
@@ -187,20 +200,28 @@ def to_html(report: Report) -> str:
     e = html.escape
     contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
     body = "".join(_section(i, s) for i, s in enumerate(report.sections, 1))
-    return (
+    head = (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{e(report.title)}</title>\n'
-        f'<meta name="viewport" content="width=device-width,initial-scale=1">\n<style>{STYLE}</style></head>\n<body>'
-        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
-        f"<h3>What stands out</h3>{_list(report.summary)}<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
-        f"<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
+        '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
+        f"<style>{STYLE}</style></head>\n<body>"
     )
+    top = (
+        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
+        f"<h3>What stands out</h3>{_list(report.summary)}"
+        f"<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
+    )
+    return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
 
 
 def _section(number: int, s: Section) -> str:
     e = html.escape
     return (
-        f'\n<section id="{s.key}"><h2>{number}. {e(s.title)}</h2><p class=lead>{e(s.question)}</p>{_list(s.findings)}'
-        + "".join(f'<figure id="{f.name}">{f.svg}<figcaption>{e(f.caption)}</figcaption></figure>' for f in s.figures)
+        f'\n<section id="{s.key}"><h2>{number}. {e(s.title)}</h2>'
+        f"<p class=lead>{e(s.question)}</p>{_list(s.findings)}"
+        + "".join(
+            f'<figure id="{f.name}">{f.svg}<figcaption>{e(f.caption)}</figcaption></figure>'
+            for f in s.figures
+        )
         + "".join(_table(t) for t in s.tables)
         + "</section>"
     )
@@ -219,7 +240,10 @@ def _table(t: Table) -> str:
     )
     rows = "".join("<tr>" + "".join(_cell(c, text[i]) for i, c in enumerate(row)) + "</tr>" for row in t.rows)
     note = f"<p class=note>{e(t.note)}</p>" if t.note else ""
-    return f"<h3>{e(t.title)}</h3><div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
+    return (
+        f"<h3>{e(t.title)}</h3><div "
+        f"class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
+    )
 
 
 def _wordy(cell: object) -> bool:
@@ -231,7 +255,13 @@ def _wordy(cell: object) -> bool:
 def _cell(cell: object, text: bool) -> str:
     marked = isinstance(cell, Marked)
     value = cell.value if marked else cell
-    shown = value if isinstance(value, str) else str(value) if isinstance(value, (int, np.integer)) else sig(value)
+    shown = (
+        value
+        if isinstance(value, str)
+        else str(value)
+        if isinstance(value, (int, np.integer))
+        else sig(value)
+    )
     kinds = " ".join(k for k, on in (("text", text), ("mark", marked)) if on)
     attribute = f' class="{kinds}"' if kinds else ""
     return f"<td{attribute}>{html.escape(shown)}</td>"

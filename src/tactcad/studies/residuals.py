@@ -1,7 +1,8 @@
 """Table 1's stiffness against every closed-form rung: residuals, what would explain each, expected spread.
 
-One change at a time: hinge thickness alone, or load point alone, that makes the best rung give the measured K. Both
-are then held against what wire cutting and the pad allow. The Monte Carlo draws every toleranced dimension.
+One change at a time: hinge thickness alone, or load point alone, that makes the best rung give the measured
+K. Both are then held against what wire cutting and the pad allow. The Monte Carlo draws every toleranced
+dimension.
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.studies.array import ArrayModel
 from tactcad.studies.published import Published
 
-# Wire cutting, half-width in mm by number of passes: vendors' pages (mecvil.com, tongrencnc.com), coarser figure.
+# Wire cutting, half-width in mm by number of passes, the coarser figure of vendors' pages
+# (mecvil.com, tongrencnc.com).
 WIRE_TOLERANCE = {"1 pass": 0.025, "2-3 passes": 0.010, "4 or more passes": 0.005}
-DRAWS = 4000
+DRAWS = 40_000  # the bands' ends repeat within 0.5 %
+EDGE = 0.02  # ln K this near to a band's end is said to lie at its edge, not in or out
 BAND = (0.025, 0.975)
 
 
@@ -58,8 +61,12 @@ class Residuals:
         return self.load_arm_needed - self.load_arm
 
     def outside(self, band: np.ndarray) -> np.ndarray:
-        """Which elements' measured stiffness lies outside a band."""
-        return (self.measured < band[0]) | (self.measured > band[1])
+        """Which elements' measured stiffness lies outside a band, further than EDGE."""
+        return np.minimum(np.log(self.measured / band[0]), np.log(band[1] / self.measured)) < -EDGE
+
+    def at_edge(self, band: np.ndarray) -> np.ndarray:
+        """Which elements' measured stiffness lies within EDGE of an end of a band."""
+        return np.abs(np.log(self.measured / band)).min(0) <= EDGE
 
 
 def matched(data: Published, array: ArrayModel) -> tuple[np.ndarray, HingeSection]:
@@ -71,50 +78,75 @@ def matched(data: Published, array: ArrayModel) -> tuple[np.ndarray, HingeSectio
     return here, array.section.rows(place[here])
 
 
-def residuals(data: Published, array: ArrayModel, rng: np.random.Generator, rung: str = "solid",
-              more: dict[str, np.ndarray] | None = None) -> Residuals:
-    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, for the matched elements."""
+def residuals(
+    data: Published,
+    array: ArrayModel,
+    rng: np.random.Generator,
+    rung: str = "solid",
+    more: dict[str, np.ndarray] | None = None,
+) -> Residuals:
+    """Table 1 against the design as it stands; `more` adds stiffnesses of slower rungs, for the matched
+    elements.
+    """
     here, s = matched(data, array)
     K = data.table1.stiffness.value[here]
     predicted = {name: ladder.evaluate(s, name).stiffness for name in ladder.CLOSED_FORMS}
     predicted |= more or {}
     t, L = s.hinge_thickness, np.broadcast_to(s.load_arm, s.shape)
     return Residuals(
-        data.table1.element[here], data.table1.arm.value[here], K, predicted, rung, np.log(K / predicted[rung]),
-        np.broadcast_to(t, s.shape), solve(s, "hinge_thickness", K, 0.3, 3.0, rung), L,
-        solve(s, "load_arm", K, 0.2, 3.0, rung), array.pad_length / 2,
-        _band(s, array, rng, rung, 0.0), _band(s, array, rng, rung, array.pad_length / 2),
+        data.table1.element[here],
+        data.table1.arm.value[here],
+        K,
+        predicted,
+        rung,
+        np.log(K / predicted[rung]),
+        np.broadcast_to(t, s.shape),
+        solve(s, "hinge_thickness", K, 0.3, 3.0, rung),
+        L,
+        solve(s, "load_arm", K, 0.2, 3.0, rung),
+        array.pad_length / 2,
+        _band(s, array, rng, rung, 0.0),
+        _band(s, array, rng, rung, array.pad_length / 2),
     )
 
 
 def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
-    """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own; NaN if none."""
-    own = np.broadcast_to(getattr(s, name), s.shape)
+    """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
+
+    NaN where none does. A scan brackets the value nearest to the dimension's own, secant steps on ln K against
+    its logarithm, which is nearly straight, then find it.
+    """
+    own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
     factor = np.geomspace(least, most, 400)
-    grid = ladder.evaluate(_one_each(s, len(factor)).with_(**{name: np.outer(factor, own)}), rung).stiffness
-    found = np.full(s.shape, np.nan)
+    found = np.full(own.shape, np.nan)
     for i in range(len(own)):
-        side = np.sign(grid[:, i] - K[i])
-        cross = np.flatnonzero(side[:-1] * side[1:] <= 0)
+        one = s.rows([i])
+
+        def misfit(log_factor: np.ndarray, i: int = i, one: HingeSection = one) -> np.ndarray:
+            trial = one.with_(**{name: own[i] * np.exp(np.atleast_1d(log_factor))})
+            return np.log(ladder.evaluate(trial, rung).stiffness / K[i])
+
+        scan = misfit(np.log(factor))
+        cross = np.flatnonzero(np.sign(scan[:-1]) * np.sign(scan[1:]) <= 0)
         if not len(cross):
             continue
         j = cross[np.argmin(np.abs(np.log(factor[cross])))]
-        x, y = np.log(factor[j : j + 2]), np.log(grid[j : j + 2, i] / K[i])
-        a, b = x - 0.0, y
-        root = a[0] - b[0] * (a[1] - a[0]) / (b[1] - b[0])
-        for _ in range(4):  # secant steps on ln K against ln of the dimension, which is nearly straight
-            value = np.log(np.ravel(ladder.evaluate(s.rows([i]).with_(**{name: own[i] * np.exp(root)}), rung).stiffness)[0] / K[i])
-            slope = (b[1] - b[0]) / (a[1] - a[0])
-            root -= value / slope
+        slope = (scan[j + 1] - scan[j]) / np.log(factor[j + 1] / factor[j])
+        root = np.log(factor[j]) - scan[j] / slope
+        for _ in range(4):
+            root -= misfit(root)[0] / slope
         found[i] = own[i] * np.exp(root)
-    return found
+    return found.reshape(s.shape)
 
 
-def spread(s: HingeSection, array: ArrayModel, rng: np.random.Generator, contact: float, draws: int = DRAWS) -> HingeSection:
-    """Sections [draw, element] with every toleranced dimension drawn: half-widths are two standard deviations.
+def spread(
+    s: HingeSection, array: ArrayModel, rng: np.random.Generator, contact: float, draws: int = DRAWS
+) -> HingeSection:
+    """Sections [draw, element] with every toleranced dimension drawn: half-widths are two standard
+    deviations.
 
-    contact: half-width (mm) over which the load's place on the pad is uniform. Sheet thickness is one draw for all
-    elements of an array, the rest are drawn for each.
+    contact: half-width (mm) over which the load's place on the pad is uniform. Sheet thickness is one draw
+    for all elements of an array, the rest are drawn for each.
     """
     tol = array.tolerance
     shape = (draws, *s.shape)
@@ -128,7 +160,9 @@ def spread(s: HingeSection, array: ArrayModel, rng: np.random.Generator, contact
     )
 
 
-def _band(s: HingeSection, array: ArrayModel, rng: np.random.Generator, rung: str, contact: float) -> np.ndarray:
+def _band(
+    s: HingeSection, array: ArrayModel, rng: np.random.Generator, rung: str, contact: float
+) -> np.ndarray:
     K = ladder.evaluate(spread(s, array, rng, contact), rung).stiffness
     return np.nanquantile(K, BAND, axis=0)
 

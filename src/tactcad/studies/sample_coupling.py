@@ -1,9 +1,10 @@
 """How the pads feel each other through one continuous rubber sample.
 
-The sample is an elastic layer bonded to a rigid base (or a half-space), each pad a rectangle of even pressure.
-In the plane of wave numbers a normal load gives the surface 2 (1 - nu^2)/E phi(k h)/k, with (bonded layer)
-phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c + 2 c^2 + 5 - 12 nu + 8 nu^2), c = k h; phi = 1 for the half-space.
-Source: Johnson, Contact Mechanics, and Gladwell, Contact Problems in the Classical Theory of Elasticity.
+The sample is an elastic layer bonded to a rigid base (or a half-space), each pad a rectangle of even
+pressure. In the plane of wave numbers a normal load gives the surface 2 (1 - nu^2)/E phi(k h)/k, with
+(bonded layer) phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c + 2 c^2 + 5 - 12 nu + 8 nu^2), c = k h;
+phi = 1 for the half-space. Source: Johnson, Contact Mechanics, and Gladwell, Contact Problems in the
+Classical Theory of Elasticity.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ FAR = 50.0  # mm
 class Coupling:
     """Array on one sample against the same elements each on its own spring.
 
-    stiffness: array's stiffness over that of independent springs. ratio: R of each measuring element over equation (2).
+    stiffness: array's stiffness over that of independent springs. ratio: R of each measuring element over
+    equation (2).
     """
 
     stiffness: float
@@ -40,7 +42,9 @@ def layer_factor(c: np.ndarray, poisson: float) -> np.ndarray:
     return np.where(c > 40.0, 1.0, top / bottom)
 
 
-def influence(dx: np.ndarray, dy: np.ndarray, length: float, width: float, thickness: float, poisson: float) -> np.ndarray:
+def influence(
+    dx: np.ndarray, dy: np.ndarray, length: float, width: float, thickness: float, poisson: float
+) -> np.ndarray:
     """Mean displacement of a pad for unit force on another, dx, dy away (mm), over that of the pad itself.
 
     length, width: of the pads along x, y, mm; thickness of the sample, inf for a half-space.
@@ -54,7 +58,9 @@ def influence(dx: np.ndarray, dy: np.ndarray, length: float, width: float, thick
     own = weight.sum()
 
     def share(x: float, y: float) -> float:
-        """Further than FAR a layer carries nothing over, and a half-space 1/r: there the sum over waves would alias."""
+        """Further than FAR a layer carries nothing over, and a half-space 1/r: there the sum over waves
+        would alias.
+        """
         r = float(np.hypot(x, y))
         if r > FAR:
             return share(x * FAR / r, y * FAR / r) * FAR / r if np.isinf(thickness) else 0.0
@@ -63,11 +69,24 @@ def influence(dx: np.ndarray, dy: np.ndarray, length: float, width: float, thick
     return np.array([share(x, y) for x, y in zip(dx, dy)])
 
 
-def coupling(K: np.ndarray, x: np.ndarray, y: np.ndarray, object_stiffness: float, reference: int, length: float,
-             width: float, thickness: float, poisson: float) -> Coupling:
-    """Elements K (N/mm) at x, y (mm) pressed together into a sample that is object_stiffness under one pad alone."""
+def coupling(
+    K: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    object_stiffness: float,
+    reference: int,
+    length: float,
+    width: float,
+    thickness: float,
+    poisson: float,
+) -> Coupling:
+    """Elements K (N/mm) at x, y (mm) pressed together into a sample that is object_stiffness under one
+    pad alone.
+    """
     dx, dy = np.abs(x[:, None] - x[None, :]), np.abs(y[:, None] - y[None, :])
-    places, index = np.unique(np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True)
+    places, index = np.unique(
+        np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True
+    )
     shares = influence(places[:, 0], places[:, 1], length, width, thickness, poisson)
     A = shares[index].reshape(dx.shape) / object_stiffness
     force = np.linalg.solve(np.diag(1 / K) + A, np.ones(len(K)))

@@ -40,9 +40,13 @@ def validate(data: Published, array: ArrayModel) -> Report:
     """All nine sections. Raises InputError when the design has too few of Table 1's elements."""
     common = residuals.matched(data, array)[0]
     if len(common) < LEAST_COMMON or data.reference not in common:
-        raise InputError(f"design {array.name}", "does not have Table 1's elements, by number and arm length",
-                         value=f"{len(common)} of them",
-                         legal=f"{LEAST_COMMON} of {data.table1.element.tolist()} at least, the reference element among them")
+        raise InputError(
+            f"design {array.name}",
+            "does not have Table 1's elements, by number and arm length",
+            value=f"{len(common)} of them",
+            legal=f"{LEAST_COMMON} of {data.table1.element.tolist()} at least, the reference element "
+            f"among them",
+        )
     rng = np.random.default_rng(SEED)
     K = residuals.residuals(data, array, rng, more=fem_rungs.stiffnesses(residuals.matched(data, array)[1]))
     fit = hinge.fit(data, array)
@@ -67,12 +71,16 @@ def validate(data: Published, array: ArrayModel) -> Report:
         inversion_page.page(inverted),
     )
     by_key = {s.key: s for s in sections}
-    summary = tuple(h for key in ("table2", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline)
+    summary = tuple(
+        h for key in ("table2", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline
+    )
     return Report(
         "Held against the paper: a spring-based tactile array",
-        f"Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, the lumped pair, and the beam model of the "
-        f"design {array.name}.",
-        summary, sections,
-        "Every number on this page was computed when it was made; sentences are chosen by the numbers. Intervals are 95 %. Units: N, mm, V. "
-        f"Monte Carlo seed {SEED}; supported reference stiffness {sig(supported, 4)} N/mm.",
+        "Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, "
+        f"the lumped pair, and the beam model of the design {array.name}.",
+        summary,
+        sections,
+        "Every number on this page was computed when it was made; sentences are chosen by the numbers. "
+        f"Intervals are 95 %. Units: N, mm, V. Monte Carlo seed {SEED}; supported reference stiffness "
+        f"{sig(supported, 4)} N/mm.",
     )

@@ -26,9 +26,15 @@ SMALL_FACTOR = 0.05  # a common factor within this is called none
 def page(r: Residuals, array: ArrayModel) -> Section:
     found = findings(r, array)
     return Section(
-        "stiffness", "Table 1: stiffness, predicted and calibrated",
-        "Does the beam model explain the measured stiffnesses, and what would have to be different where it does not?",
-        found, (_rungs(r), _explained(r, array)), (_bands(r), _needed(r)), r, (found[0], found[2]),
+        "stiffness",
+        "Table 1: stiffness, predicted and calibrated",
+        "Does the beam model explain the measured stiffnesses, and what would have to be different "
+        "where it does not?",
+        found,
+        (_rungs(r), _explained(r, array)),
+        (_bands(r), _needed(r)),
+        r,
+        (found[0], found[2]),
     )
 
 
@@ -38,26 +44,51 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     worst = int(np.argmax(np.abs(r.residual)))
     out_cut, out_pad = r.outside(r.band_cut), r.outside(r.band_pad)
     common = (
-        f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})" if abs(r.mean) < SMALL_FACTOR
+        f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})"
+        if abs(r.mean) < SMALL_FACTOR
         else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
     )
     found = [
-        f"With the hinge of the design {array.name}, {common}, but single elements scatter by {percent(r.scatter)} "
-        f"(standard deviation of ln K), whichever rung is used: the model's own error is far below that.",
+        f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
+        f"{percent(r.scatter)} (standard deviation of ln K), whichever rung is used: the model's own "
+        "error is far below that.",
         f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
-        + _cause(r, worst, array) + ".",
+        + _cause(r, worst, array)
+        + ".",
     ]
     if out_cut.any():
         found.append(
+<<<<<<< HEAD
+            f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
+            "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
+            + (
+                f"still outside: {listed(f'no. {n}' for n in e[out_pad])}."
+                if out_pad.any()
+                else f"none is outside{_edge(r)}: where a flat sensor tip touches a flat pad is the widest "
+                f"single uncertainty of Table 1."
+            )
+=======
             f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band that cutting and "
             f"clamping tolerances leave. With the contact anywhere on the pad, "
             + (f"still outside: {listed(f'no. {n}' for n in e[out_pad])}." if out_pad.any()
                else "none is outside: where a flat sensor tip touches a flat pad is the widest single uncertainty of Table 1.")
+>>>>>>> main
         )
     else:
-        found.append(f"All {len(e)} elements lie inside the 95 % band that cutting and clamping tolerances leave.")
+        found.append(
+            f"All {len(e)} elements lie inside the 95 % band that cutting and clamping tolerances leave."
+        )
     found += _equal_arms(r)
     return tuple(found)
+
+
+def _edge(r: Residuals) -> str:
+    edge = r.element[r.at_edge(r.band_pad)]
+    return f" (at the edge: {listed(f'no. {n}' for n in edge)})" if len(edge) else ""
+
+
+def _place(r: Residuals, band: np.ndarray, i: int) -> str:
+    return "at its edge" if r.at_edge(band)[i] else "outside" if r.outside(band)[i] else "inside"
 
 
 def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
@@ -65,14 +96,20 @@ def _cause(r: Residuals, i: int, array: ArrayModel) -> str:
     wide = [name for name, half in WIRE_TOLERANCE.items() if abs(dt) <= half]
     thick = (
         f"a hinge of {sig(t)} mm ({dt * 1e3:+.0f} µm, "
-        + (f"within {wide[-1]} of the wire)" if wide
-           else f"{sig(abs(dt) / max(WIRE_TOLERANCE.values()), 2)} times what even one pass of the wire leaves)")
-        if np.isfinite(t) else "no hinge thickness within the model's range"
+        + (
+            f"within {wide[-1]} of the wire)"
+            if wide
+            else f"{sig(abs(dt) / max(WIRE_TOLERANCE.values()), 2)} times what even one pass of the "
+            f"wire leaves)"
+        )
+        if np.isfinite(t)
+        else "no hinge thickness within the model's range"
     )
     load = (
         f"a load point {abs(dl):.2f} mm {'nearer to' if dl < 0 else 'further from'} the hinge "
         + ("(still on the pad)" if abs(dl) <= r.pad_half else "(off the pad)")
-        if np.isfinite(dl) else "no load point"
+        if np.isfinite(dl)
+        else "no load point"
     )
     return f"{thick} or {load} would explain it"
 
@@ -87,43 +124,78 @@ def _equal_arms(r: Residuals) -> list[str]:
                 best, pair = ratio, (r.element[i], r.element[j])
     if pair is None:
         return []
-    return [f"Nominally equal elements differ by up to {sig(best)} (nos. {pair[0]} and {pair[1]}): no model that knows "
-            "only the arm length can fit both."]
+    return [
+        f"Nominally equal elements differ by up to {sig(best)} (nos. {pair[0]} and {pair[1]}): no model "
+        "that knows only the arm length can fit both."
+    ]
 
 
 def _rungs(r: Residuals) -> Table:
     rows = tuple(
-        (int(n), exact(r.arm[i]), exact(r.measured[i]), *(values[i] for values in r.predicted.values()),
-         signed_percent(np.expm1(r.residual[i])))
+        (
+            int(n),
+            exact(r.arm[i]),
+            exact(r.measured[i]),
+            *(values[i] for values in r.predicted.values()),
+            signed_percent(np.expm1(r.residual[i])),
+        )
         for i, n in enumerate(r.element)
     )
     logs = {name: np.log(r.measured / values) for name, values in r.predicted.items()}
     mean = ("mean", "", "", *(signed_percent(np.expm1(v.mean())) for v in logs.values()), "")
     scatter = ("scatter", "", "", *(percent(v.std(ddof=1)) for v in logs.values()), "")
-    columns = (("element", ""), ("arm a", "mm"), ("measured K", "N/mm"), *((f"{name}", "N/mm") for name in r.predicted),
-               (f"measured over {r.rung}", "−1"))
-    return Table("Stiffness by every rung of the model ladder", columns, (*rows, mean, scatter),
-                 "Last two rows: mean and standard deviation of ln(measured/predicted). The rungs 'short', 'beam' and 'section' "
-                 "leave out physics; that they lie nearer to or further from Table 1 is no merit or fault of theirs at this scatter.")
+    columns = (
+        ("element", ""),
+        ("arm a", "mm"),
+        ("measured K", "N/mm"),
+        *((f"{name}", "N/mm") for name in r.predicted),
+        (f"measured over {r.rung}", "−1"),
+    )
+    return Table(
+        "Stiffness by every rung of the model ladder",
+        columns,
+        (*rows, mean, scatter),
+        "Last two rows: mean and standard deviation of ln(measured/predicted). The rungs 'short', "
+        "'beam' and 'section' leave out physics; that they lie nearer to or further from Table 1 is no "
+        "merit or fault of theirs at this scatter.",
+    )
 
 
 def _explained(r: Residuals, array: ArrayModel) -> Table:
     rows = []
     for i, n in enumerate(r.element):
         dt, dl = r.thickness_change[i] * 1e3, r.load_arm_change[i]
-        rows.append((
-            int(n), exact(r.arm[i]), exact(r.measured[i]),
-            interval(*r.band_cut[:, i]), "outside" if r.outside(r.band_cut)[i] else "inside",
-            interval(*r.band_pad[:, i]), "outside" if r.outside(r.band_pad)[i] else "inside",
-            _mark(f"{dt:+.1f}".replace("-", "−"), abs(dt) > WIRE_TOLERANCE["1 pass"] * 1e3), _mark(f"{dl:+.2f}".replace("-", "−"), not abs(dl) <= r.pad_half),
-        ))
+        rows.append(
+            (
+                int(n),
+                exact(r.arm[i]),
+                exact(r.measured[i]),
+                interval(*r.band_cut[:, i]),
+                _place(r, r.band_cut, i),
+                interval(*r.band_pad[:, i]),
+                _place(r, r.band_pad, i),
+                _mark(f"{dt:+.1f}".replace("-", "−"), abs(dt) > WIRE_TOLERANCE["1 pass"] * 1e3),
+                _mark(f"{dl:+.2f}".replace("-", "−"), not abs(dl) <= r.pad_half),
+            )
+        )
     wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
     return Table(
         "What one change alone would explain, and the spread to be expected",
-        (("element", ""), ("arm a", "mm"), ("measured K", "N/mm"), ("band, cutting", "N/mm"), ("", ""), ("band, and pad", "N/mm"),
-         ("", ""), ("hinge change", "µm"), ("load point change", "mm")), tuple(rows),
-        f"95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on the "
-        f"{array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, or off the pad.",
+        (
+            ("element", ""),
+            ("arm a", "mm"),
+            ("measured K", "N/mm"),
+            ("band, cutting", "N/mm"),
+            ("", ""),
+            ("band, and pad", "N/mm"),
+            ("", ""),
+            ("hinge change", "µm"),
+            ("load point change", "mm"),
+        ),
+        tuple(rows),
+        "95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on "
+        f"the {array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, "
+        "or off the pad.",
     )
 
 
@@ -136,12 +208,42 @@ def _bands(r: Residuals) -> Figure:
     x = np.arange(len(order))
     with d.panels(size=(11.2, 4.7)) as (figure, ax):
         pad, cut = r.band_pad[:, order], r.band_cut[:, order]
-        ax.bar(x, pad[1] - pad[0], 0.5, pad[0], color=d.SKY, alpha=0.35, label="95 %: contact anywhere on the pad")
-        ax.bar(x, cut[1] - cut[0], 0.5, cut[0], color=d.BLUE, alpha=0.55, label="95 %: cutting and clamping tolerances")
-        ax.hlines(r.predicted[r.rung][order], x - 0.25, x + 0.25, color=d.BLACK, lw=1.6, label=f"predicted, rung {r.rung}")
+        ax.bar(
+            x,
+            pad[1] - pad[0],
+            0.5,
+            pad[0],
+            color=d.SKY,
+            alpha=0.35,
+            label="95 %: contact anywhere on the pad",
+        )
+        ax.bar(
+            x,
+            cut[1] - cut[0],
+            0.5,
+            cut[0],
+            color=d.BLUE,
+            alpha=0.55,
+            label="95 %: cutting and clamping tolerances",
+        )
+        ax.hlines(
+            r.predicted[r.rung][order],
+            x - 0.25,
+            x + 0.25,
+            color=d.BLACK,
+            lw=1.6,
+            label=f"predicted, rung {r.rung}",
+        )
         ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
         for i, k in zip(x, order):
-            ax.annotate(f"{r.measured[k]:g}", (i + 0.25, r.measured[k]), (4, -3), textcoords="offset points", fontsize=9.5, color=d.RED)
+            ax.annotate(
+                f"{r.measured[k]:g}",
+                (i + 0.25, r.measured[k]),
+                (4, -3),
+                textcoords="offset points",
+                fontsize=9.5,
+                color=d.RED,
+            )
         ax.set_yscale("log")
         d.log_ticks(ax.yaxis, (5, 10, 20, 40, 80))
         ax.set_ylim(min(pad[0].min(), r.measured.min()) * 0.85, max(pad[1].max(), r.measured.max()) * 1.15)
@@ -150,8 +252,12 @@ def _bands(r: Residuals) -> Figure:
         ax.set_ylabel("stiffness K, N/mm")
         ax.legend(loc="upper right")
         ax.grid(axis="x", visible=False)
-        return Figure("stiffness-bands", d.svg(figure, "stiffness-bands"),
-                      "Measured stiffness against the prediction and the spread to be expected, elements by arm length.")
+        return Figure(
+            "stiffness-bands",
+            d.svg(figure, "stiffness-bands"),
+            "Measured stiffness against the prediction and the spread to be expected, elements by arm "
+            "length.",
+        )
 
 
 def _needed(r: Residuals) -> Figure:
@@ -170,5 +276,8 @@ def _needed(r: Residuals) -> Figure:
         left.set_yticks(y, [f"no. {r.element[k]}, a = {r.arm[k]:g}" for k in order])
         for ax in (left, right):
             ax.axvline(0, color=d.BLACK, lw=1)
-        return Figure("stiffness-needed", d.svg(figure, "stiffness-needed"),
-                      "What change of hinge thickness alone, or of load point alone, would explain each residual.")
+        return Figure(
+            "stiffness-needed",
+            d.svg(figure, "stiffness-needed"),
+            "What change of hinge thickness alone, or of load point alone, would explain each residual.",
+        )
