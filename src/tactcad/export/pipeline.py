@@ -15,7 +15,7 @@ from . import manifest as manifests
 from .cache import Cache, default_root
 from .inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
-from .publish import Published, locked, new_build
+from .publish import Published, locked, new_build, published
 
 if TYPE_CHECKING:
     from tactcad.parts.description import Part
@@ -59,6 +59,8 @@ def export(design: Design, scene_names: Sequence[str], out: str | os.PathLike[st
     file does not read back as it should.
     """
     inputs = inputs_of({"design": design, "scenes": tuple(scene_names)}, ROOMS, LIBRARIES)
+    if published(out).current is None:
+        _refuse_broken(design)  # before a lock, or a folder for it, appears on the disk
     with locked(out, say=progress.line) as place:
         why, count = _reasons(place, inputs)
         if not why:
