@@ -58,7 +58,6 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     ]
     if out_cut.any():
         found.append(
-<<<<<<< HEAD
             f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
             "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
             + (
@@ -67,12 +66,6 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
                 else f"none is outside{_edge(r)}: where a flat sensor tip touches a flat pad is the widest "
                 f"single uncertainty of Table 1."
             )
-=======
-            f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band that cutting and "
-            f"clamping tolerances leave. With the contact anywhere on the pad, "
-            + (f"still outside: {listed(f'no. {n}' for n in e[out_pad])}." if out_pad.any()
-               else "none is outside: where a flat sensor tip touches a flat pad is the widest single uncertainty of Table 1.")
->>>>>>> main
         )
     else:
         found.append(
