@@ -89,6 +89,8 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
     corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
     points, cells = merged(corners)
     linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
+    if len(points) - linear.facets.shape[1] + len(cells) != 1:  # Euler: a disc without holes
+        raise RuntimeError("the mapped mesh is torn: blocks do not share their nodes")
     dofs = Dofs(linear, ElementQuad2())
     nodes = np.empty((2, dofs.N))
     for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
@@ -129,10 +131,11 @@ def merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
     """Unique points of (elements, corners, dim), and each element's indices into them.
 
     Points are one where they share a cell of either of two shifted grids, so that no grid line can
-    part two that differ by rounding.
+    part two that differ by rounding. The grid's step is no round number: on one, points of a decimal
+    design would lie on grid lines, one coordinate on the first grid's and the other on the second's.
     """
     flat = corners.reshape(-1, corners.shape[-1])
-    step = SAME_POINT * np.ptp(flat, axis=0).max()
+    step = SAME_POINT * np.ptp(flat, axis=0).max() / np.e
     count = len(flat)
     links = [_first_of_group(np.floor(flat / step + shift).astype(np.int64)) for shift in (0.0, 0.5)]
     graph = coo_matrix((np.ones(2 * count), (np.tile(np.arange(count), 2), np.concatenate(links))), shape=(count, count))

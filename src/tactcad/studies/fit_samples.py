@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -36,6 +36,7 @@ LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block 
 FILLET_RATIO = (0.15, 6.0)  # r/t
 FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
 WIDE_SHARE = 0.4
+EDGE_SHARE = 0.65  # of the parameters of a design on the box's edges stand at an end of their range
 
 PLANE_DENSITY = (3, 6)  # Richardson's pair
 SOLID_DENSITY = (2, 1)  # in the plane, across the width; K3D/K2D on one plane mesh errs by about 1e-4
@@ -66,6 +67,27 @@ def draw_box(count: int, seed: int) -> Columns:
         if _possible(row):
             rows.append(row)
     return _as_written(rows)
+
+
+def draw_edges(count: int, seed: int) -> Columns:
+    """Designs on the promised box's edges and corners: each parameter at an end of its range, or inside."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    while len(rows) < count:
+        row = {k: v[rng.integers(2)] if rng.random() < EDGE_SHARE else rng.uniform(*v) for k, v in BOX.items()}
+        row |= {"two_sided": float(len(rows) % 2)}
+        row["fillet_radius"] = min(row["fillet_radius"], row["hinge_length"] / 2.0)
+        if _possible(row):
+            rows.append(row)
+    return _as_written(rows)
+
+
+def joined(tables: Sequence[Columns]) -> Columns:
+    """The rows of several tables as one; a result that one of them lacks is NaN there."""
+    names = list(dict.fromkeys(name for table in tables for name in table))
+    return {
+        name: np.concatenate([t.get(name, np.full(len(t["two_sided"]), math.nan)) for t in tables]) for name in names
+    }
 
 
 def section(columns: Columns) -> HingeSection:
