@@ -449,6 +449,15 @@ def test_effects_of_the_budget_by_hand(paper, array):
         np.log(2.25**0.5 * (4 / 3)), rel=0.05
     )
     x, r, m = 3.85, b.reference, b.measuring
+    lateral = (
+        x * 2 * (1 - 0.49) / (2 - 0.49)
+    )  # a rigid pad's sideways stiffness on a half-space over its normal one
+    assert by["rubber shears on stuck pads"].short_arm == pytest.approx(lateral * (H / 3) ** 2 / r)
+    assert by["rubber shears on stuck pads"].long_arm == pytest.approx(lateral * (H / 7) ** 2 / m)
+    stiff = by["gauge stiffens the leaf"]
+    assert (
+        0.005 < stiff.short_arm < 0.12 and by["bridge non-linearity"].on_object < 0.01
+    )  # as hardware notes have them
     assert b.sensitivity_reference == pytest.approx(
         r * (m + x) / (x * (r - m))
     ) and b.sensitivity_reference + b.sensitivity_measuring == pytest.approx(1)
