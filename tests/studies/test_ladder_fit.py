@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from tactcad.cli.main import main
+from tactcad.mechanics import plane, solid
 from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics import plane, solid
 from tactcad.studies import fit_samples
 
 
