@@ -16,7 +16,14 @@ ROOMS = (
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}
 # Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
 # at its top waits seconds for the kernel.
-NEED_SOLIDS = {"tactcad.export.picture", "tactcad.export.step"}
+NEED_SOLIDS = {
+    "tactcad.checks.brep",
+    "tactcad.checks.interference",
+    "tactcad.checks.mesh",
+    "tactcad.checks.run",
+    "tactcad.export.picture",
+    "tactcad.export.step",
+}
 
 MODULES = sorted((SOURCE / "tactcad").rglob("*.py"))
 

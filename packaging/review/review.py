@@ -116,7 +116,7 @@ def assembly_faults(path: str, found: dict, bill: list[dict], parts: dict[str, d
 def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
     """Every part stands in FreeCAD's tree under its part number, as often as the bill says.
 
-    FreeCAD makes labels unique by counting up their last digits: M3x30-A2-70, M3x30-A2-071, ...
+    FreeCAD makes labels unique by a running number: macro-array-spacer, macro-array-spacer001, ...
     """
     stem = re.compile(r"\d+$")
     seen = Counter(stem.sub("", label) for label in labels)

@@ -29,17 +29,20 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.checks.shop import DEFAULT, load_shop
     from tactcad.parts.designs import load
     from tactcad.scenes import chosen_scenes
 
+    from .progress import progress
+
     design = load(args.design)
     names = chosen_scenes(design, args.scene)
-    from tactcad.checks.run import run_checks
-    from tactcad.checks.shop import DEFAULT, load_shop
-
     shop = Path(args.shop) if args.shop else DEFAULT
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
-    report = run_checks(design, names, shop)
+
+    from tactcad.checks.run import run_checks
+
+    report = run_checks(design, names, shop, progress().step)
     failed = report.failures
     if args.json:
         record = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 from dataclasses import asdict
 
 EXAMPLES = """\
@@ -36,7 +37,7 @@ def run(args: argparse.Namespace) -> int:
     from .progress import progress
 
     design = read(args.design)
-    done = export(design, chosen_scenes(design, args.scene), args.out or f"exports/{design.name}", progress())
+    done = export(design, chosen_scenes(design, args.scene), args.out or f"exports/{design.name}", progress(sys.stderr))
     if args.json:
         print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
     return 0

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TextIO
 
 
 class Terminal:
     """A line that is written over, with lines worth keeping above it."""
 
-    def __init__(self, stream: TextIO = sys.stderr) -> None:
+    def __init__(self, stream: TextIO) -> None:
         self.stream = stream
 
     def line(self, text: str) -> None:
@@ -26,7 +25,7 @@ class Terminal:
 class Log:
     """Plain lines, one for every piece of work."""
 
-    def __init__(self, stream: TextIO = sys.stderr) -> None:
+    def __init__(self, stream: TextIO) -> None:
         self.stream = stream
 
     def line(self, text: str) -> None:
@@ -37,6 +36,6 @@ class Log:
             print(f"[{done + 1}/{total}] {text}", file=self.stream, flush=True)
 
 
-def progress(stream: TextIO = sys.stderr) -> Terminal | Log:
+def progress(stream: TextIO) -> Terminal | Log:
     """What suits the stream."""
     return Terminal(stream) if stream.isatty() else Log(stream)

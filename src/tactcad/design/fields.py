@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import datetime
 import re
 from dataclasses import dataclass
 from math import isfinite
@@ -80,6 +81,28 @@ class Text:
 
 
 @dataclass(frozen=True)
+class Day:
+    """A day of the calendar, as text or as TOML's own date; read as YYYY-MM-DD."""
+
+    meaning: str
+    legal: str = "a day as YYYY-MM-DD"
+    unit: str = ""
+
+    def read(self, value: Any, where: str) -> str:
+        if isinstance(value, datetime.date) and not isinstance(value, datetime.datetime):
+            return value.isoformat()
+        try:
+            if isinstance(value, str) and datetime.date.fromisoformat(value).isoformat() == value:
+                return value
+        except ValueError:
+            pass
+        raise InputError(where, "not a day", value=value, legal=self.legal)
+
+    def schema(self) -> dict:
+        return {"type": "string", "format": "date", "pattern": "^[0-9]{4}-[0-9]{2}-[0-9]{2}$"}
+
+
+@dataclass(frozen=True)
 class Numbers:
     """A list of numbers, each as `item`, `least` to `most` of them."""
 
@@ -143,7 +166,7 @@ class Rows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Choice | Text | Numbers | Rows
+Spec = Number | Choice | Text | Day | Numbers | Rows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-import datetime
 import difflib
 import math
+import re
 import tomllib
 import typing
 from pathlib import Path
@@ -139,10 +139,7 @@ def _section(kind: type, table: dict[str, Any], path: str) -> Any:
         elif kind is Stop and name == "gaps":
             values[name] = _gaps(table[name], where, f.metadata["spec"])
         else:
-            value = table[name]
-            if isinstance(value, datetime.date) and not isinstance(value, datetime.datetime):
-                value = value.isoformat()
-            values[name] = f.metadata["spec"].read(value, where)
+            values[name] = f.metadata["spec"].read(table[name], where)
     return kind(**values)
 
 
@@ -151,7 +148,7 @@ def _overrides(table: Any, where: str) -> dict[int, Hinge]:
         raise InputError(where, "not a table", value=table, legal=f"tables [{where}.N], N an element number")
     overrides = {}
     for key, value in table.items():
-        if not (key.isascii() and key.isdigit() and 1 <= len(key) <= 4 and key == str(int(key))):
+        if not re.fullmatch("[1-9][0-9]{0,3}", key):
             raise InputError(f"{where}.{key}", "not an element number", legal="1 and up")
         if not isinstance(value, dict):
             raise InputError(f"{where}.{key}", "not a table", value=value)
@@ -170,6 +167,8 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
             arm = math.nan
         if not (math.isfinite(arm) and arm > 0):
             raise InputError(f"{where}.{key}", "not an arm length", value=key, legal="arm lengths in mm")
+        if arm in gaps:
+            raise InputError(f"{where}.{key}", "this arm length is given twice", legal="one gap in mm for each")
         gaps[arm] = spec.read(value, f"{where}.{key}")
     return dict(sorted(gaps.items()))
 
@@ -229,7 +228,5 @@ def paths(design: Design) -> dict[str, Any]:
 
 def _unknown(path: str, known: list[str]) -> InputError:
     near = difflib.get_close_matches(path[:200], known, n=1)
-    shown = path if len(path) <= 80 else path[:77] + "..."
-    shown = shown.encode("unicode_escape").decode("ascii")
     hint = f"did you mean {near[0]}?" if near else "see `tactcad schema`"
-    return InputError(shown, "unknown field", legal=hint)
+    return InputError(path, "unknown field", legal=hint)

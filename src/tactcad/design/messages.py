@@ -6,7 +6,8 @@ from __future__ import annotations
 class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
 
-    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
+    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2");
+            shown on one line and shortened, whatever a file calls its fields
     what    what is wrong, one clause without a full stop
     value   the value found, shown with repr and shortened; leave it out where there is none
     legal   what would be accepted
@@ -14,7 +15,7 @@ class InputError(ValueError):
 
     def __init__(self, where: str, what: str, *, value: object = ..., legal: str = "") -> None:
         self.where, self.what, self.value, self.legal = where, what, value, legal
-        parts = [f"{where}: {what}"]
+        parts = [f"{_on_one_line(where)}: {what}"]
         if value is not ...:
             parts.append(f"found {shortened(value)}")
         if legal:
@@ -32,4 +33,11 @@ def shortened(value: object, most: int = 60) -> str:
         text = repr(value)
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
+    except ValueError:  # Python shows no integer of more than 4300 digits
+        text = f"a very large {type(value).__name__}"
     return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _on_one_line(where: str, most: int = 200) -> str:
+    text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in where)
+    return text if len(text) <= most else f"{text[: most // 2]}...{text[-most // 4 :]}"

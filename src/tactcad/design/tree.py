@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .fields import Choice, Number, Numbers, Rows, Text, given
+from .fields import Choice, Day, Number, Numbers, Rows, Text, given
 from .materials import ALLOYS
 
-_LINE = r"[^\x00-\x1f\x7f-\x9f\u2028\u2029]{1,80}"
+# Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
+_LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
 
 
 def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters", meaning)
+    return Text(_LINE, "one line of 1 to 80 printable characters, not only spaces", meaning)
 
 
 @dataclass(frozen=True)
@@ -32,13 +33,7 @@ class Identity:
     )
     title: str = given(_line("title on drawings"))
     revision: str = given(Text(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
-    date: str = given(
-        Text(
-            r"[0-9]{4}-(?:0[1-9]|1[0-2])-(?:0[1-9]|[12][0-9]|3[01])",
-            "YYYY-MM-DD",
-            "date of issue; the only date in any output",
-        )
-    )
+    date: str = given(Day("date of issue; the only date in any output"))
     author: str = given(_line("creator, for the title block"))
     organisation: str = given(_line("legal owner, for the title block"))
 

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from collections.abc import Callable, Sequence
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +36,7 @@ LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block 
 FILLET_RATIO = (0.15, 6.0)  # r/t
 FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
 WIDE_SHARE = 0.4
+EDGE_SHARE = 0.65  # of the parameters of a design on the box's edges stand at an end of their range
 
 PLANE_DENSITY = (3, 6)  # Richardson's pair
 SOLID_DENSITY = (2, 1)  # in the plane, across the width; K3D/K2D on one plane mesh errs by about 1e-4
@@ -49,7 +55,7 @@ def draw(count: int, seed: int) -> Columns:
         row["two_sided"] = float(len(rows) % 2)
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
 
 
 def draw_box(count: int, seed: int) -> Columns:
@@ -60,7 +66,28 @@ def draw_box(count: int, seed: int) -> Columns:
         row = {k: rng.uniform(*v) for k, v in BOX.items()} | {"two_sided": float(len(rows) % 2)}
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
+
+
+def draw_edges(count: int, seed: int) -> Columns:
+    """Designs on the promised box's edges and corners: each parameter at an end of its range, or inside."""
+    rng = np.random.default_rng(seed)
+    rows = []
+    while len(rows) < count:
+        row = {k: v[rng.integers(2)] if rng.random() < EDGE_SHARE else rng.uniform(*v) for k, v in BOX.items()}
+        row |= {"two_sided": float(len(rows) % 2)}
+        row["fillet_radius"] = min(row["fillet_radius"], row["hinge_length"] / 2.0)
+        if _possible(row):
+            rows.append(row)
+    return _as_written(rows)
+
+
+def joined(tables: Sequence[Columns]) -> Columns:
+    """The rows of several tables as one; a result that one of them lacks is NaN there."""
+    names = list(dict.fromkeys(name for table in tables for name in table))
+    return {
+        name: np.concatenate([t.get(name, np.full(len(t["two_sided"]), math.nan)) for t in tables]) for name in names
+    }
 
 
 def section(columns: Columns) -> HingeSection:
@@ -104,6 +131,11 @@ def solid_results(s: HingeSection) -> dict[str, float]:
     }
 
 
+def _as_written(rows: list[dict[str, float]]) -> Columns:
+    """Columns with the digits that `write` keeps, so that elements are solved for what the file says."""
+    return {k: np.array([float(f"{row[k]:.8g}") for row in rows]) for k in rows[0]}
+
+
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
@@ -118,3 +150,40 @@ def _possible(row: dict[str, float]) -> bool:
         and reach >= row["arm_height"] / 2.0
         and row["body_length"] >= 0.2 * row["body_height"]
     )
+
+
+def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Columns:
+    """Finite-element results of every design beside its parameters; solids for the first `solids` of them.
+
+    Missing results are NaN. `report` gets a line of progress now and then.
+    """
+    s, count = section(columns), len(columns["two_sided"])
+    rows = []
+    for i in range(count):
+        one = s.rows(i)
+        rows.append(plane_results(one) | (solid_results(one) if i < solids else {}))
+        if (i + 1) % 50 == 0:
+            report(f"{i + 1} of {count} designs")
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return columns | {name: np.array([row.get(name, math.nan) for row in rows]) for name in names}
+
+
+def write(columns: Columns, path: Path) -> None:
+    """One line a design, eight digits."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        for row in zip(*columns.values()):
+            writer.writerow("" if math.isnan(v) else f"{v:.8g}" for v in row)
+
+
+def load(path: Path | Traversable) -> Columns:
+    """The columns that `write` wrote."""
+    rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+
+
+def shipped() -> dict[str, Columns]:
+    """The samples that the shipped constants were fitted on, and those held out."""
+    data = resources.files(__package__) / "data"
+    return {"fitted": load(data / "ladder-samples.csv"), "held out": load(data / "ladder-heldout.csv")}

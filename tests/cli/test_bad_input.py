@@ -1,0 +1,193 @@
+"""Bad input through the command: exit status 2, one line, nothing written, an earlier export untouched."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from variants import DROP, HARDWARE, table
+
+from tactcad.cli.main import COMMANDS, main
+from tactcad.export.publish import locked, new_build
+
+GOOD = (HARDWARE / "macro-array.toml").read_text()
+
+
+def as_toml(tree: dict) -> str:
+    """A design's table as TOML text; tables in it come after its values."""
+    lines = []
+
+    def write(prefix: str, node: dict) -> None:
+        if prefix:
+            lines.append(f"[{prefix}]")
+        for name, value in node.items():
+            if not isinstance(value, dict):
+                shown = {"nan": "nan", "inf": "inf", "-inf": "-inf"}.get(str(value))
+                lines.append(f"{json.dumps(name)} = {shown or json.dumps(value)}")
+        for name, value in node.items():
+            if isinstance(value, dict):
+                write(f"{prefix}.{json.dumps(name)}" if prefix else name, value)
+
+    write("", tree)
+    return "\n".join(lines) + "\n"
+
+
+def bad(**changes) -> bytes:
+    tree = table({path.replace("__", "."): value for path, value in changes.items()})
+    tree.pop("origin")
+    return as_toml(tree).encode()
+
+
+# the issue's own list, and what else a file can be
+BAD_FILES = {
+    "unknown field": (bad(element__hinge_thicknes=0.25), "element.hinge_thicknes"),
+    "missing field": (bad(element__hinge_thickness=DROP), "element.hinge_thickness"),
+    "wrong type": (bad(element__hinge_thickness="0.25"), "element.hinge_thickness"),
+    "truth value": (bad(element__hinge_thickness=True), "element.hinge_thickness"),
+    "NaN": (bad(element__hinge_thickness=float("nan")), "element.hinge_thickness"),
+    "infinity": (bad(array__pitch=float("inf")), "array.pitch"),
+    "zero": (bad(sheet__thickness=0), "sheet.thickness"),
+    "negative": (bad(sheet__thickness=-3), "sheet.thickness"),
+    "1e300": (bad(element__arm_height=1e300), "element.arm_height"),
+    "hinge thicker than the arm": (bad(element__hinge_thickness=3.0), "element.hinge_thickness"),
+    "fillets that do not fit the slot": (bad(element__fillet_radius=0.45), "element.fillet_radius"),
+    "arms that reach the opposite row": (bad(array__row_pitch=2.0), "array.row_pitch"),
+    "holes outside the body": (bad(holes__screw_offsets=[4.1, 30.0]), "holes.screw_offsets"),
+    "third row": (bad(array__row_arms=[[4], [4], [4]]), "array.row_arms"),
+    "name with a path in it": (bad(design__name="../../evil"), "design.name"),
+    "name with a line end": (bad(design__name="macro\nall is well"), "design.name"),
+    "not TOML": (b"solid cube {", None),
+    "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), None),
+    "latin-1": (GOOD.replace('author = "tactcad"', 'author = "J\xf6rg"').encode("latin-1"), None),
+    "utf-16": (GOOD.encode("utf-16"), None),
+    "empty": (b"", "design"),
+    "10 MB": (b"#" * 10_000_000, None),
+    "deep nesting": (b"a = " + b"[" * 50_000, None),
+    "duplicate key": (GOOD.replace("thickness = 3.0", "thickness = 3.0\nthickness = 4.0", 1).encode(), None),
+}
+
+
+def snapshot(folder: Path) -> dict[str, tuple]:
+    """Every path below the folder with what it is and when it changed last."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        state = path.lstat()
+        kind = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else "folder"
+        found[str(path.relative_to(folder))] = (kind, state.st_mtime_ns)
+    return found
+
+
+@pytest.fixture
+def workplace(tmp_path, monkeypatch) -> Path:
+    """A folder with an earlier export in it."""
+    monkeypatch.chdir(tmp_path)
+    with locked("exports/macro-array") as place, new_build(place) as folder:
+        (folder / "manifest.json").write_text("the earlier export")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", BAD_FILES)
+@pytest.mark.parametrize("command", ["export", "check"])
+def test_bad_file_exits_2_with_one_line_and_touches_nothing(workplace, capsys, name, command):
+    data, path = BAD_FILES[name]
+    design = workplace / "bad.toml"
+    design.write_bytes(data)
+    before = snapshot(workplace)
+    out = ["--out", "exports/macro-array"] if command == "export" else []
+    assert main([command, "bad.toml", *out]) == 2
+    assert snapshot(workplace) == {**before, **lock_taken(workplace, before)}
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(r"tactcad: [^\n]+\n", said.err)
+    assert said.err.startswith(f"tactcad: {path}" if path else "tactcad: bad.toml")
+
+
+def lock_taken(workplace: Path, before: dict[str, tuple]) -> dict[str, tuple]:
+    """Whoever comes as far as the lock writes its number into it, which changes the lock's time only."""
+    name = "exports/.macro-array.lock"
+    return {name: (before[name][0], (workplace / name).lstat().st_mtime_ns)}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["export", "nowhere.toml"],
+        ["export", "no-such-design"],
+        ["export", "."],
+        ["export", "/dev/null"],
+        ["export", ""],
+        ["export", "two\nlines.toml"],
+        ["export", "macro-array", "--scene", "nothing"],
+        ["export", "macro-array", "--scene", "two\nlines"],
+        ["check", "nowhere.toml"],
+        ["check", "macro-array", "--scene", "nothing"],
+        ["check", "macro-array", "--shop", "nowhere.toml"],
+    ],
+    ids=lambda a: " ".join(a).replace("\n", "-"),
+)
+def test_what_is_not_there_exits_2(workplace, capsys, arguments):
+    before = snapshot(workplace)
+    assert main(arguments) == 2
+    assert snapshot(workplace) == before
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(r"tactcad: [^\n]+\n", said.err)
+
+
+def test_a_folder_that_is_not_ours_is_not_replaced(workplace, capsys):
+    (workplace / "mine").mkdir()
+    (workplace / "mine" / "thesis.txt").write_text("three years")
+    before = snapshot(workplace / "mine")
+    assert main(["export", "macro-array", "--out", "mine"]) == 2
+    assert snapshot(workplace / "mine") == before
+    assert re.fullmatch(r"tactcad: [^\n]+\n", capsys.readouterr().err)
+
+
+def test_a_process_ends_without_traceback(tmp_path):
+    """The same from outside, where nothing of pytest's can hide a traceback or a second line."""
+    (tmp_path / "bad.toml").write_bytes(BAD_FILES["hinge thicker than the arm"][0])
+    run = subprocess.run(
+        [sys.executable, "-m", "tactcad", "export", "bad.toml"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 2
+    assert run.stdout == ""
+    assert run.stderr.count("\n") == 1 and "Traceback" not in run.stderr
+    for expected in ("element.hinge_thickness", "found 3.0", "legal: less than arm_height = 2.6 mm"):
+        assert expected in run.stderr
+    assert [p.name for p in tmp_path.rglob("*")] == ["bad.toml"]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_examples(command, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([command, "--help"])
+    assert ended.value.code == 0
+    said = capsys.readouterr().out
+    assert "examples:" in said and f"  tactcad {command}" in said
+
+
+def test_unknown_commands_and_options_exit_2(capsys):
+    for arguments in ([], ["explode"], ["export", "--no-such-option"], ["schema", "extra"]):
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 2
+        assert capsys.readouterr().out == ""
+
+
+def test_version():
+    run = subprocess.run([sys.executable, "-m", "tactcad", "--version"], capture_output=True, text=True, check=True)
+    assert re.fullmatch(r"tactcad \d+\.\d+\.\d+\n", run.stdout)
+
+
+def test_a_closed_pipe_is_no_error():
+    """`tactcad schema | head -1` ends quietly."""
+    run = subprocess.run(
+        f"{sys.executable} -m tactcad schema | head -1; exit ${{PIPESTATUS[0]}}",
+        shell=True, executable="/bin/bash", capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (run.returncode, run.stderr) == (0, "")

@@ -1,0 +1,39 @@
+"""Designs for tests: the shipped ones with a few values changed."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from tactcad.design.load import from_table
+from tactcad.design.tree import Design
+
+HARDWARE = Path(__file__).parents[1] / "hardware"
+DROP = object()
+
+
+def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:
+    """The design file of that name as TOML gives it, with values by dotted path set, or dropped (DROP)."""
+    tree = copy.deepcopy(_TABLES.setdefault(base, tomllib.loads((HARDWARE / f"{base}.toml").read_text())))
+    for path, value in (changes or {}).items():
+        *sections, name = path.split(".")
+        node = tree
+        for section in sections:
+            node = node.setdefault(section, {})
+        if value is DROP:
+            del node[name]
+        else:
+            node[name] = value
+    return tree
+
+
+def variant(changes: dict[str, Any] | None = None, base: str = "macro-array") -> Design:
+    """That table as a design. Rules between fields are not tried. Origins are left out."""
+    tree = table(changes, base)
+    tree.pop("origin", None)
+    return from_table(tree)
+
+
+_TABLES: dict[str, dict[str, Any]] = {}
