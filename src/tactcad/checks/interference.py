@@ -35,12 +35,17 @@ class Meeting:
     place: tuple[float, float, float]
 
 
-def check_interference(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Finding]:
-    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame."""
+def check_interference(
+    scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Meeting] | None = None
+) -> list[Finding]:
+    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame.
+
+    `known` keeps verdicts from scene to scene of one design: an array in a rig is not looked at again.
+    """
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
-    boxes = np.array([_placed_box(p, local[p.part.part_no]) for p in scene.placements])
-    known: dict[tuple, Meeting] = {}
+    boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
+    known = {} if known is None else known
     found = []
     met: set[frozenset[str]] = set()
     for i, j in near_pairs(boxes):
@@ -110,7 +115,8 @@ def _finding(check: str, first: Placement, m: Meeting, value: float, message: st
     return Finding(check, "fail", first.designator, m.place, value, 0.0, message)
 
 
-def _placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
+def placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
+    """Box (2, 3) in the scene of a placed part, from its own (least, largest corner)."""
     (x0, y0, z0), (x1, y1, z1) = box
     corners = np.array([(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
     there = corners @ np.array(p.rotation).T + np.array(p.origin)

@@ -11,11 +11,13 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.tree import Design
 from tactcad.scenes import make_scene
-from tactcad.solids.build import SolidError, build
+from tactcad.scenes.poses import poses
+from tactcad.solids.build import SolidError, build, envelope
 
 from .brep import check_brep
 from .finding import Finding
 from .interference import check_interference
+from .motion import check_motions
 from .mesh import check_mesh
 from .shop import DEFAULT, load_shop
 from .wirecut import check_wirecut
@@ -67,9 +69,20 @@ def run_checks(
         report.run("mesh", check_mesh, part, shapes[part.part_no])
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
+    known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
-        if all(part.part_no in shapes for part in scene.parts):
-            report.run("interference", check_interference, scene, shapes)
+        if not all(part.part_no in shapes for part in scene.parts):
+            continue
+        report.run("interference", check_interference, scene, shapes, known)
+        if scene.motions:
+            envelopes = {part.part_no: envelope(part).wrapped for part in scene.parts}
+            report.run("motion", check_motions, scene, shapes, envelopes)
+        for pose in poses(design, scene.name):
+            posed = make_scene(design, scene.name, pose)
+            for part in posed.parts:
+                if part.part_no not in shapes:
+                    shapes[part.part_no] = build(part).wrapped
+            report.run("configurations", check_interference, posed, shapes, known)
     say(total, total, "done")
     return report

@@ -32,12 +32,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import read
     from tactcad.export.pipeline import export
-    from tactcad.scenes import chosen_scenes
+    from tactcad.scenes import chosen_scenes, left_out
 
     from .progress import progress
 
     design = read(args.design)
-    done = export(design, chosen_scenes(design, args.scene), args.out or f"exports/{design.name}", progress(sys.stderr))
+    scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
+    for line in () if args.scene else left_out(design):
+        say.line(line)
+    done = export(design, scenes, args.out or f"exports/{design.name}", say)
     if args.json:
         print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
     return 0

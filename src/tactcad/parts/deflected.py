@@ -7,7 +7,7 @@ length; here it kinks at its centre, which moves the arm alike to first order in
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, cos, sin
+from math import asin, atan2, cos, hypot, pi, sin
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 
@@ -16,15 +16,25 @@ from .element import element
 from .layout import ElementPlace, Layout
 
 
-def deflected_element(layout: Layout, place: ElementPlace, deflection: float) -> Part:
-    """The element with its pad's middle pushed `deflection` mm out of the object's way (towards + z)."""
+def deflected_element(layout: Layout, place: ElementPlace, deflection: float, roller: float) -> Part:
+    """The element while a roller (radius in mm, its axis under the pad's middle) has come up by `deflection` mm.
+
+    The arm turns until the pad's face touches the roller: seen from the turned arm, the roller's centre
+    (u, v) from the hinge has come to the height -(pad height + radius) that touching means, which is
+    A sin(phi + atan2(v, u)) = w with A = hypot(u, v).
+    """
     part = element(layout, place)
-    angle = -atan2(deflection, place.load_arm)  # the arm points towards - x from the hinge: up is clockwise
-    z = place.hinge.t / 2 if layout.design.element.sides == "one" else place.hinge.h / 2
+    t, h = place.hinge.t, place.hinge.h
+    z = t / 2 if layout.design.element.sides == "one" else h / 2
+    u = -place.load_arm
+    w = -layout.design.element.pad_height - roller - z
+    v = w + deflection
+    # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
+    angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
     outer = _bent(part.body.outer, (place.hinge_x, z), angle)
     return replace(
         part,
-        part_no=f"{part.part_no}-at-{deflection:g}",
+        part_no=f"{part.part_no}-at-{deflection:g}mm",
         name=f"{part.name}, deflected {deflection:g}",
         process="reference",
         body=Extrusion(outer, part.body.thickness, part.body.openings),

@@ -6,7 +6,6 @@ A field's own range is tried when the file is read; these are tried after, all o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from itertools import combinations
 from math import cos, hypot, pi
 
@@ -16,6 +15,7 @@ from tactcad.design.tree import Design
 from .fasteners import LEAST_GRIP, carrier_screw, clamping
 from .layout import END_PLATE_WEB, SUNK, ElementPlace, Layout
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement, tapped_depth
+from .broken import Broken
 from .rigs.rules import RIG_RULES
 from .stop_gap import land_room, stop_gap
 
@@ -27,26 +27,15 @@ LEAST_GAP = 0.1
 LONGEST_ROD = 3000.0
 
 
-@dataclass(frozen=True)
-class Broken:
-    """A rule that a design breaks: the field to look at, what is wrong, its value, what is legal."""
-
-    rule: str
-    path: str
-    what: str
-    value: object
-    legal: str
-
-
 Finding = tuple[str, str, object, str]
 Rule = Callable[[Layout], Iterator[Finding]]
 
 
 def broken_rules(design: Design) -> list[Broken]:
-    """Every rule that the design breaks, the first finding of each, in the order of RULES."""
+    """Every rule that the design breaks, the first finding of each, in the order of RULES, then the rigs' own."""
     layout = Layout(design)
     found = []
-    for name, rule in RULES.items():
+    for name, rule in (RULES | RIG_RULES).items():
         for path, what, value, legal in rule(layout):
             found.append(Broken(name, path, what, value, legal))
             break
@@ -456,6 +445,5 @@ RULES: dict[str, Rule] = {
         carrier_holes_apart,
     )
 }
-RULES |= RIG_RULES
 # Rules whose breach would make later ones fail for the same reason, or not computable.
 STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "estimator_holds"})

@@ -8,7 +8,6 @@ from types import MappingProxyType
 from tactcad.design.tree import Design
 from tactcad.parts import plates
 from tactcad.parts.consumables import array_supplies
-from tactcad.parts.deflected import deflected_element
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.fasteners import carrier_screw, clamping
@@ -28,13 +27,13 @@ AGAINST_Y: Rotation = ROW[1]  # local z runs along -y
 DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
 
 
-def array(design: Design, deflected: Mapping[int, float] = MappingProxyType({})) -> Scene:
+def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({})) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `deflected` gives pads' deflections (mm) by element number, where a rig presses them.
+    `instead` gives other parts by element number, such as one that a rig has pressed.
     """
     layout = Layout(design)
-    build = _Builder(layout, deflected)
+    build = _Builder(layout, instead)
     build.stack()
     build.plates()
     build.clamping()
@@ -47,8 +46,8 @@ def array(design: Design, deflected: Mapping[int, float] = MappingProxyType({}))
 class _Builder:
     """Collects placements and contacts in assembly order."""
 
-    def __init__(self, layout: Layout, deflected: Mapping[int, float]) -> None:
-        self.layout, self.deflected = layout, deflected
+    def __init__(self, layout: Layout, instead: Mapping[int, Part]) -> None:
+        self.layout, self.instead = layout, instead
         self.placements: list[Placement] = []
         self.contacts: list[Contact] = []
         self.on_ledge: list[str] = []
@@ -64,8 +63,7 @@ class _Builder:
         self.contacts.append(Contact(first, second, "touch"))
 
     def _element(self, place: ElementPlace) -> Part:
-        deflection = self.deflected.get(place.number, 0.0)
-        return deflected_element(self.layout, place, deflection) if deflection else element(self.layout, place)
+        return self.instead.get(place.number) or element(self.layout, place)
 
     def stack(self) -> None:
         """Elements and blanks, a spacer before, between and after them, row by row."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
+from tactcad.parts.deflected import deflected_element
+from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs import bought, carried
 from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
 
@@ -83,7 +85,11 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
     mount = b.place("AM", carried.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
-    deflected = {pose.element: pose.deflection} if pose.deflection else {}
+    roller = dowel_diameter(rig.design.calibration.roller) / 2
+    pressed = rig.array.elements[pose.element - 1]
+    deflected = (
+        {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)} if pose.deflection else {}
+    )
     b.subassembly(array(rig.design, deflected), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
     b.meet(mount, "CA1")
     for x, y in carried.carrier_pattern(rig):

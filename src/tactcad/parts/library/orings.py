@@ -42,7 +42,7 @@ def o_ring(code: str) -> Part:
     inner = INSIDE[code] / 2 + 0.05
     width = pi * SECTION**2 / 4 / GROOVE_DEPTH
     return Part(
-        part_no=f"ISO3601-{code}-{INSIDE[code]:.2f}x{SECTION:g}-NBR70",
+        part_no=f"ISO3601-{code}-{INSIDE[code]:.2f}x{SECTION:g}-NBR70-ring",
         name=f"O-ring {INSIDE[code]:.2f}x{SECTION:g}",
         process="bought",
         material=NITRILE,

@@ -104,7 +104,7 @@ def stage_moving(travel: float) -> Part:
 def micrometer(travel: float, resolution: float) -> Part:
     """Micrometer head on a stage's fixed half, as an envelope: axis z, from z = 0 outwards."""
     return Part(
-        part_no=f"MICROMETER-{2 * travel:g}-{resolution:g}",
+        part_no=f"MICROMETER-{2 * travel:g}-{resolution:g}-head",
         name=f"Micrometer head {2 * travel:g} mm, {resolution:g} mm",
         process="bought",
         material=STEEL,
@@ -125,7 +125,7 @@ def rail(length: float) -> Part:
         Hole("mount", (0, y, 6.5), (0, 0, -1), 3.5, 6.5, True, counterbore=(6.0, 3.5)) for y in rail_holes(length)
     )
     return Part(
-        part_no=f"RAIL-9x{length:g}",
+        part_no=f"RAIL-9x{length:g}-guide",
         name=f"Guide rail 9, {length:g} long",
         process="bought",
         material=STEEL,
@@ -176,7 +176,7 @@ def disc_weight(rig: RigLayout) -> Part:
     outer, bore = circle((0, 0), diameter), circle((0, 0), 6.5)
     height = round(rig.weight_mass / ((outer.area - bore.area) * STEEL.density * 1e-6), 3)
     return Part(
-        part_no=f"WEIGHT-{rig.weight_mass:.4g}g-{diameter:g}",
+        part_no=f"WEIGHT-{rig.weight_mass:.4g}g-{diameter:g}-disc",
         name=f"Disc weight {rig.weight_mass:.4g} g",
         process="bought",
         material=STEEL,
@@ -196,7 +196,7 @@ def hose_fitting() -> Part:
         (1.2, -4.0), (2.5, -4.0), (2.5, 0), (4.0, 0), (4.0, 5.0), (2.0, 5.0), (2.5, 9.0), (2.0, 13.0), (1.2, 13.0),
     ])
     return Part(
-        part_no="FITTING-M5-HOSE4",
+        part_no="FITTING-M5-HOSE4-barb",
         name="Hose fitting M5, barb for 4 mm",
         process="bought",
         material=BRASS,

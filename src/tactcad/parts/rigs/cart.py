@@ -67,7 +67,7 @@ def axle_shim(rig: RigLayout) -> Part:
     bore = round(b.d + 0.1, 6)
     outside = round(b.inner - 0.1, 6)
     return Part(
-        part_no=f"SHIM-{bore:g}x{outside:g}x{t:g}",
+        part_no=f"SHIM-{bore:g}x{outside:g}x{t:g}-ring",
         name=f"Shim ring {bore:g}x{outside:g}x{t:g}",
         process="turned",
         material=STEEL,

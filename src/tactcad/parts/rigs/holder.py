@@ -91,9 +91,9 @@ def sample(rig: RigLayout, dents: tuple[tuple[float, float], ...] = (), depth: f
         Pocket("dent", (x, y, t), (0, 0, -1), (1, 0, 0), rectangle(-a, -b, a, b), depth)
         for x, y in dents if pressed
     )
-    number = f"SAMPLE-{d.sample.side:g}x{d.sample.side:g}x{t:g}"
+    number = f"SAMPLE-{d.sample.side:g}x{d.sample.side:g}x{t:g}-rubber"
     return Part(
-        part_no=f"{number}-pressed-{len(pockets)}x{depth:g}" if pressed else number,
+        part_no=f"{number}-pressed-{len(pockets)}x{depth:g}mm" if pressed else number,
         name=f"Rubber sample {d.sample.side:g} x {d.sample.side:g} x {t:g}",
         process="reference" if pressed else "bought",
         material=RUBBER,

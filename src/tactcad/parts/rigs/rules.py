@@ -1,4 +1,8 @@
-"""Rules between the fields of the rigs' tables; they say nothing where the design has no such table."""
+"""Rules of the rigs; they say nothing where the design has no such table.
+
+RIG_RULES hold between the rigs' own fields: a design that breaks one is refused. FITS tell, by scene, whether the
+rig takes this design's array: one that does not fit costs the design that scene, and nothing else.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +11,7 @@ from math import pi, tan
 
 from tactcad.mechanics.rigs import holding_force, tipping_margin
 
+from ..broken import Broken
 from ..layout import Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
@@ -191,8 +196,6 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
 
 def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    if d.calibration is None and d.grasping is None:
-        return
     under = under_carrier_screw(RigLayout(d))
     if not 2.0 - SAME <= under <= FOOT + SAME:
         low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
@@ -248,6 +251,13 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
         yield ("grasping.weights", "not a whole number", g.weights, "0, 1, 2 ...")
 
 
+def pads_on_sample(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    far = max(max(abs(x) + d.element.pad_length / 2, abs(y) + d.sheet.thickness / 2) for x, y in pad_middles(layout))
+    if far > d.sample.side / 2 + SAME:
+        yield ("sample.side", "pads reach beyond the sample", d.sample.side, f"at least {2 * far:g} mm")
+
+
 RIG_RULES: dict[str, Rule] = {
     rule.__name__: rule
     for rule in (
@@ -262,13 +272,20 @@ RIG_RULES: dict[str, Rule] = {
         seal_fits_holder,
         holder_can_be_screwed,
         screws_clear_sample,
-        stages_reach_pads,
         axis_reaches_contact,
-        mount_clears_carrier,
-        carrier_screws_fit,
-        roller_clears_neighbours,
-        rail_is_long_enough,
-        bar_clears_screws,
         weights_clear_guide,
     )
 }
+
+FITS: dict[str, tuple[Rule, ...]] = {
+    "calibration": (stages_reach_pads, mount_clears_carrier, carrier_screws_fit, roller_clears_neighbours),
+    "grasping": (pads_on_sample, carrier_screws_fit, bar_clears_screws, rail_is_long_enough),
+}
+
+
+def misfit(layout: Layout, scene: str) -> Broken | None:
+    """Why the scene's rig cannot take this array; None where it can."""
+    for rule in FITS.get(scene, ()):
+        for finding in rule(layout):
+            return Broken(rule.__name__, *finding)
+    return None

@@ -1,0 +1,40 @@
+"""Configurations of the scenes that are checked besides their rest pose."""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
+
+from .scene import Pose
+
+
+def poses(design: Design, name: str) -> tuple[Pose, ...]:
+    """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
+    the way into the sample; the array lifted, without weights, and pressed in."""
+    if name == "calibration":
+        return tuple(
+            Pose(element=n, deflection=d) for n, d in enumerate(calibration_deflections(design), start=1)
+        )
+    if name == "sample-stiffness":
+        travel = design.sample.travel
+        return (Pose(deflection=travel / 2), Pose(deflection=travel), Pose(cart=design.cart.roll / 2, height=1.0))
+    if name == "grasping":
+        return (
+            Pose(weights=0),
+            Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
+            Pose(deflection=design.sample.travel),
+        )
+    return ()
+
+
+def calibration_deflections(design: Design) -> tuple[float, ...]:
+    """Each element's deflection (mm, to a micrometre) at the calibration's whole travel.
+
+    Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K).
+    """
+    from tactcad.mechanics import ladder
+
+    c, layout = design.calibration, Layout(design)
+    stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
+    return tuple(round(float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)), 3) for k in stiffness)
