@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check review nightly clean
+.PHONY: help environment export test check review bench nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -30,8 +30,16 @@ check: environment ## style, and every check of every design: all failures are p
 	for design in $(DESIGNS); do $(BIN)/tactcad check $$design || status=1; done; \
 	exit $$status
 
-review: export ## open every exported STEP and DXF file in FreeCAD, compare with bill and manifest
-	$(BIN)/python packaging/review/review.py $(DESIGNS:hardware/%.toml=exports/%)
+EXPORTS = $(DESIGNS:hardware/%.toml=exports/%)
+
+review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, compare with bill and manifest
+	@status=0; \
+	$(BIN)/python packaging/review/in_ezdxf.py $(EXPORTS) || status=1; \
+	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
+	exit $$status
+
+bench: environment ## export times against a plain script, in one run
+	$(BIN)/python benchmarks/export.py
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

@@ -17,9 +17,13 @@ KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d
 # Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
 # at its top waits seconds for the kernel.
 NEED_SOLIDS = {
-    "tactcad.checks.brep", "tactcad.checks.interference", "tactcad.checks.mesh", "tactcad.checks.run",
-    "tactcad.export.picture", "tactcad.export.step",
-}  # fmt: skip
+    "tactcad.checks.brep",
+    "tactcad.checks.interference",
+    "tactcad.checks.mesh",
+    "tactcad.checks.run",
+    "tactcad.export.picture",
+    "tactcad.export.step",
+}
 
 MODULES = sorted((SOURCE / "tactcad").rglob("*.py"))
 

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from OCP.TopoDS import TopoDS_Shape
+
 from tactcad.design.tree import Design
 from tactcad.scenes import make_scene
 from tactcad.solids.build import SolidError, build
@@ -39,30 +41,35 @@ class Report:
         self.runs[name] = self.runs.get(name, 0) + 1
 
 
-def run_checks(design: Design, scene_names: Sequence[str], shop_file: Path = DEFAULT) -> Report:
-    """Every check on every part and scene of a design that keeps its rules.
+def run_checks(
+    design: Design, scene_names: Sequence[str], shop_file: Path = DEFAULT,
+    say: Callable[[int, int, str], None] = lambda done, total, text: None,
+) -> Report:
+    """Every check on every part and scene of a design that keeps its rules; `say` hears how far it is.
 
     A part that cannot be built is a finding, and its scenes are then not checked for interference.
     Raises InputError where the shop file cannot be used.
     """
     shop = load_shop(shop_file)
     report = Report()
-    shapes, unbuilt = {}, set()
-    for name in scene_names:
-        scene = make_scene(design, name)
-        for part in scene.parts:
-            if part.part_no in shapes or part.part_no in unbuilt:
-                continue
-            try:
-                shapes[part.part_no] = build(part).wrapped
-            except SolidError as error:
-                unbuilt.add(part.part_no)
-                report.findings.append(Finding("build", "fail", part.part_no, (), 0, 0, str(error)))
-                continue
-            report.run("brep", check_brep, part, shapes[part.part_no])
-            report.run("mesh", check_mesh, part, shapes[part.part_no])
-            if part.process == "wire-cut":
-                report.run("wire-cut", check_wirecut, part, shop)
-        if not any(part.part_no in unbuilt for part in scene.parts):
+    scenes = [make_scene(design, name) for name in scene_names]
+    parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
+    total = len(parts) + len(scenes)
+    shapes: dict[str, TopoDS_Shape] = {}
+    for n, part in enumerate(parts):
+        say(n, total, part.part_no)
+        try:
+            shapes[part.part_no] = build(part).wrapped
+        except SolidError as error:
+            report.findings.append(Finding("build", "fail", part.part_no, (), 0, 0, str(error)))
+            continue
+        report.run("brep", check_brep, part, shapes[part.part_no])
+        report.run("mesh", check_mesh, part, shapes[part.part_no])
+        if part.process == "wire-cut":
+            report.run("wire-cut", check_wirecut, part, shop)
+    for n, scene in enumerate(scenes, start=len(parts)):
+        say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
+        if all(part.part_no in shapes for part in scene.parts):
             report.run("interference", check_interference, scene, shapes)
+    say(total, total, "done")
     return report

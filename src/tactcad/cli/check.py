@@ -33,6 +33,8 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.parts.designs import load
     from tactcad.scenes import chosen_scenes
 
+    from .progress import progress
+
     design = load(args.design)
     names = chosen_scenes(design, args.scene)
     shop = Path(args.shop) if args.shop else DEFAULT
@@ -40,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
     from tactcad.checks.run import run_checks
 
-    report = run_checks(design, names, shop)
+    report = run_checks(design, names, shop, progress().step)
     failed = report.failures
     if args.json:
         record = {

@@ -23,8 +23,8 @@ def cut(contour: Contour, axis: Literal["x", "y"], at: float, keep: Literal["bel
     outline = contour if contour.ccw else contour.reversed()
     pieces = [_snapped(piece, i, at) for s in outline for piece in _split(s, i, at)]
     kept = [p for p in pieces if side * (_middle(p)[i] - at) > ON_LINE_MM]
-    if len(kept) == len(pieces):
-        return (outline,)
+    if kept and all(side * (_middle(p)[i] - at) > -ON_LINE_MM for p in pieces):
+        return (outline,)  # nothing lies beyond the line
     # along the cut the area lies to the left: up at the right-hand end of what is kept "below" in x
     forward = (-side if axis == "x" else side)
     return _closed(_chains(kept), 1 - i, forward, name)

@@ -69,7 +69,7 @@ def export(design: Design, scene_names: Sequence[str], out: str | os.PathLike[st
         _refuse_broken(design)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, scene_names, place, inputs, tuple(why), progress)
+        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress)
 
 
 def _refuse_broken(design: Design) -> None:
@@ -90,8 +90,8 @@ def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
 
 
 def _rebuild(
-    design: Design, scene_names: Sequence[str], place: Published, inputs: Inputs, why: tuple[str, ...],
-    progress: Progress,
+    design: Design, scene_names: Sequence[str], out: Path, place: Published, inputs: Inputs,
+    why: tuple[str, ...], progress: Progress,
 ) -> Exported:
     from tactcad.scenes import make_scene
 
@@ -114,8 +114,8 @@ def _rebuild(
         if wrong:
             raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
     count = len(records) + 1
-    progress.line(f"{place.link}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
-    return Exported(place.link, count, made, tuple(shapes.built), why)
+    progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
+    return Exported(out, count, made, tuple(shapes.built), why)
 
 
 def _write_products(folder: Path, products: Sequence[Product], cache: Cache, progress: Progress) -> tuple[str, ...]:

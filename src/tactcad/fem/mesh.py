@@ -14,11 +14,13 @@ and rings grow outwards to the block's rectangle::
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, log, pi
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 from skfem import ElementHex2, ElementQuad2, MeshHex2, MeshQuad2
 from skfem.assembly.dofs import Dofs
 from skfem.mesh import MeshHex, MeshQuad
@@ -30,6 +32,8 @@ from .shape import Block, HingeShape
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
+SAME_POINT = 1e-10  # of the mesh's size: rounding, far below any element
+SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
@@ -64,6 +68,7 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
     A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
     slots from both faces differ in length or radius.
     """
+    shape = _without_slivers(shape)
     if not shape.two_sided:
         cells = _half(shape, shape.low, upper=True, density=density)
         return PlaneMesh(cells, shape, False, shape.low)
@@ -82,8 +87,8 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
 def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
     """The same as scikit-fem's mesh."""
     corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
-    points, cells = _merged(corners)
-    linear = MeshQuad(points.T, cells.T)
+    points, cells = merged(corners)
+    linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
     dofs = Dofs(linear, ElementQuad2())
     nodes = np.empty((2, dofs.N))
     for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
@@ -92,24 +97,13 @@ def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
 
 
 def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
-    """The plane mesh swept over half the width, from the mid-plane y = 0 to the free side; axes x, z, y.
-
-    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
-    """
-    first = SIDE_LAYER * mesh.shape.thickness
-    y = half_width * (1.0 - _graded(half_width, first, density)[::-1])
-    layers = len(y) // 2
-    n = len(mesh.cells)
-    cells = np.empty((layers, n, 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
-    cells[..., :2] = mesh.cells[None, :, :, :, None]
-    for k in range(layers):
-        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
-    cells = cells.reshape(-1, 3, 3, 3, 3)
+    """The plane mesh swept over half the width as scikit-fem's mesh; axes x, z, y."""
+    cells = swept(mesh, half_width, density)
     element = ElementHex2()
     places = np.rint(2 * element.doflocs).astype(int)
     corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
-    points, index = _merged(corners)
-    linear = MeshHex(points.T, index.T)
+    points, index = merged(corners)
+    linear = MeshHex(np.ascontiguousarray(points.T), np.ascontiguousarray(index.T))
     dofs = Dofs(linear, element)
     nodes = np.empty((3, dofs.N))
     for local, (u, v, w) in enumerate(places):
@@ -117,12 +111,56 @@ def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
     return MeshHex2(nodes, linear.t)
 
 
-def _merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Unique points (those nearer than 1e-7 of the size are one), and each element's indices into them."""
+def swept(mesh: PlaneMesh, half_width: float, density: int) -> NDArray[np.float64]:
+    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index, from y = 0 to the free side.
+
+    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    """
+    y = half_width * (1.0 - _graded(half_width, SIDE_LAYER * mesh.shape.thickness, density)[::-1])
+    layers = len(y) // 2
+    cells = np.empty((layers, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(layers):
+        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
+    return cells.reshape(-1, 3, 3, 3, 3)
+
+
+def merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Unique points of (elements, corners, dim), and each element's indices into them.
+
+    Points are one where they share a cell of either of two shifted grids, so that no grid line can
+    part two that differ by rounding.
+    """
     flat = corners.reshape(-1, corners.shape[-1])
-    step = 1e-7 * np.ptp(flat, axis=0).max()
-    _, first, index = np.unique(np.rint(flat / step + 0.37).astype(np.int64), axis=0, return_index=True, return_inverse=True)
+    step = SAME_POINT * np.ptp(flat, axis=0).max()
+    count = len(flat)
+    links = [_first_of_group(np.floor(flat / step + shift).astype(np.int64)) for shift in (0.0, 0.5)]
+    graph = coo_matrix((np.ones(2 * count), (np.tile(np.arange(count), 2), np.concatenate(links))), shape=(count, count))
+    _, index = connected_components(graph, directed=False)
+    _, first = np.unique(index, return_index=True)
     return flat[first], index.reshape(corners.shape[:2])
+
+
+def _first_of_group(keys: NDArray[np.int64]) -> NDArray[np.int64]:
+    _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    return first[index.ravel()]
+
+
+def _without_slivers(shape: HingeShape) -> HingeShape:
+    """A straight part that is next to nothing would be a sliver: the fillets take it and meet."""
+
+    def met(block: Block, other: Block, side: str) -> Block:
+        mine, theirs = getattr(block, side), getattr(other, side)
+        if mine is None:
+            return block
+        half = abs(mine.wall - theirs.wall) / 2.0
+        near = half - mine.radius <= SLIVER * shape.thickness
+        return replace(block, **{side: replace(mine, radius=half)}) if near else block
+
+    arm, body = shape.arm, shape.body
+    for side in ("low_fillet", "high_fillet"):
+        arm, body = met(arm, shape.body, side), met(body, shape.arm, side)
+    return replace(shape, arm=arm, body=body)
 
 
 def _symmetric(shape: HingeShape, middle: float) -> bool:
@@ -142,7 +180,8 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
     column = COLUMN * shape.thickness
-    grids = [_strip(*(abs(f.wall - centre) - f.radius for _, f in fillets), sign * strip_height, column, density)]
+    straight = [max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets]
+    grids = [_strip(*straight, sign * strip_height, column, density)] if sum(straight) > 0.0 else []
     for block, fillet in fillets:
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
@@ -157,11 +196,8 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
 
 
 def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
-    """The hinge between the fillets' ends, x from -to_body to to_arm; without elements where they meet."""
-    length = to_arm + to_body
-    if length <= 1e-9:
-        return np.empty((1, 1, 2))
-    columns = max(1, ceil(length / column)) * density
+    """The hinge between the fillets' ends, x from -to_body to to_arm."""
+    columns = _count((to_arm + to_body) / column) * density
     x = np.linspace(-to_body, to_arm, 2 * columns + 1)
     z = np.linspace(0.0, height, 2 * ROWS * density + 1)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
@@ -191,7 +227,7 @@ class _Root:
         ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
 
         strip_end = self.wall - self.radius
-        columns = max(MOUTH, ceil(pi / 2.0 * self.radius / self.column)) * density
+        columns = max(MOUTH, _count(pi / 2.0 * self.radius / self.column)) * density
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
         arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
@@ -212,11 +248,11 @@ class _Root:
         grids += [_coons(foot, diagonal, ring[: rows + 1], right), _coons(diagonal, wall, ring[rows:], top)]
 
         if reach > side_x * (1.0 + 1e-12):
-            columns = max(1, ceil((reach - side_x) / side_z)) * density
+            columns = _count((reach - side_x) / side_z) * density
             x = np.linspace(self.wall + side_x, self.end, 2 * columns + 1)
             grids.append(np.stack(np.meshgrid(x, right[:, 1], indexing="ij"), axis=-1))
         if self.height > side_z * (1.0 + 1e-12):
-            tall = max(1, ceil((self.height - side_z) / side_x)) * density
+            tall = _count((self.height - side_z) / side_x) * density
             z = np.linspace(side_z, self.height, 2 * tall + 1)
             grids.append(np.stack(np.meshgrid(top[::-1, 0], z, indexing="ij"), axis=-1))
             if reach > side_x * (1.0 + 1e-12):
@@ -237,6 +273,11 @@ class _Root:
         return reach, tall
 
 
+def _count(lengths: float) -> int:
+    """Elements for that many element lengths, the same however the last digits were rounded."""
+    return max(1, ceil(lengths - 1e-6))
+
+
 def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
     start, end = np.asarray(start), np.asarray(end)
     return start + u[:, None] * (end - start)
@@ -244,7 +285,7 @@ def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
     """0 to 1 in steps that grow geometrically from about step/length."""
-    rings = max(1, round(log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
+    rings = max(1, round(1e-9 + log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
     rate = rings * log(GROWTH)
     return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
 
@@ -268,6 +309,5 @@ def _share(edge: Grid) -> NDArray[np.float64]:
 
 def _cells(grid: Grid) -> NDArray[np.float64]:
     """(n, 3, 3, 2) elements of a block's node grid."""
-    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2] \
-        if min(grid.shape[:2]) >= 3 else np.empty((0, 0, 2, 3, 3))
+    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2]
     return np.moveaxis(windows.reshape(-1, 2, 3, 3), 1, -1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from skfem import Basis, ElementQuad2, FacetBasis
+from skfem import Basis, ElementQuad2
 
 from . import elasticity
 from .mesh import PlaneMesh, plane_mesh, quad_mesh
@@ -40,12 +40,20 @@ def solve_plane(
     quads = quad_mesh(mesh)
     basis = Basis(quads, ElementQuad2(), intorder=4)
     A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=not plane_strain)) * width
-    end = FacetBasis(quads, ElementQuad2(), facets=quads.facets_satisfying(lambda x: np.isclose(x[0], mesh.load_x)), intorder=5)
-    f = elasticity.face_load(end, 1, parabola(end.default_parameters()["x"][1], mesh))
+    f = np.zeros(A.shape[0])
+    end = end_nodes(basis.doflocs, mesh)
+    f[2 * end + 1] = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))
     u = elasticity.solve(A, f, fixed_unknowns(basis.doflocs, mesh, 2))
     # the mirrored half carries the other half of the force, and as much energy
     compliance = (2.0 if mesh.half else 1.0) * (f @ u)
     return PlaneSolution(float(compliance), u.reshape(-1, 2).T, basis, mesh, A.shape[0])
+
+
+def end_nodes(nodes: Array, mesh: PlaneMesh) -> NDArray[np.int64]:
+    """Indices of the nodes on the arm's end, sorted by z, and for a solid by y within that."""
+    found = np.flatnonzero(np.abs(nodes[0] - mesh.load_x) < 1e-9 * np.ptp(nodes[0]))
+    keys = [np.rint(row[found] / (1e-7 * np.ptp(nodes[0]))) for row in nodes[1:]]
+    return found[np.lexsort(keys[::-1])]
 
 
 def parabola(z: Array, mesh: PlaneMesh) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from .plane import PlaneSolution
 from .solid import SolidSolution
@@ -105,6 +106,5 @@ def _face_edges(cells: Array, shape, upper: bool) -> Array:
 
 def _lookup(nodes: Array, edges: Array) -> NDArray[np.int64]:
     """Index of the node at each edge point."""
-    step = 1e-7 * np.ptp(nodes[0])
-    key = {tuple(k): i for i, k in enumerate(np.rint(nodes.T / step + 0.37).astype(np.int64))}
-    return np.array([key[tuple(k)] for k in np.rint(edges.reshape(-1, 2) / step + 0.37).astype(np.int64)]).reshape(edges.shape[:2])
+    _, index = cKDTree(nodes.T).query(edges.reshape(-1, 2))
+    return index.reshape(edges.shape[:2])

@@ -19,6 +19,7 @@ COMPLIANCE = {
     "solid": solid.compliance,
 }
 CLOSED_FORMS = tuple(COMPLIANCE)
+WITH_ROOTS = ("plane", "solid")
 FINITE_ELEMENTS = ("fem-plane", "fem-solid")
 RUNGS = CLOSED_FORMS + FINITE_ELEMENTS
 DEFAULT_RUNG = "solid"
@@ -40,7 +41,8 @@ def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
     reason = validity.reasons(s, rung)
     valid = reason == ""
     stiffness = np.full(s.shape, np.nan)
-    stiffness[valid] = _stiffness(s.rows(valid.reshape(-1)), rung)
+    if valid.any():
+        stiffness[valid] = _stiffness(s.rows(valid.reshape(-1)), rung)
     return Result(stiffness, valid, reason)
 
 

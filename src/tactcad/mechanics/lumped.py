@@ -41,13 +41,13 @@ def ratio_deficit(K_r, K_m, K_obj) -> Array:
 def object_stiffness(K_r, K_m, R) -> Array:
     """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm. Its digits are those that R carries."""
     R = np.asarray(R)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         return (K_r - R * K_m) / (R - 1.0)
 
 
 def object_stiffness_from_excess(K_r, K_m, excess) -> Array:
     """Equation (3) from R - 1: (K_r - K_m)/(R - 1) - K_m, for R close to 1 (stiff objects), N/mm."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         return (np.asarray(K_r) - K_m) / excess - K_m
 
 
@@ -68,14 +68,14 @@ def differences(K_r, K_m, K_obj, approach) -> tuple[Array, Array]:
 
 
 def object_stiffness_from_differences(force_difference, deflection_difference) -> Array:
-    """K_obj = (F_r - F_m)/(d_m - d_r), N/mm; infinite where the deflections are equal."""
-    with np.errstate(divide="ignore"):
+    """K_obj = (F_r - F_m)/(d_m - d_r), N/mm; infinite where the deflections are equal, NaN where nothing differs."""
+    with np.errstate(divide="ignore", invalid="ignore"):
         return np.divide(force_difference, deflection_difference)
 
 
 def object_compliance_from_differences(force_difference, deflection_difference) -> Array:
     """1/K_obj, mm/N: what to report for a very stiff object."""
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         return np.divide(deflection_difference, force_difference)
 
 

@@ -1,6 +1,19 @@
-"""Rung plane: the leaf between two elastic roots, arm and body, in plane stress."""
+"""Rung plane: the leaf between two elastic roots, arm and body, in plane stress.
+
+With rho = r/t, q = t/height of the block, p = L + l/2 and n the number of slotted faces::
+
+    C = 12/(E b t^3) [lc L^2 + lc^3/12 + t ga (L - lc/2 - ga t/2)^2 + t gb (L + lc/2 + gb t/2)^2]
+        + [lc + s t (ga + gb) - s0 t]/(5/6 G b t) + C_arm + C_body - 12 c nu^2 p^2/(E b Hb^2)
+    g = sqrt(A rho + p0 - p1/(1 + p2 rho)) - p3 q^2 - (p4 rho + p5) q^3 - p6 exp(-p7 l/t)
+
+g t is the hinge length that one filleted root adds. A = (3 pi/16)^2 2/n is the exact limit of a thin
+notch; the exponential is what two roots close to each other take from one another; c is the clamp's
+grip on the body's end, which may not narrow. All other letters are constants of the fit.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -8,24 +21,38 @@ from .beams import SHEAR_FACTOR, arm, body
 from .constants import by_sides
 from .section import Array, HingeSection
 
+THIN_NOTCH = (3.0 * np.pi / 16.0) ** 2 * 2.0  # over n: squared root length per r/t as r/t grows
 
-def root_length(s: HingeSection, height: Array) -> Array:
-    """Extra hinge length g, in units of t, that one filleted root to a block of that height adds."""
-    k = by_sides("root", s.two_sided)
-    rho = s.fillet_radius / s.hinge_thickness
-    q = s.hinge_thickness / height
-    q3 = q * q * q
-    thin_notch = k["A"] * rho + k["p0"] - k["p1"] / (1.0 + k["p2"] * rho)
-    return np.sqrt(thin_notch) - k["p3"] * q * q - (k["p4"] * rho + k["p5"]) * q3
+Constants = Mapping[str, Array | float]
 
 
-def compliance(s: HingeSection) -> Array:
-    """Tip compliance in plane stress, mm/N."""
+def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Array]:
+    """g of the roots to arm and body, in units of the hinge thickness."""
+    k = k or by_sides("root", s.two_sided)
+    t = s.hinge_thickness
+    rho = s.fillet_radius / t
+    notch = np.sqrt(THIN_NOTCH / s.notch_sides * rho + k["p0"] - k["p1"] / (1.0 + k["p2"] * rho))
+    alone = notch - k["p6"] * np.exp(-k["p7"] * s.hinge_length / t)
+    cubic = k["p4"] * rho + k["p5"]
+
+    def root(height: Array) -> Array:
+        q = t / height
+        return alone - q * q * (k["p3"] + cubic * q)
+
+    return root(s.arm_height), root(s.body_height)
+
+
+def compliance(s: HingeSection, k: Constants | None = None) -> Array:
+    """Tip compliance in plane stress, mm/N; `k` are the constants of the root, by default the shipped ones."""
+    k = k or by_sides("root", s.two_sided)
     t, L, E, b = s.hinge_thickness, s.load_arm, s.youngs_modulus, s.width
-    lc, G = s.straight_length, s.shear_modulus
-    k = by_sides("root", s.two_sided)
-    ga, gb = root_length(s, s.arm_height) * t, root_length(s, s.body_height) * t
-    to_arm, to_body = L - lc / 2.0 - ga / 2.0, L + lc / 2.0 + gb / 2.0
-    bending = lc * (L * L + lc * lc / 12.0) + ga * to_arm * to_arm + gb * to_body * to_body
-    shearing = lc + k["s"] * (ga + gb)
-    return 12.0 / (E * b * t * t * t) * bending + shearing / (SHEAR_FACTOR * G * b * t) + arm(s) + body(s)
+    lc, G, nu, Hb = s.straight_length, s.shear_modulus, s.poisson, s.body_height
+    ga, gb = root_lengths(s, k)
+    to_arm, to_body = L - lc / 2.0 - ga * t / 2.0, L + lc / 2.0 + gb * t / 2.0
+    bending = lc * (L * L + lc * lc / 12.0) + t * (ga * to_arm * to_arm + gb * to_body * to_body)
+    shearing = lc + t * (k["s"] * (ga + gb) - k["s0"])
+    grip = k["c"] * (nu * (L + s.hinge_length / 2.0) / Hb) ** 2
+    return (
+        12.0 / (E * b) * (bending / (t * t * t) - grip)
+        + shearing / (SHEAR_FACTOR * G * b * t) + arm(s) + body(s)
+    )

@@ -84,7 +84,10 @@ class HingeSection:
         picked = {}
         for field in fields(self):
             value = getattr(self, field.name)
-            picked[field.name] = value if value.size == 1 else np.broadcast_to(value, shape).reshape(-1)[index]
+            if value.size == 1:
+                picked[field.name] = value.reshape(())
+            else:
+                picked[field.name] = np.broadcast_to(value, shape).reshape(-1)[index]
         return HingeSection(**picked)
 
 

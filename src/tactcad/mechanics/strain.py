@@ -1,12 +1,21 @@
-"""Surface strain of the hinge: nominal, as the gauge's grid averages it, and its peak at a fillet."""
+"""Surface strain of the hinge: nominal, at the centre, as a gauge's grid averages it, and its peak.
+
+Closed forms for factors over the nominal strain, fitted on plane elements like the stiffness; how
+well each fits stands in the fit report. In three dimensions strain per newton goes down as the
+stiffness goes up; strain per deflection nearly stays.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from . import ladder
+from tactcad.design.messages import CheckFailure
+
+from . import ladder, plane
 from .constants import by_sides
 from .section import Array, HingeSection
+
+Constants = plane.Constants
 
 
 def nominal(s: HingeSection, force) -> Array:
@@ -15,49 +24,136 @@ def nominal(s: HingeSection, force) -> Array:
     return 6.0 * np.asarray(force) * s.load_arm / (s.youngs_modulus * s.width * t * t)
 
 
-def width_reduction(s: HingeSection, rung: str) -> Array | float:
-    """Strain per newton over the plane value: K2D/K3D on the solid rung, 1 on the others.
-
-    Strain per deflection is the same in two and three dimensions within half a per cent.
-    """
-    if rung != "solid":
-        return 1.0
-    return ladder.COMPLIANCE["solid"](s) / ladder.COMPLIANCE["plane"](s)
-
-
 def gauge(s: HingeSection, force, grid_length, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Mean strain along the gauge face under a grid of that length (mm), centred on the hinge."""
+    """Mean strain at mid-width along the gauge face under a grid of that length (mm), centred on the hinge.
+
+    Raises CheckFailure out of the rung's range.
+    """
     ladder.require_range(s, rung)
-    return nominal(s, force) * grid_factor(s, grid_length) * width_reduction(s, rung)
+    return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
 
 
 def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Largest surface strain: at the slot-side fillet towards the body."""
+    """Largest surface strain at mid-width: at the slot-side fillet towards the body.
+
+    The rungs short, beam and section know no fillet: theirs is the nominal strain at the slot's end
+    (short: at its centre). Raises CheckFailure out of the rung's range.
+    """
     ladder.require_range(s, rung)
-    return nominal(s, force) * fillet_factor(s) * width_reduction(s, rung)
+    if rung in ladder.WITH_ROOTS:
+        factor = fillet_factor(s)
+    else:
+        factor = 1.0 if rung == "short" else 1.0 + s.straight_length / 2.0 / s.load_arm
+    return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
 
 
 def peak_stress(s: HingeSection, force) -> Array:
-    """Largest surface stress, MPa: bending stress 6 F L/(b t^2) times the fillet's factor.
+    """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
 
-    Stress, unlike strain, is not changed by the width: it follows from equilibrium.
+    Stress along the hinge follows from equilibrium and is not changed by the width.
     """
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
 def face_stress(s: HingeSection, force) -> Array:
-    """Stress on the flat gauge face at the hinge's centre, MPa."""
-    return nominal(s, force) * s.youngs_modulus * grid_factor(s, 0.0)
+    """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's."""
+    return nominal(s, force) * s.youngs_modulus * face_factor(s)
 
 
-def fillet_factor(s: HingeSection) -> Array:
-    """Peak at the fillet over nominal."""
-    k = by_sides("fillet", s.two_sided)
+def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
+    """Strain per newton at mid-width over the plane value; 1 on all rungs but solid.
+
+    `at` is "grid" or "fillet": K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
+    """
+    if rung != "solid":
+        return 1.0
+    return ladder.COMPLIANCE["solid"](s) / ladder.COMPLIANCE["plane"](s) * mid_width(s, at)
+
+
+def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
+    """Strain per deflection at mid-width over the plane value: 1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b."""
+    k = k or by_sides(f"mid-width {at}", s.two_sided)
+    x, y, nu = s.hinge_length / s.width, s.hinge_thickness / s.width, s.poisson
+    return 1.0 + nu * nu * (x * (k["a"] * x + k["d"] * y) + k["e"] * y * y)
+
+
+def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
+    """Peak at the body-side fillet over nominal.
+
+    [1 + (lc/2 + a sqrt(r t) - b r)/L] [1 + c rho^-m (1 + d exp(-e lc/t))]: the moment where the peak
+    sits, times the fillet's own factor, larger where two fillets make one round notch.
+    """
+    k = k or by_sides("fillet", s.two_sided)
+    t, r, lc = s.hinge_thickness, s.fillet_radius, s.straight_length
+    where = lc / 2.0 + k["a"] * np.sqrt(r * t) - k["b"] * r
+    notch = 1.0 + k["d"] * np.exp(-k["e"] * lc / t)
+    return (1.0 + where / s.load_arm) * (1.0 + k["c"] * (r / t) ** -k["m"] * notch)
+
+
+def face_factor(s: HingeSection, k: Constants | None = None) -> Array:
+    """Peak on the gauge face over nominal: [1 + (a lc/2 - b t)/L] [1 - c/(d + rho) exp(-e lc/t)], one-sided."""
+    k = k or by_sides("face", np.False_)
+    t, lc = s.hinge_thickness, s.straight_length
+    flat = (1.0 + (k["a"] * lc / 2.0 - k["b"] * t) / s.load_arm) * (
+        1.0 - k["c"] / (k["d"] + s.fillet_radius / t) * np.exp(-k["e"] * lc / t)
+    )
+    return np.where(s.two_sided, fillet_factor(s), flat) if np.any(s.two_sided) else flat
+
+
+def grid_factor(s: HingeSection, grid_length, rung: str = ladder.DEFAULT_RUNG) -> Array:
+    """Mean strain under the grid over nominal; 1 on the rungs without roots.
+
+    Each root adds X(w) to the integral of strain over nominal less one, up to w = distance from the
+    fillet's end over t: mean = 1 + 2 t/grid [X(w+) - X(w-)], w+- = (+-grid - lc)/(2 t). Raises
+    CheckFailure where a grid on a two-sided hinge would climb more than half of its fillets.
+    """
+    grid = np.asarray(grid_length, dtype=float)
+    if rung not in ladder.WITH_ROOTS:
+        return np.broadcast_to(1.0, np.broadcast_shapes(s.shape, grid.shape))
+    climbs = s.two_sided & (grid > s.straight_length + s.fillet_radius)
+    if np.any(climbs):
+        raise CheckFailure(
+            "the gauge's grid is longer than the flat part of a two-sided hinge and half of its fillets"
+        )
+    root = sum(plane.root_lengths(s)) / 2.0
+    if np.all(s.two_sided):
+        return two_sided_grid(s, grid, by_sides("grid", np.True_), root)
+    one = one_sided_grid(s, grid, by_sides("grid", np.False_), root)
+    if not np.any(s.two_sided):
+        return one
+    return np.where(s.two_sided, two_sided_grid(s, grid, by_sides("grid", np.True_), root), one)
+
+
+def one_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> Array:
+    """X = -g [m f(u, v; w/g) + (1 - m) f(x, y; w/g)], f(u, v; z) = ln(1 + exp(u (z - v)))/u.
+
+    g is the mean `root` length in t: beyond the mouth the strain fades, part of it soon, part in the block.
+    """
+    g = root
+
+    def fade(w: Array) -> Array:
+        near = np.logaddexp(0.0, k["u"] * (w / g - k["v"])) / k["u"]
+        far = np.logaddexp(0.0, k["x"] * (w / g - k["y"])) / k["x"]
+        return -g * (k["m"] * near + (1.0 - k["m"]) * far)
+
+    return _mean(s, grid, fade)
+
+
+def two_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> Array:
+    """X = -g f(u, v; w/g) + m rho^-x [1 + tanh(y (w/sqrt(rho) - z))]/2: fading, and the fillet's peak."""
+    g = root
     rho = s.fillet_radius / s.hinge_thickness
-    return 1.0 + k["c"] * rho ** k["m"]
+
+    def excess(w: Array) -> Array:
+        fading = np.logaddexp(0.0, k["u"] * (w / g - k["v"])) / k["u"]
+        bump = k["m"] * rho ** -k["x"] * (1.0 + np.tanh(k["y"] * (w / np.sqrt(rho) - k["z"]))) / 2.0
+        return bump - g * fading
+
+    return _mean(s, grid, excess)
 
 
-def grid_factor(s: HingeSection, grid_length) -> Array:
-    """Mean strain under the grid over nominal."""
-    k = by_sides("grid", s.two_sided)
-    return np.broadcast_to(np.asarray(k["mean"], dtype=float), np.broadcast_shapes(s.shape, np.shape(grid_length)))
+def _mean(s: HingeSection, grid: Array, excess) -> Array:
+    t, lc = s.hinge_thickness, s.straight_length
+    short = 1e-3 * t  # a point is taken as a grid of a thousandth of the thickness
+    grid = np.maximum(grid, short)
+    return 1.0 + 2.0 * t / grid * (excess((grid - lc) / (2.0 * t)) - excess((-grid - lc) / (2.0 * t)))

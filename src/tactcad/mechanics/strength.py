@@ -56,10 +56,15 @@ def surface_factor(tensile_strength: float) -> float:
 
 
 def goodman_factor(s: HingeSection, alloy: Alloy, force) -> Array:
-    """Safety against fatigue at 5e8 cycles under a force between 0 and `force`, by Goodman's line.
+    """Safety against fatigue at 5e8 cycles of a force that goes between 0 and `force` (N)."""
+    return goodman(alloy, strain.peak_stress(s, force))
 
-    1/n = sigma_a/(k_a S_f) + sigma_m/S_u, sigma_a = sigma_m = half the fillet's peak stress.
+
+def goodman(alloy: Alloy, peak_stress) -> Array:
+    """Goodman's line for a stress between 0 and peak (MPa): 1/n = sigma_a/(k_a S_f) + sigma_m/S_u.
+
+    sigma_a = sigma_m = peak/2, the fillet's peak taken whole (notch sensitivity 1).
     """
     ultimate = alloy.tensile_strength or alloy.yield_strength
-    half = strain.peak_stress(s, force) / 2.0
+    half = np.asarray(peak_stress) / 2.0
     return 1.0 / (half / (surface_factor(ultimate) * alloy.fatigue_strength) + half / ultimate)

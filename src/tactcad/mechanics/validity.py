@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import lru_cache
 
 import numpy as np
 
 from . import friction
 from .constants import ladder_data
-from .section import HingeSection
+from .section import Array, HingeSection
 
+ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = (
     "hinge_thickness", "hinge_length", "load_arm", "arm_height", "body_height", "body_length",
     "youngs_modulus", "width",
@@ -39,13 +41,12 @@ def _slot_depth(s: HingeSection) -> np.ndarray:
     return s.hinge_thickness + s.notch_sides * s.fillet_radius
 
 
-# lc = l - 2 r may come out a few ulp below zero where the radius is written as half the length
 GEOMETRY = (
     Rule("a value is not a finite number", _not_finite),
     Rule("a length, width or modulus is not positive", _not_positive),
     Rule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
     Rule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
-    Rule("fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -1e-12 * s.hinge_length),
+    Rule("fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -ROUNDING * s.hinge_length),
     Rule("load inside the slot: L <= l/2", lambda s: s.load_arm <= s.hinge_length / 2.0),
     Rule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
     Rule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),
@@ -55,32 +56,66 @@ GEOMETRY = (
 )
 
 
-def _min_height() -> float:
-    return ladder_data()["range"]["min_height_ratio"]
-
-
-FITTED = (
-    Rule("arm too low for the fit: h < 1.25 (t + n r)",
-         lambda s: s.arm_height < _min_height() * _slot_depth(s)),
-    Rule("body too low for the fit: Hb < 1.25 (t + n r)",
-         lambda s: s.body_height < _min_height() * _slot_depth(s)),
-)
-
-RULES = {
-    "short": GEOMETRY,
-    "beam": GEOMETRY,
-    "section": GEOMETRY,
-    "plane": GEOMETRY + FITTED,
-    "solid": GEOMETRY + FITTED,
-    "fem-plane": GEOMETRY,
-    "fem-solid": GEOMETRY,
+# Dimensionless groups that bound the fit; the solid rung's are those of the width.
+PLANE_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
+    "r/t": lambda s: s.fillet_radius / s.hinge_thickness,
+    "l/t": lambda s: s.hinge_length / s.hinge_thickness,
+    "h/t": lambda s: s.arm_height / s.hinge_thickness,
+    "Hb/t": lambda s: s.body_height / s.hinge_thickness,
+    "(L - l/2)/h": lambda s: (s.load_arm - s.hinge_length / 2.0) / s.arm_height,
+    "L/Hb": lambda s: s.load_arm / s.body_height,
+    "Lb/Hb": lambda s: s.body_length / s.body_height,
+    "poisson": lambda s: s.poisson,
 }
+SOLID_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
+    "b/t": lambda s: s.width / s.hinge_thickness,
+    "b/l": lambda s: s.width / s.hinge_length,
+    "b/h": lambda s: s.width / s.arm_height,
+    "b/Hb": lambda s: s.width / s.body_height,
+}
+
+
+def groups(s: HingeSection) -> dict[str, Array]:
+    """Value of every group for every design."""
+    return {name: value(s) for name, value in (PLANE_GROUPS | SOLID_GROUPS).items()}
+
+
+@lru_cache(maxsize=2)
+def _fitted(rung: str) -> tuple[Rule, ...]:
+    """Rules of the fit's sampled range, as data/ladder.json gives it."""
+    sampled = ladder_data()["range"]
+    height = sampled["least_height"]
+    rules = [
+        Rule(f"arm too low for the fit: h < {height:g} (t + n r)",
+             lambda s: s.arm_height < height * (1.0 - ROUNDING) * _slot_depth(s)),
+        Rule(f"body too low for the fit: Hb < {height:g} (t + n r)",
+             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s)),
+    ]
+    for name, value in (PLANE_GROUPS if rung == "plane" else PLANE_GROUPS | SOLID_GROUPS).items():
+        low, high = sampled["groups"][name]
+        rules.append(Rule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high)))
+    return tuple(rules)
+
+
+def _outside(value: Callable[[HingeSection], Array], low: float, high: float) -> Callable[[HingeSection], np.ndarray]:
+    low, high = low * (1.0 - ROUNDING), high * (1.0 + ROUNDING)
+
+    def broken(s: HingeSection) -> np.ndarray:
+        v = value(s)
+        return ~((v >= low) & (v <= high))
+
+    return broken
+
+
+def rules(rung: str) -> tuple[Rule, ...]:
+    """The rung's rules in the order in which they are looked at."""
+    return GEOMETRY + _fitted(rung) if rung in ("plane", "solid") else GEOMETRY
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
     """Masks (of the section's shape) of the designs that break each of the rung's rules."""
-    with np.errstate(invalid="ignore", over="ignore"):
-        masks = {rule.name: np.broadcast_to(rule.broken(s), s.shape) for rule in RULES[rung]}
+    with np.errstate(all="ignore"):
+        masks = {rule.name: np.broadcast_to(rule.broken(s), s.shape) for rule in rules(rung)}
     return {name: mask for name, mask in masks.items() if mask.any()}
 
 

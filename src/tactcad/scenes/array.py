@@ -45,9 +45,11 @@ class _Builder:
         self.placements: list[Placement] = []
         self.contacts: list[Contact] = []
         self.on_ledge: list[str] = []
-        self.cover: set[str] = {"ST1", "CA1"}  # and the screws that hold them
+        self.cover: set[str] = {"ST1", "CA1", "EP1"}  # and every screw and pin
 
     def place(self, designator: str, part: Part, origin, rotation: Rotation) -> str:
+        if part.bought:
+            self.cover.add(designator)
         self.placements.append(Placement(designator, part, tuple(round(float(v), 9) for v in origin), rotation))
         return designator
 
@@ -143,11 +145,9 @@ class _Builder:
             name = self.place(f"SC{n}", screws.cap_screw(thread, fixing.length), at, DOWN)
             self.touch(name, "CA1")
             self.contacts.append(Contact(name, "EP1" if sy < 0 else "EP2", "thread"))
-            self.cover.add(name)
         length = layout.hold_down.length
         spots = [(side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y]
         for n, (x, y) in enumerate(spots, start=1):
             name = self.place(f"SS{n}", screws.set_screw(thread, length), (x, y, layout.stop_plate_top + length), DOWN)
             self.touch(name, "ST1")
             self.contacts.append(Contact(name, "CA1", "thread"))
-            self.cover.add(name)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from collections.abc import Callable
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +54,7 @@ def draw(count: int, seed: int) -> Columns:
         row["two_sided"] = float(len(rows) % 2)
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
 
 
 def draw_box(count: int, seed: int) -> Columns:
@@ -60,7 +65,7 @@ def draw_box(count: int, seed: int) -> Columns:
         row = {k: rng.uniform(*v) for k, v in BOX.items()} | {"two_sided": float(len(rows) % 2)}
         if _possible(row):
             rows.append(row)
-    return {k: np.array([row[k] for row in rows]) for k in rows[0]}
+    return _as_written(rows)
 
 
 def section(columns: Columns) -> HingeSection:
@@ -104,6 +109,11 @@ def solid_results(s: HingeSection) -> dict[str, float]:
     }
 
 
+def _as_written(rows: list[dict[str, float]]) -> Columns:
+    """Columns with the digits that `write` keeps, so that elements are solved for what the file says."""
+    return {k: np.array([float(f"{row[k]:.8g}") for row in rows]) for k in rows[0]}
+
+
 def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return math.exp(rng.uniform(math.log(low), math.log(high)))
 
@@ -118,3 +128,40 @@ def _possible(row: dict[str, float]) -> bool:
         and reach >= row["arm_height"] / 2.0
         and row["body_length"] >= 0.2 * row["body_height"]
     )
+
+
+def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Columns:
+    """Finite-element results of every design beside its parameters; solids for the first `solids` of them.
+
+    Missing results are NaN. `report` gets a line of progress now and then.
+    """
+    s, count = section(columns), len(columns["two_sided"])
+    rows = []
+    for i in range(count):
+        one = s.rows(i)
+        rows.append(plane_results(one) | (solid_results(one) if i < solids else {}))
+        if (i + 1) % 50 == 0:
+            report(f"{i + 1} of {count} designs")
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    return columns | {name: np.array([row.get(name, math.nan) for row in rows]) for name in names}
+
+
+def write(columns: Columns, path: Path) -> None:
+    """One line a design, eight digits."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(columns)
+        for row in zip(*columns.values()):
+            writer.writerow("" if math.isnan(v) else f"{v:.8g}" for v in row)
+
+
+def load(path: Path | Traversable) -> Columns:
+    """The columns that `write` wrote."""
+    rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+
+
+def shipped() -> dict[str, Columns]:
+    """The samples that the shipped constants were fitted on, and those held out."""
+    data = resources.files(__package__) / "data"
+    return {"fitted": load(data / "ladder-samples.csv"), "held out": load(data / "ladder-heldout.csv")}

@@ -1,0 +1,128 @@
+"""Export times of tactcad against a plain script that writes the same kinds of files, in one run on one machine.
+
+For 10, 100 and 1000 elements, each in a fresh process with an empty cache, no time taken off:
+
+    cold        the first export
+    unchanged   the same command again
+    one arm     the same again after one arm length was changed
+    baseline    baseline_export.py: every distinct shape once through the kernel, each file written and read back once
+    numpy       python -c "import numpy": the yardstick for a command that does nothing
+
+usage: export.py [--smoke] [--json FILE]     --smoke: 10 elements only, each command once
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+DESIGN = ROOT / "hardware" / "macro-array.toml"
+BASELINE = Path(__file__).with_name("baseline_export.py")
+SIZES = (10, 100, 1000)
+GOALS = {"cold / baseline": 1.5, "unchanged / numpy": 3.0, "STEP size / that of 10": 5.0}
+QUICK_RUNS = 7  # of what takes a fraction of a second, the median
+
+
+def design_text(elements: int, changed: bool = False) -> str:
+    """The published design with its rows repeated to the number of elements; `changed` makes one arm 0.5 mm longer."""
+    text = DESIGN.read_text(encoding="utf-8")
+    (line,) = (line for line in text.splitlines() if line.startswith("row_arms"))
+    rows = tomllib.loads(line)["row_arms"]
+    arms = [[row[i % len(row)] for i in range(elements // 2)] for row in rows]
+    if changed:
+        arms[0][0] += 0.5
+    return text.replace(line, f"row_arms = {arms}")
+
+
+def seconds(command: list[str], cache: Path) -> float:
+    """Wall-clock time of a command in a fresh process."""
+    environment = {**os.environ, "TACTCAD_CACHE": str(cache), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    start = time.perf_counter()
+    run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    taken = time.perf_counter() - start
+    if run.returncode:
+        sys.exit(f"{' '.join(command)} failed:\n{run.stderr}")
+    return taken
+
+
+def assembly_bytes(folder: Path) -> int:
+    files = json.loads((folder / "manifest.json").read_text())["files"]
+    return sum((folder / f["path"]).stat().st_size for f in files if f["kind"] == "step-assembly")
+
+
+def measure(elements: int, quick_runs: int) -> dict[str, float]:
+    """All times (s) and the assembly's size (bytes) for one number of elements."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        design, out, cache = folder / "design.toml", folder / "out", folder / "cache"
+        export = [sys.executable, "-m", "tactcad", "export", str(design), "--scene", "array", "--out", str(out)]
+        design.write_text(design_text(elements))
+        row = {"elements": elements, "cold": seconds(export, cache)}
+        row["unchanged"] = statistics.median(seconds(export, cache) for _ in range(quick_runs))
+        row["numpy"] = statistics.median(
+            seconds([sys.executable, "-c", "import numpy"], cache) for _ in range(quick_runs)
+        )
+        row["step_bytes"] = assembly_bytes(out)
+        design.write_text(design_text(elements, changed=True))
+        row["one arm"] = seconds(export, cache)
+        plain = [sys.executable, str(BASELINE), str(elements), str(folder / "baseline")]
+        row["baseline"] = seconds(plain, cache)
+        return row
+
+
+def with_ratios(rows: list[dict[str, float]]) -> list[dict[str, float]]:
+    return [
+        {
+            **row,
+            "cold / baseline": row["cold"] / row["baseline"],
+            "unchanged / numpy": row["unchanged"] / row["numpy"],
+            "STEP size / that of 10": row["step_bytes"] / rows[0]["step_bytes"],
+        }
+        for row in rows
+    ]
+
+
+def table(rows: list[dict[str, float]]) -> str:
+    """Markdown, as it stands in README."""
+    columns = ["cold", "unchanged", "one arm", "baseline", "numpy"]
+    lines = [
+        "| elements | " + " | ".join(f"{c}, s" for c in columns) + " | " + " | ".join(GOALS) + " |",
+        "|" + "---|" * (1 + len(columns) + len(GOALS)),
+    ]
+    for row in rows:
+        cells = [f"{row[c]:.2f}" for c in (*columns, *GOALS)]
+        lines.append(f"| {row['elements']} | " + " | ".join(cells) + " |")
+    goals = "; ".join(f"{name} at most {goal:g}" for name, goal in GOALS.items())
+    missed = [f"{row['elements']}: {name}" for row in rows for name, goal in GOALS.items() if row[name] > goal]
+    lines += ["", f"Goals: {goals}.", f"Missed: {', '.join(missed) or 'none'}."]
+    return "\n".join(lines)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--smoke", action="store_true", help="10 elements only, each command once")
+    parser.add_argument("--json", metavar="FILE", help="write all figures to FILE")
+    args = parser.parse_args()
+    rows = []
+    for elements in SIZES[:1] if args.smoke else SIZES:
+        print(f"{elements} elements ...", file=sys.stderr)
+        rows.append(measure(elements, 1 if args.smoke else QUICK_RUNS))
+    rows = with_ratios(rows)
+    print(table(rows))
+    if args.json:
+        machine = {"python": platform.python_version(), "machine": platform.machine(), "cores": os.cpu_count()}
+        Path(args.json).write_text(json.dumps({"machine": machine, "goals": GOALS, "rows": rows}, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()

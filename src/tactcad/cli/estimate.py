@@ -1,0 +1,135 @@
+"""`tactcad estimate`: stiffness, strain and strength of a design's elements, or of a table of designs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from dataclasses import asdict
+
+from tactcad.design.messages import InputError
+from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, RUNGS
+
+EXAMPLES = """\
+  tactcad estimate
+  tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
+  tactcad estimate --model fem-plane
+  tactcad estimate --batch designs.csv --model plane --out stiffness.csv
+"""
+
+COLUMNS = (  # heading, unit, field, format
+    ("no.", "", "number", "d"),
+    ("arm", "mm", "arm", ".3g"),
+    ("K", "N/mm", "stiffness", ".4g"),
+    ("K_r/K_m", "", "stiffness_ratio", ".3g"),
+    ("deflection", "um", "deflection_um", ".4g"),
+    ("strain gauge", "1e-6", "gauge_microstrain", ".0f"),
+    ("strain fillet", "1e-6", "peak_microstrain", ".0f"),
+    ("stress", "MPa", "stress", ".0f"),
+    ("yield/stress", "", "yield_factor_fillet", ".2f"),
+    ("flat face", "", "yield_factor_face", ".2f"),
+    ("Goodman", "", "goodman_factor", ".2f"),
+    ("yield at", "N", "yield_force", ".3g"),
+    ("and", "um", "yield_deflection_um", ".4g"),
+    ("rated", "N", "rated_force", ".3g"),
+)
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("design", nargs="?", help="design file, or name in hardware/ (default macro-array)")
+    parser.add_argument("--model", choices=RUNGS, default=DEFAULT_RUNG, metavar="RUNG",
+                        help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another")
+    parser.add_argument("--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)")
+    parser.add_argument("--json", action="store_true", help="write JSON")
+    parser.add_argument("--batch", metavar="IN.csv", help="a table of designs, one a line (see docs/mechanics.md)")
+    parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
+
+
+def run(args: argparse.Namespace) -> int:
+    if args.force is not None and not (0.0 < args.force < math.inf):
+        raise InputError("--force", "not a force", value=args.force, legal="a positive number of newtons")
+    if args.batch is not None:
+        return _batch(args)
+    if args.out is not None:
+        raise InputError("--out", "goes with --batch only", value=args.out)
+    from tactcad.parts.designs import load
+    from tactcad.parts.layout import Layout
+    from tactcad.studies.array_estimate import compare_uncut, estimate
+
+    design = load(args.design or "macro-array")
+    layout = Layout(design)
+    rows = [asdict(row) for row in estimate(layout, args.model, args.force)]
+    uncut = asdict(compare_uncut(layout)) if args.model in FINITE_ELEMENTS else None
+    if args.json:
+        print(json.dumps(_document(design, args.model, rows, uncut), indent=2))
+    else:
+        print(_report(design, args.model, rows, uncut))
+    return 0
+
+
+def _batch(args: argparse.Namespace) -> int:
+    from tactcad.studies.batch import estimate_file
+
+    for name, given in (("DESIGN", args.design), ("--force", args.force)):
+        if given is not None:
+            raise InputError("--batch", f"takes its designs from the table; leave out {name}", value=given)
+    if args.json:
+        raise InputError("--batch", "writes CSV; leave out --json")
+    if args.out is None:
+        raise InputError("--batch", "needs --out OUT.csv")
+    valid, count = estimate_file(args.batch, args.out, args.model)
+    print(f"{args.out}: {count} designs, {count - valid} out of range")
+    return 0
+
+
+def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+    document = {
+        "design": design.name, "revision": design.design.revision, "model": model,
+        "alloy": design.material.alloy, "force_N": rows[0]["force"],
+        "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
+        "elements": rows,
+    }
+    return document | ({"uncut": uncut} if uncut else {})
+
+
+def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
+    first = rows[0]
+    lines = [
+        f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
+        f"{first['force']:g} N on each pad",
+        *_table([_shown(row) for row in rows]),
+    ]
+    plastic = [str(row["number"]) for row in rows if not row["elastic"]]
+    if plastic:
+        lines.append(f"invalid: above yield at this force, so strain and stress are not given: no. {', '.join(plastic)}")
+    if uncut:
+        lines.append(
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between its spacers, plane stress: "
+            f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model cut at load line "
+            "and clamp edge"
+        )
+    if model in ("plane", "solid"):
+        lines.append(_spread(design, first))
+    return "\n".join(lines)
+
+
+def _shown(row: dict) -> dict:
+    scaled = {
+        "deflection_um": ("deflection", 1e3), "gauge_microstrain": ("gauge_strain", 1e6),
+        "peak_microstrain": ("peak_strain", 1e6), "yield_deflection_um": ("yield_deflection", 1e3),
+    }
+    return row | {name: None if row[of] is None else row[of] * by for name, (of, by) in scaled.items()}
+
+
+def _table(rows: list[dict]) -> list[str]:
+    cells = [[heading for heading, *_ in COLUMNS], [unit for _, unit, *_ in COLUMNS]]
+    cells += [["invalid" if row[f] is None else format(row[f], spec) for *_, f, spec in COLUMNS] for row in rows]
+    widths = [max(len(line[i]) for line in cells) for i in range(len(COLUMNS))]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells]
+
+
+def _spread(design, row: dict) -> str:
+    """What the hinge's tolerance does to these numbers: K goes with t^3."""
+    tolerance = design.tolerance.hinge_thickness
+    share = 3.0 * tolerance / design.element.hinge_thickness
+    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share:.0%}; measure it"

@@ -1,0 +1,142 @@
+"""`tactcad size`: the hinge thickness (or length) that gives a wanted stiffness at a load arm."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG
+
+EXAMPLES = """\
+  tactcad size --stiffness 10 --load-arm 5
+  tactcad size --stiffness 40 --load-arm 3 --sides two --solve length --hinge-thickness 0.3
+  tactcad size --stiffness 2 --load-arm 6 --design soft-tissue --force 0.5 --json
+"""
+
+LENGTHS = {  # option: section parameter
+    "hinge-thickness": "hinge_thickness", "hinge-length": "hinge_length", "fillet-radius": "fillet_radius",
+    "arm-height": "arm_height", "body-height": "body_height", "body-length": "body_length", "width": "width",
+}
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--stiffness", type=float, required=True, metavar="K", help="wanted tip stiffness, N/mm")
+    parser.add_argument("--load-arm", type=float, required=True, metavar="L", help="hinge centre to load line, mm")
+    parser.add_argument("--solve", choices=("thickness", "length"), default="thickness",
+                        help="what to find: hinge thickness (default) or slot length")
+    parser.add_argument("--sides", choices=("one", "two"), help="slot from one face or from both")
+    parser.add_argument("--design", default="macro-array", help="design that gives all else (default macro-array)")
+    for option in LENGTHS:
+        parser.add_argument(f"--{option}", type=float, metavar="MM", help="instead of the design's")
+    parser.add_argument("--youngs-modulus", type=float, metavar="MPA", help="instead of the design's")
+    parser.add_argument("--poisson", type=float, help="instead of the design's")
+    parser.add_argument("--alloy", help="whose strength to use, instead of the design's")
+    parser.add_argument("--force", type=float, metavar="N", help="force on the pad (default: the design's rated force)")
+    parser.add_argument("--tolerance", type=float, metavar="MM",
+                        help="plus and minus of the length found (default: the design's)")
+    parser.add_argument("--model", choices=CLOSED_FORMS, default=DEFAULT_RUNG, metavar="RUNG",
+                        help=f"one of {', '.join(CLOSED_FORMS)} (default {DEFAULT_RUNG})")
+    parser.add_argument("--json", action="store_true", help="write JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    for option in ("stiffness", "load_arm", "force", "tolerance", "youngs_modulus", *LENGTHS.values()):
+        value = getattr(args, option)
+        if value is not None and not 0.0 < value < math.inf:
+            raise InputError(f"--{option.replace('_', '-')}", "not a positive number", value=value)
+    if args.poisson is not None and not 0.0 <= args.poisson < 0.5:
+        raise InputError("--poisson", "not a Poisson's ratio", value=args.poisson, legal="0 to 0.5")
+    parameter = f"hinge_{args.solve}"
+    if getattr(args, parameter) is not None:
+        raise InputError(f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter))
+    answer = _answer(args, parameter)
+    if args.json:
+        print(json.dumps(answer, indent=2))
+    else:
+        print(_report(answer))
+    return 0
+
+
+def _answer(args: argparse.Namespace, parameter: str) -> dict:
+    from tactcad.design.materials import alloy as alloy_named
+    from tactcad.mechanics import ladder, strain, strength
+    from tactcad.mechanics.sizing import size
+    from tactcad.parts.designs import load
+    from tactcad.parts.hinge_section import design_alloy
+
+    design = load(args.design)
+    section = _section(args, design)
+    alloy = alloy_named(args.alloy) if args.alloy else design_alloy(design)
+    tolerance = args.tolerance or getattr(design.tolerance, parameter)
+    force = args.force or design.rating.force
+    value = size(section, args.stiffness, parameter, args.model)
+    ends = [_stiffness_at(ladder, section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)]
+    found = section.with_(**{parameter: value})
+    elastic = bool(strength.elastic(found, alloy, force))
+    per_cut = strain.peak(found, force, args.model), strain.gauge(found, force, design.gauge.grid_length, args.model)
+    yields_at = float(strength.yield_force(found, alloy))
+    return {
+        "model": args.model, "solved": parameter, "value": value, "tolerance": tolerance,
+        "stiffness": float(ladder.stiffness(found, args.model)), "stiffness_interval": sorted(ends),
+        "section": {name: float(getattr(found, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS.values())}
+        | {"sides": "two" if bool(found.two_sided) else "one"},
+        "alloy": alloy.name, "force": force, "elastic": elastic,
+        "peak_strain": float(per_cut[0]) if elastic else None,
+        "gauge_strain": float(per_cut[1]) if elastic else None,
+        "stress": float(strain.peak_stress(found, force)) if elastic else None,
+        "yield_force": yields_at, "yield_deflection": yields_at / args.stiffness,
+        "rated_force": float(min(force, yields_at / design.rating.yield_factor)),
+    }
+
+
+def _stiffness_at(ladder, section, parameter: str, value: float, model: str) -> float:
+    try:
+        return float(ladder.stiffness(section.with_(**{parameter: value}), model))
+    except CheckFailure as refusal:
+        raise CheckFailure(f"at the tolerance's end, {parameter} {value:.4g} mm: {refusal}") from None
+
+
+def _section(args: argparse.Namespace, design):
+    """The design's element with what the options change, at the asked load arm."""
+    from tactcad.mechanics.section import HingeSection
+    from tactcad.parts.layout import Layout
+
+    layout = Layout(design)
+    e = design.element
+    own = {name: getattr(args, name) for name in LENGTHS.values() if getattr(args, name) is not None}
+    slot = own.get("hinge_length", e.hinge_length)
+    hinge_x = layout.pad_inner + e.pad_length / 2.0 + args.load_arm
+    # an arm longer than the array's moves the clamp edge out and keeps the seat behind its slot
+    body_length = max(layout.clamp_edge - hinge_x - slot / 2.0, e.seat_length)
+    usual = {
+        "hinge_thickness": e.hinge_thickness, "hinge_length": e.hinge_length, "fillet_radius": e.fillet_radius,
+        "arm_height": e.arm_height, "body_height": e.body_height, "body_length": body_length,
+        "width": design.sheet.thickness,
+    }
+    return HingeSection(
+        **(usual | own), load_arm=args.load_arm,
+        poisson=design.material.poisson if args.poisson is None else args.poisson,
+        youngs_modulus=args.youngs_modulus or design.material.youngs_modulus,
+        two_sided=(args.sides or e.sides) == "two", pad_height=e.pad_height, friction=design.rating.friction,
+    )
+
+
+def _report(a: dict) -> str:
+    low, high = a["stiffness_interval"]
+    name = a["solved"].replace("_", " ")
+    strained = (
+        f"strain gauge {1e6 * a['gauge_strain']:.0f}e-6, fillet {1e6 * a['peak_strain']:.0f}e-6, "
+        f"stress {a['stress']:.0f} MPa" if a["elastic"] else "invalid: above yield"
+    )
+    s = a["section"]
+    return "\n".join((
+        f"{name} {a['value']:.4f} mm for {a['stiffness']:.4g} N/mm at L {s['load_arm']:g} mm "
+        f"({s['sides']}-sided, rung {a['model']})",
+        f"as cut: +-{a['tolerance']:g} mm leaves {low:.4g} to {high:.4g} N/mm "
+        f"({low / a['stiffness'] - 1:+.1%} to {high / a['stiffness'] - 1:+.1%})",
+        f"at {a['force']:g} N, {a['alloy']}: {strained}",
+        f"yields at {a['yield_force']:.3g} N and {1e3 * a['yield_deflection']:.4g} um; "
+        f"rated force {a['rated_force']:.3g} N",
+    ))

@@ -1,0 +1,47 @@
+"""tactcad stiffness FILE --calibration FILE [--reference N] [--level P] [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+EXAMPLES = """\
+  tactcad calibrate hardware/examples/calibration.csv --out calibration.csv
+  tactcad stiffness hardware/examples/grasp.csv --calibration calibration.csv
+  tactcad stiffness mine.csv --calibration calibration.csv --reference 1 --json
+
+FILE is CSV with the columns load, element, signal (N and V, or load_mN, signal_mV), and where there are
+several, run and sample: every element at every load. The calibration is what `tactcad calibrate` wrote
+(--out, or --json)."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="grasp readings (CSV)")
+    parser.add_argument(
+        "--calibration", required=True, metavar="FILE", help="calibration of the elements (CSV or JSON)"
+    )
+    parser.add_argument(
+        "--reference",
+        type=int,
+        default=None,
+        metavar="N",
+        help="the reference element (default: the stiffest of those read)",
+    )
+    parser.add_argument(
+        "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
+    )
+    parser.add_argument("--json", action="store_true", help="print as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.studies import calibration_text, grasp, grasp_text, readings
+
+    known = calibration_text.read(args.calibration)
+    found = [
+        grasp.evaluate(g, known, reference=args.reference, level=args.level)
+        for g in readings.grasps(args.file)
+    ]
+    sys.stdout.write(
+        grasp_text.to_json(found, args.level) if args.json else grasp_text.to_text(found, args.level)
+    )
+    return 0

@@ -1,0 +1,51 @@
+"""tactcad validate [--out DIR] [--json] [--design DESIGN] [--table1 FILE] [--table2 FILE]"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+EXAMPLES = """\
+  tactcad validate                           the findings, as text
+  tactcad validate --out validation          report.html (opens offline), report.json and plots/*.svg
+  tactcad validate --json                    findings and every number as JSON
+  tactcad validate --table1 mine.csv         another calibration table of the same form
+
+The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
+    parser.add_argument(
+        "--design",
+        default="macro-array",
+        metavar="DESIGN",
+        help="the design that is held against the paper: a path, or a name in hardware/ (default "
+        "macro-array)",
+    )
+    parser.add_argument("--table1", metavar="FILE", help="a CSV file in place of the paper's Table 1")
+    parser.add_argument("--table2", metavar="FILE", help="a CSV file in place of the paper's Table 2")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.parts.designs import load
+    from tactcad.studies import array, folder, published, report, validation
+
+    data = published.load(args.table1, args.table2)
+    made = validation.validate(data, array.from_design(load(args.design)))
+    as_json = report.to_json(made)
+    if args.out:
+        files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}
+        files |= {
+            f"plots/{f.name}.svg": report.standalone(f).encode() for s in made.sections for f in s.figures
+        }
+        folder.replace(Path(args.out), files, report.SCHEMA)
+    if args.json:
+        sys.stdout.write(as_json)
+    else:
+        print(report.to_text(made))
+        if args.out:
+            print(f"\n{args.out}/report.html")
+    return 0

@@ -1,0 +1,57 @@
+"""The finite-element rungs by name, with the gauge's strain and the fillet's peak, for one element."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tactcad.design.messages import CheckFailure
+from tactcad.mechanics import friction
+from tactcad.mechanics.ladder import require_range
+from tactcad.mechanics.section import HingeSection
+
+from .convergence import Converged, converged_plane, converged_solid
+from .shape import HingeShape, reference_shape
+from .surface import face_strain
+
+CONVERGED = {"fem-plane": converged_plane, "fem-solid": converged_solid}
+
+
+@dataclass(frozen=True)
+class ElementResult:
+    """Of one element: stiffness (N/mm, friction at the pad included), its estimated relative error from
+    the mesh, and strains per newton (1/N): mean under the grid, peak on the gauge face and at the fillet."""
+
+    stiffness: float
+    error: float
+    gauge_strain: float
+    face_peak: float
+    fillet_peak: float
+
+
+def stiffness(s: HingeSection, rung: str) -> float:
+    """Tip stiffness of one reference element (scalars) in N/mm, friction at the pad included.
+
+    Raises CheckFailure where the design is impossible or the mesh cannot follow it.
+    """
+    return converged(s, rung).stiffness * float(friction.factor(s))
+
+
+def converged(s: HingeSection, rung: str, shape: HingeShape | None = None) -> Converged:
+    """The rung's solution on the shape cut from a contour, or on the reference shape."""
+    require_range(s, rung)
+    if not float(s.fillet_radius) > 0.0:
+        raise CheckFailure(f"rung {rung} needs rounded slot corners: fillet_radius is 0")
+    E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)
+    return CONVERGED[rung](shape or reference_shape(s), E, nu, b)
+
+
+def solve(s: HingeSection, rung: str, grid_length: float, shape: HingeShape | None = None) -> ElementResult:
+    """One design (scalars) by finite elements, on the shape cut from its contour or on the reference shape.
+
+    Raises CheckFailure where the design is impossible or the mesh cannot follow it.
+    """
+    found = converged(s, rung, shape)
+    slot, flat = face_strain(found.solution, "slot"), face_strain(found.solution, "flat")
+    return ElementResult(
+        found.stiffness * float(friction.factor(s)), found.error, flat.mean(grid_length), flat.peak, slot.peak
+    )

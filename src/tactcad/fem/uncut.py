@@ -1,0 +1,44 @@
+"""The whole part, with pad, stop land and holes, held between its spacers: how much softer than the model."""
+
+from __future__ import annotations
+
+import numpy as np
+from skfem import Basis, ElementTriP2
+
+from tactcad.contour import Contour
+
+from . import elasticity
+from .free_mesh import Fine, triangle_mesh
+from .shape import HingeShape
+
+LARGEST = 0.6  # mm of an element far from anything
+
+
+def uncut_compliance(
+    outer: Contour, holes: tuple[Contour, ...], shape: HingeShape, spacer: tuple[float, float, float],
+    pad: tuple[float, float, float], E: float, nu: float, width: float, *, per_thickness: float = 3.0,
+) -> float:
+    """Plane-stress compliance (mm/N) of the part under 1 N spread evenly over the pad's face.
+
+    shape: the hinge, whose elements are t/per_thickness mm. spacer: x beyond which (away from the
+    arm), and z between which, the sheet is held between spacers. pad: x from, x to and z of its face.
+    Deflection is the mean over the face (work-conjugate).
+    """
+    fillets = [f for b in (shape.arm, shape.body) for f in (b.low_fillet, b.high_fillet) if f]
+    walls = sorted({f.wall for f in fillets})
+    middle = (shape.low + shape.high) / 2.0
+    fine = tuple(Fine((x, middle), shape.thickness / per_thickness) for x in np.linspace(walls[0], walls[-1], 9))
+    mesh = triangle_mesh(outer, holes, fine, LARGEST)
+    basis = Basis(mesh, ElementTriP2(), intorder=4)
+    A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=True)) * width
+    x, z = basis.doflocs
+    edge, low, high = spacer
+    direction = 1.0 if edge > shape.arm.end else -1.0
+    held = np.flatnonzero((direction * (x - edge) > -1e-9) & (z >= low - 1e-9) & (z <= high + 1e-9))
+    x0, x1, face = pad
+    on_pad = np.flatnonzero((np.abs(z - face) < 1e-9) & (x > x0 - 1e-9) & (x < x1 + 1e-9))
+    on_pad = on_pad[np.argsort(x[on_pad])]
+    f = np.zeros(A.shape[0])
+    f[2 * on_pad + 1] = elasticity.line_load(x[on_pad], lambda q: np.full_like(q, 1.0 / (x1 - x0)))
+    u = elasticity.solve(A, f, np.concatenate([2 * held, 2 * held + 1]))
+    return float(f @ u)

@@ -1,0 +1,96 @@
+"""Quarter bridge, instrumentation amplifier and converter: from strain to volts and back.
+
+One active gauge R(1 + x) with three equal ones, x = GF strain + offset: the bridge gives
+U x/(4 + 2 x), exactly; x/4 is only its slope at zero (any text on Wheatstone bridges).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .section import Array
+
+
+@dataclass(frozen=True)
+class ReadOut:
+    """Bridge and amplifier; volts, but gain, offset (dR/R of the unloaded bridge) and counts.
+
+    noise: rms of one sample at the amplifier's output. headroom: how near the output comes to its supplies.
+    adc_range: the converter takes -adc_range to +adc_range.
+    """
+
+    excitation: float
+    gain: float
+    supply_positive: float
+    supply_negative: float
+    headroom: float
+    bridge_offset: float
+    noise: float
+    adc_bits: int
+    adc_range: float
+    samples: int
+
+    @property
+    def highest(self) -> float:
+        """Largest output that is still linear, V."""
+        return min(self.supply_positive - self.headroom, self.adc_range)
+
+    @property
+    def lowest(self) -> float:
+        """Least output that is still linear, V."""
+        return max(self.supply_negative + self.headroom, -self.adc_range)
+
+    @property
+    def adc_step(self) -> float:
+        """V"""
+        return 2 * self.adc_range / 2**self.adc_bits
+
+    @property
+    def averaged_noise(self) -> float:
+        """Standard deviation of the mean of `samples` readings, V: noise and rounding by the converter."""
+        return ((self.noise**2 + self.adc_step**2 / 12) / self.samples) ** 0.5
+
+
+def bridge_output(x: ArrayLike) -> Array:
+    """Quarter bridge's output over its supply for a relative change of resistance x > -1."""
+    x = np.asarray(x, dtype=float)
+    return x / (4 + 2 * x)
+
+
+def bridge_nonlinearity(x: ArrayLike) -> Array:
+    """Relative error of the slope x/4: output/(x/4) - 1 = -x/(2 + x)."""
+    x = np.asarray(x, dtype=float)
+    return -x / (2 + x)
+
+
+def resistance_change(ratio: ArrayLike) -> Array:
+    """x from output over supply, the bridge turned round: 4 v/(1 - 2 v), for v < 1/2."""
+    v = np.asarray(ratio, dtype=float)
+    return 4 * v / (1 - 2 * v)
+
+
+def output(strain: ArrayLike, factor: float, readout: ReadOut) -> Array:
+    """Amplifier's output (V) at a foil strain, held at the supplies' and the converter's limits."""
+    raw = unlimited_output(strain, factor, readout)
+    return np.clip(raw, readout.lowest, readout.highest)
+
+
+def unlimited_output(strain: ArrayLike, factor: float, readout: ReadOut) -> Array:
+    """Amplifier's output (V) at a foil strain as if nothing limited it."""
+    x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
+    return readout.excitation * readout.gain * bridge_output(x)
+
+
+def strain_from_output(volts: ArrayLike, factor: float, readout: ReadOut) -> Array:
+    """Foil strain from the amplifier's output (V); the bridge's non-linearity is removed exactly."""
+    x = resistance_change(np.asarray(volts, dtype=float) / (readout.excitation * readout.gain))
+    return (x - readout.bridge_offset) / factor
+
+
+def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -> Array:
+    """Slope of the output at a foil strain, V: U G GF 4/(4 + 2 x)^2."""
+    x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
+    return readout.excitation * readout.gain * factor * 4 / (4 + 2 * x) ** 2

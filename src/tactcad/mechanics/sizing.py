@@ -1,0 +1,50 @@
+"""Which hinge gives a wanted stiffness: one parameter solved for, within the rung's range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from tactcad.design.messages import CheckFailure
+
+from . import ladder
+from .section import HingeSection
+
+SEARCHED = {"hinge_thickness": (0.005, 5.0), "hinge_length": (0.01, 50.0)}  # mm, as a design file may have them
+GRID = 4001  # points, by logarithm, on which the rung's range is looked for
+
+
+def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> float:
+    """The hinge thickness or length (mm) at which one design (scalars) has the stiffness, N/mm.
+
+    Stiffness grows with thickness and falls with length, so that the answer is the only one. Raises
+    CheckFailure, naming what can be reached, where none lies within the rung's range.
+    """
+    low, high = SEARCHED[parameter]
+    values = np.geomspace(low, high, GRID)
+    result = ladder.evaluate(s.with_(**{parameter: values}), rung)
+    if not result.valid.any():
+        raise CheckFailure(f"no {parameter} lies in the range of rung {rung}: {result.reason[GRID // 2]}")
+    reached, found = values[result.valid], result.stiffness[result.valid]
+    if not found.min() <= stiffness <= found.max():
+        raise CheckFailure(
+            f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to {reached[-1]:.3g} mm, "
+            f"the range of rung {rung}, stiffness goes from {found.min():.4g} to {found.max():.4g} N/mm"
+        )
+    at = np.flatnonzero(np.diff(np.sign(found - stiffness)) != 0)[0] if found[0] != stiffness else 0
+    return _bisect(lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
+                   reached[at], reached[at + 1])
+
+
+def _bisect(excess: Callable[[float], float], low: float, high: float) -> float:
+    """Root between low and high, where excess changes sign, to the last bit."""
+    rising = excess(high) > 0.0
+    while True:
+        middle = (low + high) / 2.0
+        if not low < middle < high:
+            return middle
+        if (excess(middle) > 0.0) == rising:
+            high = middle
+        else:
+            low = middle

@@ -1,0 +1,172 @@
+"""Straight lines through repeated runs: common slope, an intercept a run, two responses at once.
+
+Sources: weighted least squares and its t interval (any statistics text); Fieller 1954 for the ratio of two
+normal estimates; Rosner 1983 for the generalised extreme Studentized deviate test.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, sqrt
+
+import numpy as np
+from scipy.special import fdtrc, stdtrit
+
+from tactcad.design.messages import InputError
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Common slopes of the responses y[:, k] against x, with one intercept a run.
+
+    covariance: of the slopes, [k, k]; residual: [reading, k]; leverage: by reading; dof: degrees of freedom.
+    run_slope: [run, k]; run_p: probability of so much scatter between the runs' slopes by noise alone, by k.
+    """
+
+    slope: np.ndarray
+    covariance: np.ndarray
+    intercept: np.ndarray  # mean of the runs' intercepts, by k
+    residual: np.ndarray
+    leverage: np.ndarray
+    weight: np.ndarray
+    dof: int
+    run_slope: np.ndarray
+    run_p: np.ndarray
+
+
+def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
+    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x; weights need only be right in
+    proportion.
+    """
+    w = np.ones(len(x)) if weight is None else weight / weight.mean()
+    runs, index = np.unique(run, return_inverse=True)
+    total = np.bincount(index, w)
+
+    def centred(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        mean = np.bincount(index, w * v) / total
+        return v - mean[index], mean
+
+    xc, x_mean = centred(x)
+    parts = [centred(column) for column in y.T]
+    yc = np.column_stack([p[0] for p in parts])
+    y_mean = np.column_stack([p[1] for p in parts])
+    sxx = np.bincount(index, w * xc * xc)
+    sxy = np.column_stack([np.bincount(index, w * xc * column) for column in yc.T])
+    slope = sxy.sum(0) / sxx.sum()
+    residual = yc - np.outer(xc, slope)
+    dof = len(x) - len(runs) - 1
+    scatter = (residual * w[:, None]).T @ residual / dof
+    has_slope = sxx > 0
+    run_slope = np.full_like(sxy, np.nan)
+    run_slope[has_slope] = sxy[has_slope] / sxx[has_slope, None]
+    return Lines(
+        slope,
+        scatter / sxx.sum(),
+        (y_mean - np.outer(x_mean, slope)).mean(0),
+        residual,
+        w / total[index] + w * xc * xc / sxx.sum(),
+        w,
+        dof,
+        run_slope,
+        _homogeneity(run_slope[has_slope], sxx[has_slope], slope, scatter, dof, rounding(y)),
+    )
+
+
+def _homogeneity(
+    run_slope: np.ndarray,
+    sxx: np.ndarray,
+    slope: np.ndarray,
+    scatter: np.ndarray,
+    dof: int,
+    smallest: np.ndarray,
+) -> np.ndarray:
+    """F test of one slope for all runs, by response; 1 with a single run."""
+    extra = len(sxx) - 1
+    rest = dof - extra
+    if extra < 1 or rest < 1:
+        return np.ones(len(slope))
+    between = (sxx[:, None] * (run_slope - slope) ** 2).sum(0)
+    within = np.maximum(np.diag(scatter) * dof - between, rest * smallest**2)
+    return fdtrc(extra, rest, between / extra / (within / rest))
+
+
+def rounding(y: np.ndarray) -> np.ndarray:
+    """Scatter below which the readings of each response y[:, k] differ by rounding only."""
+    return np.maximum(1e-13 * np.abs(y).max(0), np.finfo(float).tiny ** 0.5)
+
+
+def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
+    """Weights 1/(s0^2 + s1^2 u^2) with u = x/max x, the two variances fitted to the squared residuals of
+    response k.
+
+    Noise that grows with the reading (a force sensor's per cent of value) gets its due; constant noise
+    gives equal weights. Both variances are kept non-negative, and the weights' range within 100.
+    """
+    u = np.abs(x - x.min()) / max(np.ptp(x), np.finfo(float).tiny)
+    square = lines.residual[:, k] ** 2 / np.maximum(1 - lines.leverage, 0.1)
+    design = np.column_stack([np.ones_like(u), u * u])
+    (a, b), *_ = np.linalg.lstsq(design, square, rcond=None)
+    if b <= 0 or a <= 0:
+        a, b = (square.mean(), 0.0) if b <= 0 else (0.0, max((square * u * u).sum() / (u**4).sum(), 0.0))
+    variance = a + b * u * u
+    return 1.0 / np.maximum(variance, variance.max() / 100) if variance.max() > 0 else np.ones_like(u)
+
+
+def require_level(level: float) -> None:
+    """Raises InputError for a level of intervals that is none."""
+    if not 0.5 <= level < 1:
+        raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
+
+
+def t_quantile(level: float, dof: float) -> float:
+    """Half-width factor of a two-sided interval of that level."""
+    return float(stdtrit(dof, 0.5 + level / 2))
+
+
+def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) -> tuple[float, float]:
+    """Fieller's interval of top/bottom from two normal estimates with their 2 x 2 covariance.
+
+    (-inf, inf) where the data do not tell the bottom from zero.
+    """
+    a = bottom * bottom - t * t * covariance[1, 1]
+    b = top * bottom - t * t * covariance[0, 1]
+    c = top * top - t * t * covariance[0, 0]
+    if a <= 0:
+        return -inf, inf
+    root = sqrt(max(b * b - a * c, 0.0))
+    return (b - root) / a, (b + root) / a
+
+
+def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float = 0.01) -> list[int]:
+    """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
+
+    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good.
+    """
+    n = len(x)
+    kept = np.ones(n, bool)
+    smallest = float(rounding(y[:, None])[0])
+    removed: list[int] = []
+    named = 0
+    for step in range(max(1, n // 10)):
+        index = np.flatnonzero(kept)
+        if len(index) - len(np.unique(run[index])) - 2 < 1:
+            break
+        lines = fit_lines(x[index], y[index, None], run[index])
+        scale = sqrt(max(lines.covariance[0, 0], 0.0) * _sxx(x[index], run[index]))
+        if scale <= smallest:
+            break
+        deviate = np.abs(lines.residual[:, 0]) / (scale * np.sqrt(np.maximum(1 - lines.leverage, 1e-12)))
+        worst = int(np.argmax(deviate))
+        rest = lines.dof - 1
+        t = float(stdtrit(rest, 1 - alpha / (2 * len(index))))
+        removed.append(int(index[worst]))
+        if deviate[worst] > t * sqrt(lines.dof / (rest + t * t)):
+            named = step + 1
+        kept[index[worst]] = False
+    return removed[:named]
+
+
+def _sxx(x: np.ndarray, run: np.ndarray) -> float:
+    _, index = np.unique(run, return_inverse=True)
+    mean = np.bincount(index, x) / np.bincount(index)
+    return float(((x - mean[index]) ** 2).sum())

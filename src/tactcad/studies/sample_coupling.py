@@ -1,0 +1,96 @@
+"""How the pads feel each other through one continuous rubber sample.
+
+The sample is an elastic layer bonded to a rigid base (or a half-space), each pad a rectangle of even
+pressure. In the plane of wave numbers a normal load gives the surface 2 (1 - nu^2)/E phi(k h)/k, with
+(bonded layer) phi = ((3 - 4 nu) sinh 2c - 2c)/((3 - 4 nu) cosh 2c + 2 c^2 + 5 - 12 nu + 8 nu^2), c = k h;
+phi = 1 for the half-space. Source: Johnson, Contact Mechanics, and Gladwell, Contact Problems in the
+Classical Theory of Elasticity.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.mechanics import lumped
+
+WAVES = 1200  # wave numbers, to LARGEST/pad size
+ANGLES = 96
+LARGEST = 60.0
+FAR = 50.0  # mm
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Array on one sample against the same elements each on its own spring.
+
+    stiffness: array's stiffness over that of independent springs. ratio: R of each measuring element over
+    equation (2).
+    """
+
+    stiffness: float
+    ratio: np.ndarray
+
+
+def layer_factor(c: np.ndarray, poisson: float) -> np.ndarray:
+    """phi of a bonded layer, c = k h; 1 where c is large."""
+    m = 3 - 4 * poisson
+    small = np.minimum(c, 40.0)
+    top = m * np.sinh(2 * small) - 2 * small
+    bottom = m * np.cosh(2 * small) + 2 * small**2 + 5 - 12 * poisson + 8 * poisson**2
+    return np.where(c > 40.0, 1.0, top / bottom)
+
+
+def influence(
+    dx: np.ndarray, dy: np.ndarray, length: float, width: float, thickness: float, poisson: float
+) -> np.ndarray:
+    """Mean displacement of a pad for unit force on another, dx, dy away (mm), over that of the pad itself.
+
+    length, width: of the pads along x, y, mm; thickness of the sample, inf for a half-space.
+    """
+    size = (length * width) ** 0.5
+    k = (np.arange(WAVES) + 0.5) * LARGEST / size / WAVES
+    angle = (np.arange(ANGLES) + 0.5) * (np.pi / 2) / ANGLES
+    kx, ky = np.outer(k, np.cos(angle)), np.outer(k, np.sin(angle))
+    phi = 1.0 if np.isinf(thickness) else layer_factor(k * thickness, poisson)[:, None]
+    weight = phi * (np.sinc(kx * length / 2 / np.pi) * np.sinc(ky * width / 2 / np.pi)) ** 2
+    own = weight.sum()
+
+    def share(x: float, y: float) -> float:
+        """Further than FAR a layer carries nothing over, and a half-space 1/r: there the sum over waves
+        would alias.
+        """
+        r = float(np.hypot(x, y))
+        if r > FAR:
+            return share(x * FAR / r, y * FAR / r) * FAR / r if np.isinf(thickness) else 0.0
+        return float((weight * np.cos(kx * x) * np.cos(ky * y)).sum() / own)
+
+    return np.array([share(x, y) for x, y in zip(dx, dy)])
+
+
+def coupling(
+    K: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    object_stiffness: float,
+    reference: int,
+    length: float,
+    width: float,
+    thickness: float,
+    poisson: float,
+) -> Coupling:
+    """Elements K (N/mm) at x, y (mm) pressed together into a sample that is object_stiffness under one
+    pad alone.
+    """
+    dx, dy = np.abs(x[:, None] - x[None, :]), np.abs(y[:, None] - y[None, :])
+    places, index = np.unique(
+        np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True
+    )
+    shares = influence(places[:, 0], places[:, 1], length, width, thickness, poisson)
+    A = shares[index].reshape(dx.shape) / object_stiffness
+    force = np.linalg.solve(np.diag(1 / K) + A, np.ones(len(K)))
+    alone = lumped.element_deflection(K, object_stiffness, 1.0)
+    deflection = force / K
+    ratio = (deflection / deflection[reference]) / (alone / alone[reference])
+    return Coupling(float(force.sum() / (K * alone).sum()), ratio)

@@ -1,0 +1,107 @@
+"""Plane elements: the value three codes agree on, rates, patch test, and exact relations between problems."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from skfem import Basis, ElementQuad2
+
+from tactcad.fem import elasticity
+from tactcad.fem.convergence import converged_plane, refine
+from tactcad.fem.mesh import plane_mesh, quad_mesh
+from tactcad.fem.plane import solve_plane
+from tactcad.fem.shape import outline, reference_shape
+from tactcad.mechanics.section import REFERENCE
+
+E, NU, B = 69000.0, 0.33, 3.0
+TWO = reference_shape(REFERENCE)
+ONE = reference_shape(REFERENCE.with_(two_sided=False))
+THREE_CODES = 9.75423  # N/mm, plane stress, agreed within 7e-5
+
+
+def test_reference_design_meets_three_codes():
+    found = converged_plane(TWO, E, NU, B)
+    assert found.stiffness == pytest.approx(THREE_CODES, rel=1e-4)
+    assert found.error < 1e-4
+
+
+@pytest.mark.parametrize("shape,least", [(TWO, 3.4), (ONE, 3.0)], ids=["two", "one"])
+def test_energy_converges_with_fourth_order(shape, least):
+    study = refine(lambda d: solve_plane(shape, E, NU, B, density=d), (2, 4, 8))
+    assert least < study.rates[0] < 4.6
+    assert list(study.compliance) == sorted(study.compliance)  # Galerkin: from below
+    assert 0 < -study.error < 2e-5
+
+
+def test_richardson_from_coarse_meshes_meets_a_fine_one():
+    fine = solve_plane(ONE, E, NU, B, density=10).compliance
+    assert converged_plane(ONE, E, NU, B).compliance == pytest.approx(fine, rel=3e-5)
+
+
+def test_half_mesh_of_the_symmetric_shape_is_the_whole():
+    half, whole = (solve_plane(TWO, E, NU, B, density=2, whole=w) for w in (False, True))
+    assert whole.stiffness == pytest.approx(half.stiffness, rel=1e-9)
+    assert half.unknowns < 0.6 * whole.unknowns
+
+
+@pytest.mark.parametrize("shape", [TWO, ONE], ids=["two", "one"])
+def test_mesh_area_is_the_contours(shape):
+    mesh = plane_mesh(shape, 3)
+    area = Basis(quad_mesh(mesh), ElementQuad2()).dx.sum() * (2 if mesh.half else 1)
+    assert area == pytest.approx(outline(shape).area, rel=1e-6)  # arcs are parabolas of high order
+
+
+def test_linear_displacement_is_in_equilibrium_inside():
+    """Patch test: any linear field strains uniformly, so no inner node feels a force."""
+    quads = quad_mesh(plane_mesh(ONE, 2))
+    basis = Basis(quads, ElementQuad2(), intorder=4)
+    x, z = basis.doflocs
+    u = np.stack([0.3 * x - 0.2 * z + 1.0, 0.5 * x + 0.7 * z], axis=1).ravel()
+    force = elasticity.stiffness_matrix(basis, *elasticity.lame(1.0, 0.3, plane_stress=True)) @ u
+    inner = np.setdiff1d(np.arange(basis.N), basis.get_dofs().all())
+    assert np.abs(force.reshape(-1, 2)[inner]).max() < 1e-12
+    assert np.abs(force.reshape(-1, 2)).max() > 1e-3
+
+
+def test_rigid_turn_needs_no_force():
+    basis = Basis(quad_mesh(plane_mesh(TWO, 1)), ElementQuad2(), intorder=4)
+    x, z = basis.doflocs
+    turn = np.stack([-z, x], axis=1).ravel()
+    A = elasticity.stiffness_matrix(basis, *elasticity.lame(1.0, 0.3))
+    assert np.abs(A @ turn).max() < 1e-11
+    assert abs(A - A.T).max() < 1e-12
+
+
+def test_plane_strain_is_plane_stress_of_another_material():
+    strain = solve_plane(TWO, E, NU, B, density=2, plane_strain=True).stiffness
+    stress = solve_plane(TWO, E / (1 - NU**2), NU / (1 - NU), B, density=2).stiffness
+    assert strain == pytest.approx(stress, rel=1e-9)
+
+
+def test_stiffness_is_proportional_to_modulus_and_width_and_free_of_size():
+    base = solve_plane(ONE, E, NU, B, density=1).stiffness
+    assert solve_plane(ONE, 2 * E, NU, 5 * B, density=1).stiffness == pytest.approx(10 * base, rel=1e-9)
+    lengths = ("hinge_thickness", "hinge_length", "fillet_radius", "load_arm", "arm_height", "body_height", "body_length")
+    s = REFERENCE.with_(two_sided=False)
+    small = reference_shape(s.with_(**{n: getattr(s, n) / 25 for n in lengths}))
+    assert solve_plane(small, E, NU, B, density=1).stiffness == pytest.approx(base, rel=1e-9)
+
+
+def test_unit_force_is_applied():
+    mesh = plane_mesh(ONE, 2)
+    basis = Basis(quad_mesh(mesh), ElementQuad2())
+    from tactcad.fem.plane import end_nodes, parabola
+
+    end = end_nodes(basis.doflocs, mesh)
+    f = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))
+    z = basis.doflocs[1, end]
+    assert f.sum() == pytest.approx(1.0, rel=1e-12)
+    assert f @ z == pytest.approx((mesh.shape.arm.low + mesh.shape.arm.high) / 2, rel=1e-12)  # no couple
+
+
+def test_nodes_where_fillets_meet_are_no_slivers():
+    """A slot that rounding leaves a billionth of a millimetre longer than its fillets."""
+    exact = REFERENCE.with_(hinge_length=0.5, fillet_radius=0.25)
+    rounded = REFERENCE.with_(hinge_length=0.5, fillet_radius=0.25 - 1e-9)
+    a, b = (solve_plane(reference_shape(s), E, NU, B, density=2).stiffness for s in (exact, rounded))
+    assert a == pytest.approx(b, rel=1e-6)

@@ -1,0 +1,93 @@
+"""Each rung refuses what it cannot answer, by a named rule that a design made for it breaks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tactcad.design.messages import CheckFailure
+from tactcad.mechanics import friction, ladder, validity
+from tactcad.mechanics.section import REFERENCE
+
+BREAKS = {
+    "a value is not a finite number": dict(load_arm=np.nan),
+    "a length, width or modulus is not positive": dict(hinge_thickness=0.0),
+    "fillet_radius is negative": dict(fillet_radius=-0.1),
+    "poisson is outside 0 to 0.5": dict(poisson=0.5),
+    "fillets longer than the slot: 2 r > l": dict(fillet_radius=0.376),
+    "load inside the slot: L <= l/2": dict(load_arm=0.375),
+    "fillets higher than the arm": dict(arm_height=0.54),
+    "fillets higher than the body": dict(body_height=0.54),
+    "pad_height or friction is negative": dict(friction=-0.1),
+    "friction locks the arm: mu (pad_height + t/2) >= L": dict(friction=0.7, pad_height=10.0),
+}
+FITTED_BREAKS = {
+    "arm too low for the fit": dict(arm_height=0.68),
+    "body too low for the fit": dict(body_height=0.68),
+    "r/t is outside": dict(fillet_radius=0.02),
+    "l/t is outside": dict(hinge_length=40.0, load_arm=60.0),
+    "h/t is outside": dict(arm_height=40.0, load_arm=60.0),
+    "Hb/t is outside": dict(body_height=60.0),
+    "(L - l/2)/h is outside": dict(load_arm=1.0),
+    "L/Hb is outside": dict(load_arm=30.0, arm_height=10.0),
+    "Lb/Hb is outside": dict(body_length=0.5),
+    "poisson is outside the fit": dict(poisson=0.47),
+    "b/t is outside": dict(width=0.4),
+    "b/l is outside": dict(width=0.3),
+}
+
+
+@pytest.mark.parametrize("name", BREAKS)
+@pytest.mark.parametrize("rung", ladder.RUNGS)
+def test_impossible_designs_are_refused_by_every_rung(rung, name):
+    s = REFERENCE.with_(**BREAKS[name])
+    assert name in validity.broken_rules(s, rung)
+    with pytest.raises(CheckFailure, match="rung"):
+        ladder.require_range(s, rung)
+
+
+def test_every_rule_of_geometry_has_a_design_that_breaks_it():
+    assert set(BREAKS) == {rule.name for rule in validity.GEOMETRY}
+
+
+@pytest.mark.parametrize("start", FITTED_BREAKS)
+def test_designs_beyond_the_fit_are_refused_by_the_fitted_rungs_alone(start):
+    s = REFERENCE.with_(**FITTED_BREAKS[start])
+    assert any(name.startswith(start) for name in validity.broken_rules(s, "solid"))
+    assert not validity.broken_rules(s, "beam")
+    assert np.isfinite(ladder.stiffness(s, "beam"))
+
+
+def test_evaluate_gives_reasons_instead_of_numbers():
+    s = REFERENCE.with_(load_arm=[6.0, 0.1, 6.0], poisson=[0.33, 0.33, -1.0])
+    result = ladder.evaluate(s, "solid")
+    assert result.valid.tolist() == [True, False, False]
+    assert np.isnan(result.stiffness[1:]).all() and result.stiffness[0] == ladder.stiffness(REFERENCE)
+    assert result.reason[0] == "" and "load inside" in result.reason[1] and "poisson" in result.reason[2]
+
+
+def test_whole_promised_box_is_inside_the_range():
+    rng = np.random.default_rng(2)
+    n = 200_000
+    t, l, r = rng.uniform(0.15, 0.4, n), rng.uniform(0.3, 1.5, n), rng.uniform(0.1, 0.3, n)  # noqa: E741
+    r = np.minimum(r, l / 2)
+    u = lambda low, high: rng.uniform(low, high, n)  # noqa: E731
+    s = REFERENCE.with_(
+        hinge_thickness=t, hinge_length=l, fillet_radius=r, load_arm=u(3, 7), arm_height=u(1.5, 3),
+        body_height=u(3, 8), body_length=u(2, 6), poisson=u(0.2, 0.4), width=u(1.5, 8), two_sided=rng.random(n) < 0.5,
+    )
+    assert validity.broken_rules(s, "solid") == {}
+
+
+def test_friction_stiffens_by_the_lever_of_the_pad():
+    s = REFERENCE.with_(load_arm=3.0, pad_height=2.0, friction=0.2)
+    assert friction.factor(s) == pytest.approx(3.0 / (3.0 - 0.2 * 2.125))
+    assert ladder.stiffness(s) == pytest.approx(ladder.stiffness(REFERENCE.with_(load_arm=3.0)) * 3.0 / 2.575)
+
+
+def test_moments_about_the_hinge_give_the_friction_formula():
+    """Virtual work: F d + mu F (H d/L) against the arm's own K d: K_apparent (1 - mu H/L) = K."""
+    s = REFERENCE.with_(pad_height=2.0, friction=0.15)
+    K, H, L = float(ladder.stiffness(REFERENCE)), 2.0 + 0.125, 6.0
+    apparent = float(ladder.stiffness(s))
+    assert apparent * (1 - 0.15 * H / L) == pytest.approx(K, rel=1e-12)
