@@ -73,9 +73,8 @@ def carrier_screw(layout: Layout) -> CarrierScrew | None:
     It engages 1.5 d and 0.8 mm of the 1.5 d + 1 mm of thread; its head is sunk.
     """
     d = layout.design.clamp
-    shortest = _shortest_carrier_screw(d.screw)
-    fits = shortest.under_head <= d.carrier_thickness - METRIC[d.screw].head_height
-    return shortest if fits else None
+    fits = thinnest_carrier(d.screw) <= d.carrier_thickness + 1e-9  # mm: written in decimals, kept in binary
+    return _shortest_carrier_screw(d.screw) if fits else None
 
 
 def thinnest_carrier(thread: str) -> float:

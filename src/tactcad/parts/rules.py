@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 from math import cos, hypot, pi
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
 from .fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
@@ -54,6 +54,8 @@ def broken_rules(design: Design) -> list[Broken]:
     layout = Layout(design)
     found = []
     for name, rule in RULES.items():
+        if name in ASK_THE_GAP and any(b.rule in NO_GAP for b in found):
+            continue
         for path, what, value, legal in rule(layout):
             found.append(Broken(name, path, what, value, legal))
             break
@@ -192,17 +194,6 @@ def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
             yield (
                 "gauge.carrier_body_side", f"carrier reaches the wire recess behind element {p.number}",
                 d.gauge.carrier_body_side, f"at most {behind:g} mm there",
-            )
-
-
-def estimator_holds(layout: Layout) -> Iterator[Finding]:
-    for p in layout.elements:
-        try:
-            stop_gap(layout, p)
-        except CheckFailure as error:
-            yield (
-                _at(p, "hinge_length", layout), f"the estimator cannot give element {p.number} a stop gap: {error}",
-                p.hinge.l, "a hinge inside the estimator's range, or its gap in [stop.gaps]",
             )
 
 
@@ -475,7 +466,6 @@ RULES: dict[str, Rule] = {
         ledge_below_rear,
         recess_fits_rear,
         stop_land_above_arm,
-        estimator_holds,
         stop_gap_above_tolerance,
         stop_land_fits_arm,
         holes_inside_body,
@@ -486,5 +476,8 @@ RULES: dict[str, Rule] = {
         carrier_holes_apart,
     )
 }
-# Rules whose breach would make later ones fail for the same reason, or not computable.
-STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "estimator_holds"})
+# Rules whose breach would make later ones fail for the same reason.
+STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
+# Rules that need the stop gap, and those without which there is none: what is no hinge has no stiffness.
+ASK_THE_GAP = frozenset({"stop_gap_above_tolerance", "stop_land_fits_arm"})
+NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
