@@ -97,10 +97,11 @@ def rooted(rung, values, two, G, lc, ends, leaf):
         own = mp.sqrt(A * rho + k["p0"] - k["p1"] / (1 + k["p2"] * rho)) - k["p3"] / eta**2
         return own - k["p4"] * rho / eta**3 - k["p5"] / eta**3 - k["p6"] * mp.exp(-k["p7"] * l / t)
 
-    ga, gb = g(h), g(Hb)
+    ga, gb = g(h), g(Hb) - k["p8"] * (t / Lb) ** 3
     C = ends + leaf(L - lc / 2, lc)
     C += 12 / (E * b * t**2) * (ga * (L - lc / 2 - ga * t / 2) ** 2 + gb * (L + lc / 2 + gb * t / 2) ** 2)
     C += (k["s"] * (ga + gb) - k["s0"]) / (mp.mpf(5) / 6 * G * b)
+    C += 12 * k["e"] * (L - l / 2) / (E * b * h)
     C -= 12 * k["c"] * nu**2 * (L + l / 2) ** 2 / (E * b * Hb**2)
     if rung == "plane":
         return C

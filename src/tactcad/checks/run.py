@@ -17,8 +17,9 @@ from tactcad.solids.build import SolidError, build, envelope
 from .brep import check_brep
 from .finding import Finding
 from .interference import check_interference
-from .motion import check_motions
+from .machining import MACHINED, check_machining
 from .mesh import check_mesh
+from .motion import check_motions
 from .shop import DEFAULT, load_shop
 from .wirecut import check_wirecut
 
@@ -69,6 +70,8 @@ def run_checks(
         report.run("mesh", check_mesh, part, shapes[part.part_no])
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
+        if part.process in MACHINED:
+            report.run("machining", check_machining, part)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")

@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
     from tactcad.checks.run import run_checks
 
-    report = run_checks(design, names, shop, progress().step)
+    report = run_checks(design, names, shop, progress(sys.stderr).step)
     failed = report.failures
     if args.json:
         record = {

@@ -38,9 +38,9 @@ def run(args: argparse.Namespace) -> int:
 
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
+    done = export(design, scenes, args.out or f"exports/{design.name}", say)
     for line in () if args.scene else left_out(design):
         say.line(line)
-    done = export(design, scenes, args.out or f"exports/{design.name}", say)
     if args.json:
         print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
     return 0

@@ -7,7 +7,7 @@ length; here it kinks at its centre, which moves the arm alike to first order in
 from __future__ import annotations
 
 from dataclasses import replace
-from math import asin, atan2, cos, hypot, pi, sin
+from math import asin, atan2, cos, hypot, pi, sin, tan
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 
@@ -45,26 +45,39 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
 
 
 def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:
-    """The contour with everything left of the hinge's centre turned about it."""
+    """The contour with everything left of the hinge's centre turned about it.
+
+    Where the contour passes the hinge, a stretch just longer than what the turn closes up becomes a chord.
+    """
     pieces: list[Segment] = []
     for s in contour:
-        a, b = s.start[0] < hinge[0], s.end[0] < hinge[0]
-        if a == b:
-            pieces.append(_turned(s, hinge, angle) if a else s)
+        left_first, left_last = s.start[0] < hinge[0], s.end[0] < hinge[0]
+        if left_first == left_last:
+            pieces.append(_turned(s, hinge, angle) if left_first else s)
             continue
-        if isinstance(s, Arc):  # both fillets meet at the hinge's centre: a full round is split there
-            middle = s.at(0.5)
-            first, second = replace(s, end=middle), replace(s, start=middle)
+        half = 2 * abs(s.at(_where(s, hinge[0]))[1] - hinge[1]) * tan(abs(angle))
+        sign = -1.0 if left_first else 1.0
+        first = replace(s, end=s.at(_where(s, hinge[0] + sign * half)))
+        last = replace(s, start=s.at(_where(s, hinge[0] - sign * half)))
+        if left_first:
+            first = _turned(first, hinge, angle)
         else:
-            share = (hinge[0] - s.start[0]) / (s.end[0] - s.start[0])
-            middle = (hinge[0], s.start[1] + share * (s.end[1] - s.start[1]))
-            first, second = replace(s, end=middle), replace(s, start=middle)
-        kept, turned = (second, first) if a else (first, second)
-        moved = _turned(turned, hinge, angle)
-        joint = _rotated(middle, hinge, angle)
-        bridge = Line(joint, middle) if a else Line(middle, joint)
-        pieces += [moved, bridge, kept] if a else [kept, bridge, moved]
+            last = _turned(last, hinge, angle)
+        pieces += [first, Line(first.end, last.start, s.name), last]
     return Contour(tuple(pieces))
+
+
+def _where(s: Segment, x: float) -> float:
+    """Parameter at which a segment that runs from one side of x to the other passes it."""
+    low, high = 0.0, 1.0
+    rising = s.end[0] > s.start[0]
+    for _ in range(60):
+        middle = (low + high) / 2
+        if (s.at(middle)[0] < x) == rising:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
 
 
 def _turned(s: Segment, centre: Point, angle: float) -> Segment:

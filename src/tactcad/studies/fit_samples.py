@@ -38,6 +38,9 @@ FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside 
 WIDE_SHARE = 0.4
 EDGE_SHARE = 0.65  # of the parameters of a design on the box's edges stand at an end of their range
 
+EDGE_PART = 3  # for so many designs inside the box one more stands on its edges
+SEEDS = {"fitted": 20261121, "held out": 31415}
+
 PLANE_DENSITY = (3, 6)  # Richardson's pair
 SOLID_DENSITY = (2, 1)  # in the plane, across the width; K3D/K2D on one plane mesh errs by about 1e-4
 GRIDS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0)  # gauge grid lengths sampled, in slot lengths
@@ -80,6 +83,12 @@ def draw_edges(count: int, seed: int) -> Columns:
         if _possible(row):
             rows.append(row)
     return _as_written(rows)
+
+
+def designs(kind: str, count: int) -> tuple[Columns, Columns]:
+    """The "fitted" or "held out" designs: `count` inside (for the fit also beyond) the box, a third as many on its edges."""
+    inside = draw if kind == "fitted" else draw_box
+    return inside(count, SEEDS[kind]), draw_edges(count // EDGE_PART, SEEDS[kind] + 1)
 
 
 def joined(tables: Sequence[Columns]) -> Columns:

@@ -23,6 +23,7 @@ from .layout import (
 
 ALUMINIUM = Material("aluminium", 2700)
 STEEL = Material("steel", 7850)
+PIN = 8.0  # of the weight platform, mm
 SHAFT = 6.0  # M6
 BRASS = Material("brass, nickel plated", 8500)
 GAUGE_THREADS = (-20.0, 20.0)  # of the gauge's back, from the middle of its plate, mm
@@ -173,7 +174,7 @@ def carriage() -> Part:
 def disc_weight(rig: RigLayout) -> Part:
     """One added weight: a steel disc on the platform's pin; its height follows from its mass."""
     diameter = rig.design.grasping.weight_diameter
-    outer, bore = circle((0, 0), diameter), circle((0, 0), 6.5)
+    outer, bore = circle((0, 0), diameter), circle((0, 0), PIN + 0.5)
     height = round(rig.weight_mass / ((outer.area - bore.area) * STEEL.density * 1e-6), 3)
     return Part(
         part_no=f"WEIGHT-{rig.weight_mass:.4g}g-{diameter:g}-disc",
@@ -183,7 +184,7 @@ def disc_weight(rig: RigLayout) -> Part:
         body=Extrusion(outer, height, (bore,)),
         colour="#c9a227",
         purchase=Purchase(
-            f"disc weight {rig.weight_mass:.4g} g, bore 6.5, diameter {diameter:g}, checked on a balance to 0.1 g",
+            f"disc weight {rig.weight_mass:.4g} g, bore {PIN + 0.5:g}, diameter {diameter:g}, checked on a balance to 0.1 g",
             alternates="slotted weights of the same mass",
         ),
         mass_override=rig.weight_mass,

@@ -8,8 +8,8 @@ from tactcad.contour import circle, rectangle
 
 from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
+from .bought import PIN, disc_weight
 from .bought import STEEL as WEIGHT_STEEL
-from .bought import disc_weight
 from .cart import COLOUR, plate_alloy
 from .holes import sunk, tapped_blind
 from .layout import (
@@ -17,6 +17,7 @@ from .layout import (
     BAR_FRONT,
     BAR_HEIGHT,
     BAR_WIDTH,
+    BEHIND_BAR,
     CARRIAGE_ON_BAR,
     FOOT,
     PLATE,
@@ -92,7 +93,7 @@ def foot(rig: RigLayout) -> Part:
         name="Foot of the bar",
         process="milled",
         material=plate_alloy(rig),
-        body=Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR)), FOOT),
+        body=Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR + BEHIND_BAR)), FOOT),
         features=tuple(features),
         colour=COLOUR,
         finish="Ra 1.6, clear anodised after machining",
@@ -134,7 +135,7 @@ def platform(rig: RigLayout) -> Part:
         name="Weight platform",
         process="milled",
         material=plate_alloy(rig),
-        body=Extrusion(rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR), PLATFORM),
+        body=Extrusion(rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM),
         features=tuple(features),
         colour=COLOUR,
         finish="Ra 1.6, clear anodised after machining",
@@ -150,7 +151,7 @@ def pin(rig: RigLayout) -> Part:
         name="Weight pin",
         process="turned",
         material=plate_alloy(rig),
-        body=Extrusion(circle((0, 0), 6.0), height),
+        body=Extrusion(circle((0, 0), PIN), height),
         features=(tapped_blind("foot", "M4", (0, 0, 0), (0, 0, 1)),),
         colour="#9aa4ae",
         finish="Ra 1.6, top edge chamfered 0.5 by hand",
@@ -159,7 +160,7 @@ def pin(rig: RigLayout) -> Part:
 
 def ballast(rig: RigLayout, mass: float) -> Part:
     """Disc under the weights that brings the moving mass to the paper's; `mass` in g, thickness to 0.01 mm."""
-    outer, bore = circle((0, 0), rig.design.grasping.weight_diameter), circle((0, 0), 6.5)
+    outer, bore = circle((0, 0), rig.design.grasping.weight_diameter), circle((0, 0), PIN + 0.5)
     thickness = round(mass / ((outer.area - bore.area) * WEIGHT_STEEL.density * 1e-6), 2)
     return Part(
         part_no=f"{rig.design.name}-ballast",

@@ -28,11 +28,12 @@ TIP_GAP = 1.0  # tip to the gauge's housing
 BASE = (200.0, 12.0)  # base plate along x, thickness
 POST = (60.0, 20.0)  # post along x, y
 ROW_PITCH = 10.0  # rows of threads in the post
-FOOT, BAR, BAR_WIDTH, BAR_HEIGHT, PLATFORM = 8.0, 8.0, 22.0, 60.0, 8.0  # what the guide's carriage carries
+FOOT, BAR, BAR_WIDTH, BAR_HEIGHT, PLATFORM = 8.0, 8.0, 23.0, 60.0, 8.0  # what the guide's carriage carries
 RAIL_HEIGHT = 10.0  # guide: mounting face of the carriage over the rail's
 RISER_PITCH = 40.0  # riser's screws over and under its middle
 CARRIAGE_ON_BAR = 30.0  # carriage's middle over the bar's lower end
 BAR_FRONT = 16.0  # y of the bar's front: behind the carrier's threads
+BEHIND_BAR = 1.5  # foot and platform behind the bar's back: material beside its screws
 EDGE = 4.0  # screws of lid and holder from their edge
 GROOVE_WALL = 1.0  # least material beside plenum and groove
 
