@@ -107,9 +107,10 @@ def test_moving_clamp_edge_or_load_line_changes_the_stiffness(layout):
     place = layout.elements[0]
     contour = element(layout, place).body.outer
     load_x = place.hinge_x - place.load_arm
-    K = lambda clamp, at: (
-        solve_plane(cut_element(contour, clamp, at), 69000.0, 0.33, 3.0, density=1).stiffness
-    )  # noqa: E731
+
+    def K(clamp, at):
+        return solve_plane(cut_element(contour, clamp, at), 69000.0, 0.33, 3.0, density=1).stiffness
+
     base = K(layout.clamp_edge, load_x)
     assert K(layout.clamp_edge - 2.0, load_x) > base  # less body to bend
     assert K(layout.clamp_edge, load_x + 0.3) > 1.1 * base  # shorter arm

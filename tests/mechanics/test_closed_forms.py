@@ -122,12 +122,12 @@ def rooted(rung, values, two, G, lc, ends, leaf):
         return C
     w = {n: mp.mpf(v) for n, v in ladder_data()["width"]["two" if two else "one"].items()}
     x, y = l / b, t / b
-    psi = 1 + w["c1"] * x + w["c2"] * y + w["c3"] * x**2 + w["c4"] * x * y + w["c5"] * y**2
-    psi += w["c6"] * r / b + w["c7"] * y * r / l + w["c8"] * nu * x
-    bent = 4 * ((L - l / 2) / h) ** 3 / (E * b) + 2 * ((L + l / 2 + Lb) ** 3 - (L + l / 2) ** 3) / (
-        E * b * Hb**3
-    )
-    return C / (1 + nu**2 / (1 - nu**2) * psi * (1 - bent / C))
+    leaf = 1 + w["c1"] * x + w["c2"] * y + w["c3"] * x**2 + w["c4"] * x * y + w["c5"] * y**2 + w["c6"] * r / b
+    leaf += w["c7"] * y * r / l + w["c8"] * nu * x + w["c9"] * y * t / l + w["c10"] * t / Hb
+    arm = 4 * ((L - l / 2) / h) ** 3 / (E * b) / C
+    body = 4 * ((L + l / 2 + Lb) ** 3 - (L + l / 2) ** 3) / (E * b * Hb**3) / C
+    psi = (1 - arm - body) * leaf + arm / (1 + w["ca"] * h / b) + body / (1 + w["cb"] * Hb / b)
+    return C / (1 + nu**2 / (1 - nu**2) * psi)
 
 
 def condition(f, values):

@@ -58,10 +58,7 @@ START = {
             c=1.0,
         ),
     },
-    "width": {
-        "two": dict(c1=-0.3, c2=-1.4, c3=0.0, c4=0.0, c5=0.0, c6=0.0, c7=0.0, c8=0.0),
-        "one": dict(c1=-0.2, c2=-1.8, c3=0.0, c4=0.0, c5=0.0, c6=0.0, c7=0.0, c8=0.0),
-    },
+    "width": {side: dict.fromkeys([f"c{i}" for i in range(1, 11)], 0.0) | {"ca": 10.0, "cb": 2.0} for side in SIDES},
     "fillet": {
         "two": dict(a=0.4, b=0.3, c=0.15, m=0.85, d=0.2, e=20.0),
         "one": dict(a=0.6, b=0.4, c=0.2, m=0.85, d=0.15, e=20.0),
