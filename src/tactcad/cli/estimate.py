@@ -139,11 +139,16 @@ def _shown(row: dict) -> dict:
 
 def _table(rows: list[dict]) -> list[str]:
     cells = [[heading for heading, *_ in COLUMNS], [unit for _, unit, *_ in COLUMNS]]
-    cells += [
-        ["invalid" if row[f] is None else format(row[f], spec) for *_, f, spec in COLUMNS] for row in rows
-    ]
+    cells += [[_cell(row, f, spec) for *_, f, spec in COLUMNS] for row in rows]
     widths = [max(len(line[i]) for line in cells) for i in range(len(COLUMNS))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells]
+
+
+def _cell(row: dict, field: str, spec: str) -> str:
+    """"invalid" above yield, "-" where the gauge's grid does not fit a two-sided hinge."""
+    if row[field] is not None:
+        return format(row[field], spec)
+    return "-" if row["elastic"] else "invalid"
 
 
 def _spread(design, row: dict) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.materials import Alloy
+from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.element import element
@@ -16,7 +17,10 @@ from tactcad.parts.layout import ElementPlace, Layout
 
 @dataclass(frozen=True)
 class ElementEstimate:
-    """One element at one force. Strain and stress are None where the stress would pass the yield strength."""
+    """One element at one force. Strain and stress are None where the stress would pass the yield strength.
+
+    gauge_strain is None too where the grid does not fit a two-sided hinge.
+    """
 
     number: int
     arm: float  # mm
@@ -66,13 +70,15 @@ class _PerNewton:
 
 def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
     peak = strain.peak(s, 1.0, rung)
+    try:
+        gauge = strain.gauge(s, 1.0, grid, rung)
+    except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
+        gauge = np.nan
     if rung in ladder.WITH_ROOTS:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus
-    return _PerNewton(
-        *(np.broadcast_to(x, s.shape) for x in (strain.gauge(s, 1.0, grid, rung), peak, stress, face))
-    )
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
 
 
 def _by_elements(
@@ -118,7 +124,7 @@ def _estimates(
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
-        at = lambda value: float(value) * force if elastic else None  # noqa: E731
+        at = lambda value: float(value) * force if elastic and np.isfinite(value) else None  # noqa: E731
         stress = float(per_newton.fillet_stress[i])
         rows.append(
             ElementEstimate(
