@@ -71,7 +71,10 @@ def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
-    """Strain per deflection at mid-width over the plane value: 1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b."""
+    """Strain per deflection at mid-width over the plane value.
+
+    1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b.
+    """
     k = k or by_sides(f"mid-width {at}", s.two_sided)
     x, y, nu = s.hinge_length / s.width, s.hinge_thickness / s.width, s.poisson
     return 1.0 + nu * nu * (x * (k["a"] * x + k["d"] * y) + k["e"] * y * y)
@@ -91,7 +94,10 @@ def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def face_factor(s: HingeSection, k: Constants | None = None) -> Array:
-    """Peak on the gauge face over nominal: [1 + (a lc/2 - b t)/L] [1 - c/(d + rho) exp(-e lc/t)], one-sided."""
+    """Peak on the gauge face over nominal; on a two-sided hinge the fillet's.
+
+    One-sided: [1 + (a lc/2 - b t)/L] [1 - c/(d + rho) exp(-e lc/t)].
+    """
     k = k or by_sides("face", np.False_)
     t, lc = s.hinge_thickness, s.straight_length
     flat = (1.0 + (k["a"] * lc / 2.0 - k["b"] * t) / s.load_arm) * (
