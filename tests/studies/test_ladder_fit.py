@@ -24,14 +24,29 @@ def test_command_gives_the_shipped_constants_again(tmp_path, capsys):
     again, data = json.loads((tmp_path / "ladder.json").read_text()), ladder_data()
     assert again["range"] == data["range"]
     rng = np.random.default_rng(1)
-    s = HingeSection(rng.uniform(0.15, 0.4, 200), 0.9, rng.uniform(0.1, 0.3, 200), 5.0, rng.uniform(1.5, 3, 200),
-                     4.0, 3.0, 0.3, 1.0, 3.0, True)
-    for group, f in (("root", plane.compliance), ("width", lambda s, k: solid.width_factor(s, plane.compliance(s), k))):
+    s = HingeSection(
+        rng.uniform(0.15, 0.4, 200),
+        0.9,
+        rng.uniform(0.1, 0.3, 200),
+        5.0,
+        rng.uniform(1.5, 3, 200),
+        4.0,
+        3.0,
+        0.3,
+        1.0,
+        3.0,
+        True,
+    )
+    for group, f in (
+        ("root", plane.compliance),
+        ("width", lambda s, k: solid.width_factor(s, plane.compliance(s), k)),
+    ):
         # the search's last digits may differ between machines; what it gives may not
         np.testing.assert_allclose(f(s, again[group]["two"]), f(s, data[group]["two"]), rtol=2e-5)
     for name, errors in again["report"]["relative_error"]["held out, box"]["one"].items():
         assert errors["max"] == pytest.approx(
-            data["report"]["relative_error"]["held out, box"]["one"][name]["max"], rel=0.02), name
+            data["report"]["relative_error"]["held out, box"]["one"][name]["max"], rel=0.02
+        ), name
 
 
 def test_report_says_what_it_is_made_of():

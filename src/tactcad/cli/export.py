@@ -25,6 +25,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
+    parser.add_argument(
+        "--pose", action="append", metavar="KEY=VALUE", default=[],
+        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
+    )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
@@ -33,12 +37,13 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import read
     from tactcad.export.pipeline import export
     from tactcad.scenes import chosen_scenes, left_out
+    from tactcad.scenes.poses import pose_of
 
     from .progress import progress
 
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
-    done = export(design, scenes, args.out or f"exports/{design.name}", say)
+    done = export(design, scenes, args.out or f"exports/{design.name}", say, pose_of(args.pose, design))
     for line in () if args.scene else left_out(design):
         say.line(line)
     if args.json:

@@ -24,13 +24,35 @@ FILES = {"fitted": "ladder-samples.csv", "held out": "ladder-heldout.csv"}
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for samples and ladder.json")
-    parser.add_argument("--samples", type=int, default=1200, help="designs that are fitted, and a third more on the box's edges (default 1200)")
-    parser.add_argument("--solids", type=int, default=400, help="of them with solid elements too, and a fifth more on the edges (default 400)")
-    parser.add_argument("--held-out", type=int, default=300, help="designs kept out of the fit, and a third more (default 300)")
-    parser.add_argument("--held-out-solids", type=int, default=120, help="of them with solid elements, and a fifth more (default 120)")
+    parser.add_argument(
+        "--samples",
+        type=int,
+        default=1200,
+        help="designs that are fitted, and a third more on the box's edges (default 1200)",
+    )
+    parser.add_argument(
+        "--solids",
+        type=int,
+        default=400,
+        help="of them with solid elements too, and a fifth more on the edges (default 400)",
+    )
+    parser.add_argument(
+        "--held-out",
+        type=int,
+        default=300,
+        help="designs kept out of the fit, and a third more (default 300)",
+    )
+    parser.add_argument(
+        "--held-out-solids",
+        type=int,
+        default=120,
+        help="of them with solid elements, and a fifth more (default 120)",
+    )
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--reuse", action="store_true", help="take the samples that lie in DIR")
-    source.add_argument("--shipped-samples", action="store_true", help="take the samples that come with the program")
+    source.add_argument(
+        "--shipped-samples", action="store_true", help="take the samples that come with the program"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -39,8 +61,12 @@ def run(args: argparse.Namespace) -> int:
 
     for option, least in LEAST.items():
         if getattr(args, option) < least:
-            raise InputError(f"--{option.replace('_', '-')}", "too few", value=getattr(args, option),
-                             legal=f"at least {least}")
+            raise InputError(
+                f"--{option.replace('_', '-')}",
+                "too few",
+                value=getattr(args, option),
+                legal=f"at least {least}",
+            )
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     if args.shipped_samples:
@@ -57,7 +83,10 @@ def run(args: argparse.Namespace) -> int:
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
         rungs = ("plane, against plane elements", "solid, against solid elements")
         worst = {name: errors[name]["max"] for name in rungs}
-        print(f"{side}-sided, held out: " + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items()))
+        print(
+            f"{side}-sided, held out: "
+            + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items())
+        )
     print(f"{out / 'ladder.json'} written")
     return 0
 
@@ -69,7 +98,10 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
     for kind, (count, solids) in plan.items():
         report = lambda line, kind=kind: print(f"{kind}: {line}", file=sys.stderr, flush=True)  # noqa: E731
         inside, edges = fit_samples.designs(kind, count)
-        tables = [fit_samples.compute(inside, solids, report), fit_samples.compute(edges, solids // 5, report)]
+        tables = [
+            fit_samples.compute(inside, solids, report),
+            fit_samples.compute(edges, solids // 5, report),
+        ]
         fit_samples.write(fit_samples.joined(tables), out / FILES[kind])
     # read back: the fit sees the digits that the files hold
     return {kind: fit_samples.load(out / name) for kind, name in FILES.items()}

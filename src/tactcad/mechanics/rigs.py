@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import hypot, inf
 
 Point = tuple[float, float]
@@ -48,11 +49,29 @@ def holding_force(vacuum: float, area: float) -> float:
     return vacuum * 1e-3 * area
 
 
-def stop_shares(stiffness: float, load: float, gap: float, load_arm: float, arm: float) -> tuple[float, float]:
-    """What hinge and stop carry (N at the pad) when `load` comes down on one element.
+@dataclass(frozen=True)
+class Stopped:
+    """An element under a load on its pad: what the hinge carries by bending (N), what the stop pushes back (N),
+    and the nominal stresses in the hinge (MPa): by its deflection, and by the shear that the stopped arm leaves it."""
 
-    The pad moves until the tip closes its gap: deflection g L/a, hinge force K g L/a at most; the stop's
-    share is the rest.
+    hinge: float
+    stop: float
+    bending: float
+    shear: float
+
+
+def stopped(
+    stiffness: float, load: float, gap: float, load_arm: float, arm: float, width: float, thickness: float, length: float
+) -> Stopped:
+    """What happens when `load` comes down on one pad (N, mm, N/mm).
+
+    The tip closes its gap at a pad deflection of g L/a, where the hinge carries F_h = K g L/a. The rest F - F_h
+    bears on two supports, hinge and tip: the stop takes (F - F_h) L/a, and the hinge the shear
+    V = (F - F_h)(1 - L/a), which bends a leaf of length l between two stiff ends by V l/2.
+    Stresses are nominal, 6 M/(b t^2), without the fillet's factor.
     """
     hinge = min(load, stiffness * gap * load_arm / arm)
-    return hinge, load - hinge
+    rest = load - hinge
+    modulus = width * thickness**2 / 6
+    shear = rest * (1 - load_arm / arm)
+    return Stopped(hinge, rest * load_arm / arm, hinge * load_arm / modulus, shear * length / 2 / modulus)

@@ -60,7 +60,10 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
 
 
 def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
-    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or another."""
+    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or another.
+
+    The array has no other pose. Raises InputError where the pose is impossible.
+    """
     own = name.replace("-", "_")
     make = getattr(importlib.import_module(f"tactcad.scenes.{own}"), own)
-    return make(design) if pose is None else make(design, pose)
+    return make(design) if pose is None or name == "array" else make(design, pose)

@@ -14,6 +14,7 @@ from tactcad.parts.fasteners import carrier_screw, clamping
 from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.library import dowels, screws
 
+from .array_steps import array_steps
 from .scene import Contact, Placement, Rotation, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
@@ -39,7 +40,8 @@ def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({})) ->
     build.clamping()
     build.hold_down()
     return Scene(
-        "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover)
+        "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover),
+        steps=array_steps(layout, tuple(p.designator for p in build.placements)),
     )
 
 

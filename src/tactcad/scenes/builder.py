@@ -66,11 +66,11 @@ class Builder:
         self.contacts += scene.contacts
         self.supplies += scene.supplies
 
-    def step(self, title: str, explode: Vector, text: str) -> None:
+    def step(self, title: str, explode: Vector, text: str, fan: bool = False) -> None:
         """Close a step: it takes what was placed since the one before."""
         names = tuple(p.designator for p in self.placements[self._stepped:])
         self._stepped = len(self.placements)
-        self.steps.append(Step(title, names, explode, text))
+        self.steps.append(Step(title, names, explode, text, fan))
 
     def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:
         groups = tuple((group, frozenset(names)) for group, names in self.groups.items())

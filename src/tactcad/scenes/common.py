@@ -49,35 +49,49 @@ def place_cart(b: Builder, rig: RigLayout, base: str, roll: float, dents=(), dep
     plate = b.place("CT", cart.cart_plate(rig), (roll, 0, c.clearance))
     shim, wheel = cart.axle_shim(rig), bearing(c.bearing)
     side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
-    for sx, sy in CORNERS:
-        x, z = roll + sx * c.wheel_base / 2, rig.axle_z
+    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.")
+    for sy, which in ((-1, "front"), (1, "back")):
+        xs, z = [roll + sx * c.wheel_base / 2 for sx in (-1, 1)], rig.axle_z
 
         def y(start: float, thick: float, sy: int = sy) -> float:
             return start if sy > 0 else -start - thick
 
-        inner = b.place("SH", shim, (x, y(side, c.shim), z), ALONG_Y)
-        ball = b.place("BB", wheel, (x, y(side + c.shim, bear.B), z), ALONG_Y)
-        far = b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y)
-        axle = b.screw(rig.axle_thread, rig.axle_length, (x, y(outer + c.shim, 0), z), (0, -sy, 0), far, plate)
-        b.meet(plate, inner)
-        b.meet(inner, ball)
-        b.meet(ball, far)
-        b.meet(axle, ball, "press")
-        b.meet(ball, base)
-    b.step(
-        "Cart", (0, 0, 25),
-        "Put shim, bearing, shim on each axle and start its thread. Stand the cart on a surface plate, press lightly "
-        "on its middle so that all four wheels touch, and tighten the axles in that state, crosswise. No wheel may "
-        f"be loose under a 0.02 mm feeler gauge. The outer rings must turn by a breath: {c.shim:g} mm of air to plate and head.",
-    )
+        inner = [b.place("SH", shim, (x, y(side, c.shim), z), ALONG_Y) for x in xs]
+        balls = [b.place("BB", wheel, (x, y(side + c.shim, bear.B), z), ALONG_Y) for x in xs]
+        far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
+        for x, near, ball, beyond in zip(xs, inner, balls, far):
+            at = (x, y(outer + c.shim, 0), z)
+            axle = b.screw(rig.axle_thread, rig.axle_length, at, (0, -sy, 0), beyond, plate)
+            b.meet(plate, near)
+            b.meet(near, ball)
+            b.meet(ball, beyond)
+            b.meet(axle, ball, "press")
+            b.meet(ball, base)
+        b.step(
+            f"Wheels, {which}", (0, sy * 70, 25),
+            "Put shim, bearing, shim on each axle and start its thread."
+            + (
+                " Then stand the cart on a surface plate, press lightly on its middle so that all four wheels touch, and "
+                "tighten the axles in that state, crosswise: the axles' play in the bores takes up the threads' error. No "
+                "wheel may be loose over a 0.02 mm feeler gauge. Every outer ring must turn at a breath: it has "
+                f"{c.shim:g} mm of air to plate and head."
+                if sy > 0 else ""
+            ),
+            fan=True,
+        )
     h, under = rig.holder_screw, rig.holder_fixing[1]
     body = b.place("HB", holder.holder_body(rig), (roll, 0, rig.cart_top))
     top = rig.cart_top + rig.holder_body
     ring = b.place("OR", orings.o_ring(rig.o_ring), (roll, 0, top - orings.GROOVE_DEPTH))
-    fitting = b.place("HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y)
     b.meet(plate, body)
     b.meet(body, ring)
+    b.step(
+        "Holder's body and seal", (0, 0, 60),
+        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.", fan=True,
+    )
+    fitting = b.place("HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y)
     b.meet(fitting, body, "thread")
+    b.step("Hose fitting", (0, -40, 45), "Screw the hose fitting in by hand and a quarter turn more; its washer seals.")
     lid = b.place("HL", holder.holder_lid(rig), (roll, 0, top))
     b.meet(body, lid)
     b.meet(ring, lid)
@@ -85,14 +99,14 @@ def place_cart(b: Builder, rig: RigLayout, base: str, roll: float, dents=(), dep
         at = (roll + sx * h, sy * h, top + under)
         b.screw("M3", rig.holder_fixing[0], at, (0, 0, -1), lid, plate)
     b.step(
-        "Sample holder", (0, 0, 60),
-        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove. Screw the hose fitting in by hand "
-        "and a quarter turn more. Lid on, four screws crosswise. Close the holes with tape: with the pump shut off, the "
+        "Holder's lid", (0, 0, 95),
+        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with the pump shut off, the "
         "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may not pull the cart.",
+        fan=True,
     )
     object_ = b.place("SA", holder.sample(rig, dents, depth), (roll, 0, rig.lid_top))
     b.meet(lid, object_)
-    b.step("Sample", (0, 0, 90), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.")
+    b.step("Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.")
     b.supplies += [
         Supply("HOSE-4", "silicone hose 4 x 1 mm, soft", 1, "m", "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A"),
         Supply("VACUUM-PUMP", f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve", 1, "pcs",

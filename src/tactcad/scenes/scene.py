@@ -50,12 +50,16 @@ class Motion:
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how."""
+    """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
+
+    `fan` spreads the step's parts over the outer half of that way, in their order.
+    """
 
     title: str
     designators: tuple[str, ...]
     explode: Vector
     text: str
+    fan: bool = False
 
 
 @dataclass(frozen=True)
