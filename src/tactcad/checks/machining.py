@@ -36,7 +36,7 @@ PITCH = {name: m.pitch for name, m in METRIC.items()} | {"M6": 1.0}
 
 @dataclass(frozen=True)
 class Limits:
-    """cutter_radius, drill, wall, web, break_through, floor in mm; reaches in diameters; run_out in pitches; slenderness length/diameter."""
+    """cutter_radius, drill, wall, web, break_through, floor, ring in mm; reaches in diameters; run_out in pitches; slenderness length/diameter."""
 
     cutter_radius: float
     cutter_reach: float
@@ -48,6 +48,7 @@ class Limits:
     web: float
     break_through: float
     floor: float
+    ring: float
     slenderness: float
 
 
@@ -149,8 +150,10 @@ def _drills(part: Part, limit: Limits) -> Iterator[Raw]:
     for h in _holes(part):
         if h.diameter < limit.drill - SAME:
             yield ("drill-diameter", h.at, h.diameter, limit.drill, f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}")
-        if h.depth > limit.drill_reach * h.diameter + SAME:
-            yield ("drill-depth", h.at, h.depth, limit.drill_reach * h.diameter, f"hole {h.name}: {h.depth:g} mm deep at {h.diameter:g}, at most {limit.drill_reach:g} diameters")
+        wide, entry = h.counterbore or (h.diameter, 0.0)
+        for deep, diameter in ((h.depth - entry, h.diameter), (entry, wide)):
+            if deep > limit.drill_reach * diameter + SAME:
+                yield ("drill-depth", h.at, deep, limit.drill_reach * diameter, f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters")
         if h.counterbore and h.counterbore[1] >= h.depth - SAME:
             yield ("counterbore", h.at, h.counterbore[1], h.depth, f"hole {h.name}: counterbore as deep as the hole")
         elif h.counterbore and h.through and h.depth - h.counterbore[1] < limit.wall - SAME:
@@ -264,5 +267,5 @@ def _slender(part: Part, limit: Limits) -> Iterator[Raw]:
         for opening in part.body.openings:
             bore = hypot(opening.box[2] - opening.box[0], 0.0)
             wall = (diameter - bore) / 2
-            if wall < limit.floor - SAME:
-                yield ("turn-wall", (0.0, 0.0, 0.0), wall, limit.floor, f"ring of {wall:.3g} mm wall, at least {limit.floor:g}")
+            if wall < limit.ring - SAME:
+                yield ("turn-wall", (0.0, 0.0, 0.0), wall, limit.ring, f"ring of {wall:.3g} mm wall, at least {limit.ring:g}")

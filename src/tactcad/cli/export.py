@@ -29,6 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--pose", action="append", metavar="KEY=VALUE", default=[],
         help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
     )
+    parser.add_argument("--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures")
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
@@ -43,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
 
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
-    done = export(design, scenes, args.out or f"exports/{design.name}", say, pose_of(args.pose, design))
+    done = export(design, scenes, args.out or f"exports/{design.name}", say, pose_of(args.pose, design), args.guide)
     for line in () if args.scene else left_out(design):
         say.line(line)
     if args.json:

@@ -117,7 +117,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
                 partial(_picture, placements, view, shapes, text, f"{name} revision {revision}"),
             )
         )
-    return products + guide_products(design, scene, shapes)
+    return products
 
 
 def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
 
 from tactcad.contour import chain
 
@@ -38,15 +38,16 @@ def squeeze() -> float:
 
 
 def o_ring(code: str) -> Part:
-    """The ring as it lies squeezed in its groove: groove's height, cross section's area; z from 0 up."""
+    """The ring as it lies squeezed in its groove: groove's height, the free ring's volume; z from 0 up."""
     inner = INSIDE[code] / 2 + 0.05
-    width = pi * SECTION**2 / 4 / GROOVE_DEPTH
+    rubber = pi * SECTION**2 / 4 * pi * (INSIDE[code] + SECTION)
+    outer = sqrt(inner**2 + rubber / (pi * GROOVE_DEPTH))
     return Part(
         part_no=f"ISO3601-{code}-{INSIDE[code]:.2f}x{SECTION:g}-NBR70-ring",
         name=f"O-ring {INSIDE[code]:.2f}x{SECTION:g}",
         process="bought",
         material=NITRILE,
-        body=Revolution(chain([(inner, 0), (inner + width, 0), (inner + width, GROOVE_DEPTH), (inner, GROOVE_DEPTH)])),
+        body=Revolution(chain([(inner, 0), (outer, 0), (outer, GROOVE_DEPTH), (inner, GROOVE_DEPTH)])),
         colour="#2b2b2e",
         notes=("modelled as squeezed",),
         purchase=Purchase(f"ISO 3601-1 {code}A {INSIDE[code]:.2f}x{SECTION:g} NBR 70", alternates="FKM 75, same size"),
