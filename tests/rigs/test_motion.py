@@ -10,9 +10,10 @@ from tactcad.checks.motion import check_motions
 from tactcad.contour import circle, rectangle
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.designs import load
+from tactcad.parts.detail import envelope
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene
-from tactcad.solids.build import build, envelope
+from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 
 METAL = Material("metal", 2700)
@@ -33,7 +34,7 @@ def scene(obstacle: Part, at, start, end, contacts=()) -> Scene:
 
 def findings(s: Scene) -> list[str]:
     full = {p.part_no: build(p).wrapped for p in s.parts}
-    return [f.message for f in check_motions(s, full, {p.part_no: envelope(p).wrapped for p in s.parts})]
+    return [f.message for f in check_motions(s, full, {p.part_no: build(envelope(p)).wrapped for p in s.parts})]
 
 
 def test_a_foil_between_the_ends_is_met():
@@ -75,7 +76,7 @@ def test_diagonal_ways_do_not_reach_around_corners():
 @pytest.mark.parametrize("name", ["calibration", "sample-stiffness", "grasping"])
 def test_an_envelope_holds_its_part(name):
     for part in make_scene(load("macro-array"), name).parts:
-        outer, inner = bounding_box(envelope(part).wrapped), bounding_box(build(part).wrapped)
+        outer, inner = bounding_box(build(envelope(part)).wrapped), bounding_box(build(part).wrapped)
         assert all(o <= i + 1e-6 for o, i in zip(outer[0], inner[0]))
         assert all(o >= i - 1e-6 for o, i in zip(outer[1], inner[1]))
         assert envelope(part).volume >= part.volume - 1e-6
@@ -85,7 +86,7 @@ def test_a_tip_that_is_not_lifted_enough_is_seen():
     """Half a millimetre of lift clears the pads; none drags the roller over them."""
     good = make_scene(variant({"calibration.retract": 0.5}), "calibration")
     shapes = {p.part_no: build(p).wrapped for p in good.parts}
-    envelopes = {p.part_no: envelope(p).wrapped for p in good.parts}
+    envelopes = {p.part_no: build(envelope(p)).wrapped for p in good.parts}
     assert check_motions(good, shapes, envelopes) == []
     dragged = tuple(
         Motion(m.name, tuple((g, *((0.0, 0.0, -0.05),) * 2) if g == "axis" else (g, a, b) for g, a, b in m.ways))

@@ -49,7 +49,7 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
     assert all(not row["source_verified"] for row in bill if row["make_buy"] == "buy")
     cut = {p.part_no for p in make_scene(design, scene).parts if p.process == "wire-cut"}
-    assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out/dxf").glob("*.dxf")} == cut if cut else True
+    assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
     again = export(design, [scene], tmp_path / "out", progress(StringIO()))
     assert (again.made, again.built) == ((), ())
 
@@ -207,3 +207,19 @@ def test_wheels_touch_the_base_and_only_they():
     assert set(low.values()) == {5.0}  # 623: 10 mm outside
     assert sum(c.second == "BP1" and c.first.startswith("BB") for c in scene.contacts) == 4
     assert all(p.rotation[1] == (0, 0, 1) for p in scene.placements if p.designator.startswith("BB"))
+
+
+def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
+    design = load("smallest-bearing")
+    sizes, masses = {}, {}
+    for detail in ("full", "envelope"):
+        out = tmp_path / detail
+        export(design, ["sample-stiffness"], out, progress(StringIO()), detail=detail)
+        (step,) = out.glob("step/smallest-bearing-sample-stiffness_*.step")
+        sizes[detail] = step.stat().st_size
+        rows = json.loads((out / "bom-sample-stiffness.json").read_text())["rows"]
+        masses[detail] = {r["part_no"]: r["mass_g"] for r in rows}
+        assert (detail == "full") or not list(out.glob("dxf/*"))
+    assert masses["full"] == masses["envelope"]
+    assert sizes["envelope"] < sizes["full"] / 2

@@ -9,9 +9,10 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
+from tactcad.parts.detail import envelope
 from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
-from tactcad.solids.build import SolidError, build, envelope
+from tactcad.solids.build import SolidError, build
 
 from .brep import check_brep
 from .finding import Finding
@@ -63,7 +64,7 @@ def run_checks(
             continue
         report.run("interference", check_interference, scene, shapes, known)
         if scene.motions:
-            envelopes = {part.part_no: envelope(part).wrapped for part in scene.parts}
+            envelopes = {part.part_no: build(envelope(part)).wrapped for part in scene.parts}
             report.run("motion", check_motions, scene, shapes, envelopes)
         if scene.name == "grasping":
             report.run("moving weight", check_moving_weight, design, scene)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
@@ -49,15 +47,6 @@ def build(part: Part) -> Solid:
             f"{part.part_no}: the solid has {solid.volume:.9g} mm3, its description {part.volume:.9g} mm3"
         )
     return solid
-
-
-def envelope(part: Part) -> Solid:
-    """The part without what is cut into it: nothing of the part lies outside. For collision and layout."""
-    if isinstance(part.body, ModelFile):
-        return read_step_solid(part.body)
-    if isinstance(part.body, Extrusion):
-        return _extruded(replace(part.body, openings=()))
-    return _revolved(part.body)
 
 
 def _only_solid(shape: object, part: Part) -> Solid:
