@@ -10,7 +10,15 @@ import pytest
 
 from tactcad.parts.description import Extrusion, Hole, Material, Part, drill_point_height
 from tactcad.parts.library import dowels, screws
-from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC, SET_SCREW_LENGTHS, cap_screw, nut, set_screw, threaded_rod
+from tactcad.parts.library.screws import (
+    CAP_SCREW_LENGTHS,
+    METRIC,
+    SET_SCREW_LENGTHS,
+    cap_screw,
+    nut,
+    set_screw,
+    threaded_rod,
+)
 
 
 def published(name: str, key: str) -> dict[str, dict[str, str]]:
