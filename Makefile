@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check review bench nightly clean
+.PHONY: help environment export test check golden review bench nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -27,8 +27,11 @@ test: environment ## every test but the long ones
 check: environment ## style, and every check of every design: all failures are printed, then it fails
 	@status=0; \
 	$(BIN)/ruff check || status=1; \
-	for design in $(DESIGNS); do $(BIN)/tactcad check $$design || status=1; done; \
+	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
 	exit $$status
+
+golden: environment ## take up every design's geometry in exports/golden/, where no check fails; prints what changed
+	$(BIN)/tactcad golden $(DESIGNS)
 
 EXPORTS = $(DESIGNS:hardware/%.toml=exports/%)
 

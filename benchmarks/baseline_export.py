@@ -33,12 +33,18 @@ from build123d import (
     RegularPolygon,
     Solid,
     Unit,
+    Vector,
     export_step,
     extrude,
     fillet,
     import_step,
     make_face,
 )
+from OCP.BRepLib import BRepLib
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.HLRAlgo import HLRAlgo_Projector
+from OCP.HLRBRep import HLRBRep_PolyAlgo, HLRBRep_PolyHLRToShape
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
@@ -54,6 +60,8 @@ SCREW_X, DOWEL_X = (15.5, 25.5), 20.5
 ALONG, AGAINST, DOWN = (0, 1, 0), (0, -1, 0), (0, 0, -1)
 VIEWS = {"above": (1, -1.4, 1), "below": (1, -1.4, -1), "open": (1, -1.4, 1)}
 COVER = ("CA", "ST", "HS", "SS")  # taken off in the picture "open"
+
+EXACT_UP_TO = 64  # solids in a picture; above, the same triangles that tactcad takes
 
 Placed = tuple[str, str, Location]  # reference designator, part, place
 
@@ -209,15 +217,32 @@ def write_dxf(folder: Path, name: str, profile) -> Path:
 
 def write_picture(folder: Path, name: str, shape, eye: tuple[float, float, float]) -> Path:
     path = folder / f"{name}.svg"
-    box = shape.bounding_box()
-    away = 10 * box.diagonal
-    origin = box.center() + tuple(away * c for c in eye)
-    visible, _ = shape.project_to_viewport(origin, (0, 0, 1), box.center())
     drawing = ExportSVG(unit=Unit.MM, margin=2)
-    drawing.add_shape(visible)
+    drawing.add_shape(visible_edges(shape, eye))
     drawing.write(str(path))
     assert ElementTree.parse(path).getroot().tag.endswith("svg")
     return path
+
+
+def visible_edges(shape, eye: tuple[float, float, float]) -> list:
+    """Exact hidden-line removal, or on triangles where that would take minutes and gigabytes."""
+    if len(shape.solids()) <= EXACT_UP_TO:
+        box = shape.bounding_box()
+        origin = box.center() + tuple(10 * box.diagonal * c for c in eye)
+        visible, _ = shape.project_to_viewport(origin, (0, 0, 1), box.center())
+        return list(visible)
+    BRepMesh_IncrementalMesh(shape.wrapped, 0.05, False, 0.35)
+    removal = HLRBRep_PolyAlgo()
+    removal.Load(shape.wrapped)
+    right = Vector(0, 0, 1).cross(Vector(eye))
+    removal.Projector(HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*eye), gp_Dir(*right))))
+    removal.Update()
+    result = HLRBRep_PolyHLRToShape()
+    result.Update(removal)
+    kept = [found for found in (result.VCompound(), result.OutLineVCompound()) if found is not None]
+    for compound in kept:
+        BRepLib.BuildCurves3d_s(compound)
+    return [edge for compound in kept for edge in Compound(compound).edges()]
 
 
 def write_bill(folder: Path, solids: dict[str, Solid], places: list[Placed]) -> list[Path]:

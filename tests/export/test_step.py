@@ -260,7 +260,7 @@ def test_a_tampered_assembly_is_not_let_out(name, macro_scene, macro_shapes, mon
 
 def test_a_part_of_other_volume_is_not_let_out(macro_scene, macro_shapes):
     """The shape of another element under this part's number: one solid, valid, and wrong."""
-    a4, a5 = (next(p for p in macro_scene.parts if p.part_no.endswith(f"-a{n}")) for n in (4, 5))
+    a4, a5 = (next(p for p in macro_scene.parts if p.part_no.endswith(f"-a{n}mm")) for n in (4, 5))
     with pytest.raises(CheckFailure, match="volumes"):
         step.part_step(a4, macro_shapes[a5.part_no], HEADER)
 

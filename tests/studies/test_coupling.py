@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_bvp
 
 from tactcad.studies import sample_coupling as sc
 
@@ -44,6 +45,31 @@ def test_shares_run_on_smoothly_where_the_sum_ends():
     for thickness in (6.0, np.inf):
         near, far = sc.influence(np.array([49.9, 50.1]), np.zeros(2), 2.0, 3.0, thickness, 0.49)
         assert near == pytest.approx(far, abs=1e-3)
+
+
+@pytest.mark.parametrize("c, poisson", [(0.3, 0.2), (1.0, 0.3), (1.5, 0.49), (3.0, 0.4)])
+def test_layer_factor_against_the_equations_of_elasticity(c, poisson):
+    """One wave of normal load on a layer of height 1, u = U(z) sin cx, w = W(z) cos cx, solved as a boundary-value
+    problem: W(1) = 2 (1 - nu^2)/E phi/c."""
+    mu, lam = 1 / (2 * (1 + poisson)), poisson / ((1 + poisson) * (1 - 2 * poisson))  # E = 1
+
+    def slope(z, y):
+        U, dU, W, dW = y
+        ddU = c * c * U + (lam + mu) / mu * c * (c * U + dW)
+        ddW = (mu * c * c * W - (lam + mu) * c * dU) / (lam + 2 * mu)
+        return np.array([dU, ddU, dW, ddW])
+
+    def ends(low, top):
+        shear = top[1] - c * top[2]
+        normal = lam * (c * top[0] + top[3]) + 2 * mu * top[3] - 1
+        return np.array([low[0], low[2], shear, normal])
+
+    found = solve_bvp(slope, ends, np.linspace(0, 1, 60), np.zeros((4, 60)), tol=1e-8, max_nodes=20000)
+    assert found.success
+    W = found.y[2, -1]
+    assert float(sc.layer_factor(np.array([c]), poisson)[0]) == pytest.approx(
+        W * c / (2 * (1 - poisson**2)), rel=1e-6
+    )
 
 
 def test_elements_far_apart_are_independent_springs():

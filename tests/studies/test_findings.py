@@ -325,7 +325,9 @@ def test_one_gain_by_its_logarithmic_mean(paper, array):
     g = gain.fit(paper, array)
     assert g.fitted_gain == pytest.approx(np.exp(np.mean(np.log(g.measured / g.strain_per_deflection))))
     assert g.design_gain == pytest.approx(2.7 * 100 * 2.1 / 4)
-    assert g.per_length_exponent == pytest.approx(1.0, abs=0.05)
+    short = gain.fit(paper, replace(array, gauge=replace(array.gauge, grid_length=0.01)))
+    assert short.per_length_exponent == pytest.approx(1.0, abs=0.1)  # strain per deflection is t/(2 l L)
+    assert 0.5 < g.per_length_exponent < short.per_length_exponent  # the grid averages beyond the leaf
 
 
 def test_gain_findings_follow_the_data(paper, array):
@@ -447,6 +449,15 @@ def test_effects_of_the_budget_by_hand(paper, array):
         np.log(2.25**0.5 * (4 / 3)), rel=0.05
     )
     x, r, m = 3.85, b.reference, b.measuring
+    lateral = (
+        x * 2 * (1 - 0.49) / (2 - 0.49)
+    )  # a rigid pad's sideways stiffness on a half-space over its normal one
+    assert by["rubber shears on stuck pads"].short_arm == pytest.approx(lateral * (H / 3) ** 2 / r)
+    assert by["rubber shears on stuck pads"].long_arm == pytest.approx(lateral * (H / 7) ** 2 / m)
+    stiff = by["gauge stiffens the leaf"]
+    assert (
+        0.005 < stiff.short_arm < 0.12 and by["bridge non-linearity"].on_object < 0.01
+    )  # as hardware notes have them
     assert b.sensitivity_reference == pytest.approx(
         r * (m + x) / (x * (r - m))
     ) and b.sensitivity_reference + b.sensitivity_measuring == pytest.approx(1)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.tree import Design
+from tactcad.parts.description import Part
 from tactcad.scenes import make_scene
 from tactcad.solids.build import SolidError, build
 
@@ -17,28 +16,9 @@ from .brep import check_brep
 from .finding import Finding
 from .interference import check_interference
 from .mesh import check_mesh
+from .report import Report
 from .shop import DEFAULT, load_shop
 from .wirecut import check_wirecut
-
-
-@dataclass
-class Report:
-    """Findings in the order found, how many times each check ran, and how long it took in all (s)."""
-
-    findings: list[Finding] = field(default_factory=list)
-    runs: dict[str, int] = field(default_factory=dict)
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @property
-    def failures(self) -> list[Finding]:
-        return [f for f in self.findings if f.severity == "fail"]
-
-    def run(self, name: str, check: Callable[..., list[Finding]], *args: object) -> None:
-        """Run one check and keep what it says."""
-        start = time.perf_counter()
-        self.findings += check(*args)
-        self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
-        self.runs[name] = self.runs.get(name, 0) + 1
 
 
 def run_checks(
@@ -51,17 +31,15 @@ def run_checks(
     Raises InputError where the shop file cannot be used.
     """
     shop = load_shop(shop_file)
-    report = Report()
+    report = Report(design.name, design.design.revision)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
     shapes: dict[str, TopoDS_Shape] = {}
     for n, part in enumerate(parts):
         say(n, total, part.part_no)
-        try:
-            shapes[part.part_no] = build(part).wrapped
-        except SolidError as error:
-            report.findings.append(Finding("build", "fail", part.part_no, (), 0, 0, str(error)))
+        report.run("build", _built, part, shapes)
+        if part.part_no not in shapes:
             continue
         report.run("brep", check_brep, part, shapes[part.part_no])
         report.run("mesh", check_mesh, part, shapes[part.part_no])
@@ -73,3 +51,12 @@ def run_checks(
             report.run("interference", check_interference, scene, shapes)
     say(total, total, "done")
     return report
+
+
+def _built(part: Part, shapes: dict[str, TopoDS_Shape]) -> list[Finding]:
+    """Build the part into `shapes`; a part that cannot be built is a finding."""
+    try:
+        shapes[part.part_no] = build(part).wrapped
+    except SolidError as error:
+        return [Finding("build", "fail", part.part_no, (), 0, 0, str(error))]
+    return []

@@ -1,71 +1,111 @@
-"""tactcad check [DESIGN] [--scene NAME]... [--shop FILE] [--json]"""
+"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--report DIR] [--json]"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
-from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tactcad.checks.report import Report
 
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
   tactcad check soft-tissue --json        findings, runs and times as JSON
   tactcad check --shop my-shop.toml       with your own shop's limits for wire cutting
+  tactcad check macro-array soft-tissue --report exports/check
+                                          both designs; check.json and junit.xml in that folder
 
-Exit status 1 where anything fails; what is only flagged (such as the hinge, for the quotation) is listed."""
+Every failure is printed in a table at the end, and the exit status is 1 where there is one; what is only
+flagged (such as the hinge, for the quotation) is listed. A design in hardware/ is compared with its golden
+file in exports/golden/ too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument(
-        "design", nargs="?", default=DEFAULT_DESIGN, metavar="DESIGN",
+        "design", nargs="*", default=[DEFAULT_DESIGN], metavar="DESIGN",
         help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
     parser.add_argument("--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)")
     parser.add_argument("--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)")
+    parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.checks.report import as_record, failure_table, json_bytes, junit_bytes
     from tactcad.checks.shop import DEFAULT, load_shop
+
+    shop = Path(args.shop) if args.shop else DEFAULT
+    load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
+    reports = [_checked(source, args.scene, shop, alone=len(args.design) == 1) for source in args.design]
+    if args.report:
+        _write(Path(args.report), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
+    if args.json:
+        records = [as_record(report) for report in reports]
+        print(json.dumps(records[0] if len(records) == 1 else records, indent=1))
+    else:
+        for report in reports:
+            _print(report)
+        for line in failure_table(reports):
+            print(line)
+    for report in reports:
+        if report.failures:
+            print(f"tactcad: {report.design}: {len(report.failures)} failures", file=sys.stderr)
+    return 1 if any(report.failures for report in reports) else 0
+
+
+def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
+    """The design's report. Of several designs one that is refused fails, and the others are checked all the same."""
+    from tactcad.checks.finding import Finding
+    from tactcad.checks.report import Case, Report
+    from tactcad.design.load import find
+    from tactcad.design.messages import InputError
+    from tactcad.export.golden import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import chosen_scenes
 
     from .progress import progress
 
-    design = load(args.design)
-    names = chosen_scenes(design, args.scene)
-    shop = Path(args.shop) if args.shop else DEFAULT
-    load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
+    try:
+        design = load(source)
+        names = chosen_scenes(design, scenes)
+    except InputError as error:
+        if alone:
+            raise
+        refusal = Finding("design", "fail", source, (), 0, 0, str(error))
+        return Report(source, "", [Case("design", source, 0.0, (refusal,))])
 
     from tactcad.checks.run import run_checks
 
-    report = run_checks(design, names, shop, progress().step)
-    failed = report.failures
-    if args.json:
-        record = {
-            "design": design.name,
-            "revision": design.design.revision,
-            "passed": not failed,
-            "findings": [asdict(f) for f in report.findings],
-            "runs": report.runs,
-            "seconds": {name: round(s, 4) for name, s in report.seconds.items()},
-        }
-        print(json.dumps(record, indent=1))
-    else:
-        _print(design.name, report)
-    if failed:
-        print(f"tactcad: {design.name}: {len(failed)} of the checks failed", file=sys.stderr)
-    return 1 if failed else 0
+    report = run_checks(design, names, shop, progress(sys.stderr).step)
+    path = golden_path(find(source), design)
+    if path:
+        report.run("golden", check_golden, design, path)
+    return report
 
 
-def _print(name: str, report) -> None:
-    print(f"{name}")
+def _write(folder: Path, files: dict[str, bytes]) -> None:
+    from tactcad.design.messages import InputError
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, data in files.items():
+            (folder / name).write_bytes(data)
+    except OSError as error:
+        raise InputError(str(folder), f"cannot be written: {error.strerror}") from None
+
+
+def _print(report: Report) -> None:
+    print(f"{report.design} revision {report.revision}")
+    seconds = report.seconds
     for check, runs in report.runs.items():
-        print(f"  {check:14} {runs:5} runs {report.seconds[check]:8.2f} s")
-    for finding in report.findings:
+        print(f"  {check:14} {runs:5} runs {seconds[check]:8.2f} s")
+    flags = [f for f in report.findings if f.severity == "flag"]
+    for finding in flags:
         print(f"  {finding}")
-    flags = len(report.findings) - len(report.failures)
-    print(f"  {len(report.failures)} failed, {flags} flagged")
+    print(f"  {len(report.failures)} failed, {len(flags)} flagged")

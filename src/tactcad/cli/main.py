@@ -17,6 +17,7 @@ from tactcad.design.messages import CheckFailure, InputError
 COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
+    "golden": "run every check, show what changed, and write a design's golden geometry",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
     "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
     "fit": "make the finite-element samples and fit the closed forms' constants on them",

@@ -37,7 +37,7 @@ def dowel(size: str, length: float) -> Part:
         f"ISO 8734 {size} m6 x {length:g} - A - St" if standard else f"ground rod {size} m6, cut to {length:g} mm"
     )
     return Part(
-        part_no=f"ISO8734-{size}x{length:g}" if standard else f"GROUND-ROD-{size}m6x{length:g}",
+        part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
         name=f"Dowel pin {size}x{length:g}",
         process="bought",
         material=HARDENED,

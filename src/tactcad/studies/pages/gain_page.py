@@ -45,9 +45,9 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
         "interval.",
         "What the data identify is gain over hinge length, not the gain: over slot lengths from "
         f"{g.lengths[0]:.2f} to {g.lengths[-1]:.2f} mm the fitted gain runs from "
-        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V in proportion to the effective "
-        f"length that K fixes (exponent {g.per_length_exponent:.3f}), while the scatter changes by "
-        f"{percent(change)} of itself.",
+        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V (as the effective length that K fixes "
+        f"to the power {g.per_length_exponent:.2f}; a grid longer than the leaf keeps it below 1), while the "
+        f"scatter changes by {percent(change)} of itself.",
         (
             f"Element{'s' if far.sum() > 1 else ''} {listed(f'no. {n}' for n in g.element[far])} "
             f"lie{'' if far.sum() > 1 else 's'} more than two standard deviations off."

@@ -186,7 +186,7 @@ def _map(h: HingeFit) -> Figure:
                 linewidths=2,
             )
             ax.plot(RADII, f.length_at_radius, "--", color=d.BLACK, lw=1.6)
-            ax.plot(RADII, 2 * RADII, ":", color=d.GREY, lw=1.5)
+            ax.plot(RADII, 2 * RADII, ":", color=d.BLACK, lw=2)
             if f.two_sided == h.design_two_sided:
                 ax.plot(h.design_radius, h.design_length, "*", color="white", mec=d.BLACK, ms=17)
                 ax.annotate(

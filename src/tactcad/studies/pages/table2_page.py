@@ -21,7 +21,7 @@ from tactcad.studies.report import (
     sig,
     signed_percent,
 )
-from tactcad.studies.residuals import Residuals
+from tactcad.studies.residuals import EDGE, Residuals
 
 ALIKE = 0.15  # models whose rms differ by less than this part are said to fit equally well
 USABLE = 10.0  # an interval wider than this factor says nothing
@@ -212,8 +212,9 @@ def _other_witnesses(s: Table2Study, who: tuple[Witness, ...]) -> str:
         if w.high > w.low * USABLE:
             silent.append(w)
             continue
-        slack = 0.1  # a single printed value has no interval: within a tenth counts as agreement
-        low, high = (w.low, w.high) if w.high > w.low else (w.value * (1 - slack), w.value * (1 + slack))
+        # a band's end is known within EDGE; a single printed value counts as agreeing within a tenth
+        slack = EDGE if w.high > w.low else 0.1
+        low, high = w.low * (1 - slack), w.high * (1 + slack)
         holds = [low <= v <= high for v in (K, printed)]
         (silent if holds[0] == holds[1] else for_supported if holds[0] else for_printed).append(w)
     say = lambda group: listed(f"{w.name} ({sig(w.value)})" for w in group)  # noqa: E731

@@ -1,0 +1,69 @@
+"""tactcad golden [DESIGN]... [--shop FILE]"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+EXAMPLES = """\
+  tactcad golden                   the golden file of hardware/macro-array.toml
+  make golden                      those of every design in hardware/
+
+Runs every check first, prints what changed, and writes exports/golden/<design>.json only where nothing
+fails. Other geometry under the same revision letter is refused: give the design a new one."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    from tactcad.design.load import DEFAULT_DESIGN
+
+    parser.add_argument(
+        "design", nargs="*", default=[DEFAULT_DESIGN], metavar="DESIGN",
+        help=f"a path or name of a design in a folder hardware/ (default {DEFAULT_DESIGN})",
+    )
+    parser.add_argument("--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.design.messages import CheckFailure
+
+    status = 0
+    for source in args.design:
+        try:
+            _renew(source, args.shop)
+        except CheckFailure as error:  # the other designs still have their turn
+            print(f"tactcad: {error}", file=sys.stderr)
+            status = 1
+    return status
+
+
+def _renew(source: str, shop_file: str | None) -> None:
+    from tactcad.checks.shop import DEFAULT, load_shop
+    from tactcad.design.load import find
+    from tactcad.design.messages import InputError
+    from tactcad.export.golden import accept, changes_against, golden_path
+    from tactcad.parts.designs import load
+    from tactcad.scenes import scene_names
+
+    from .progress import progress
+
+    shop = Path(shop_file) if shop_file else DEFAULT
+    load_shop(shop)
+    design = load(source)
+    path = golden_path(find(source), design)
+    if path is None:
+        raise InputError(source, "has no golden file", legal="a design in a folder hardware/")
+    changes = changes_against(path, design)
+
+    from tactcad.checks.run import run_checks
+
+    for change in changes or ():
+        print(f"{design.name}: {change}")
+    report = run_checks(design, scene_names(design), shop, progress(sys.stderr).step)
+    for failure in report.failures:
+        print(failure, file=sys.stderr)
+    accept(design, path, report.failures)
+    said = {None: "written, there was none before", 0: "unchanged"}.get(
+        len(changes) if changes is not None else None, f"written, {len(changes or ())} differences"
+    )
+    print(f"{path.name}: {said}")

@@ -1,0 +1,191 @@
+"""What a design means, in numbers: parts, placements, bills of materials and stiffness, without a CAD kernel.
+
+The record is plain data (dicts, lists, numbers, text) for golden files and for comparing designs. Lengths in
+mm, rounded to a picometre so that equal designs give equal text on every machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+from tactcad.contour import Arc, Contour, Line, Segment
+from tactcad.design.tree import Design
+from tactcad.mechanics import ladder, strength
+from tactcad.parts.description import Extrusion, Hole, ModelFile, Part
+from tactcad.parts.element import element_number
+from tactcad.parts.hinge_section import design_alloy, hinge_section
+from tactcad.parts.layout import Layout
+from tactcad.parts.section import cut_section, section
+from tactcad.parts.surface import surface_area
+from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.scene import Scene
+
+from .bom import bom_rows
+from .extent import part_box
+
+Record = dict[str, Any]
+
+DIGITS = 9  # decimals; tolerances of the comparison start at the sixth
+# Columns of a bill that name files and their order, or repeat the design's revision: no meaning of their own.
+NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
+
+
+def geometry(design: Design) -> Record:
+    """{parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}} of a design that keeps its rules."""
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    parts = {part.part_no: part for scene in scenes for part in scene.parts}
+    return {
+        "parts": {no: part_record(part, sum(s.count(part) for s in scenes)) for no, part in sorted(parts.items())},
+        "scenes": {s.name: {"placed": _placed(s), "bom": bill(s)} for s in scenes},
+        "elements": _elements(design),
+    }
+
+
+def part_record(part: Part, qty: int) -> Record:
+    """One part in its own frame: what a manifest says of it, its holes, pockets and contours."""
+    file = isinstance(part.body, ModelFile)
+    record = {
+        "name": part.name,
+        "process": part.process,
+        "qty": qty,
+        "volume_mm3": part.volume,
+        "area_mm2": surface_area(part),
+        "mass_g": part.mass,
+        "centre_mm": None if file else part.centre,
+        "box_mm": None if file else part_box(part),
+        "cut_length_mm": cut_section(part).cut_length if part.process == "wire-cut" else None,
+        "holes": _numbered([_hole(f) for f in part.features if isinstance(f, Hole)] + _round_openings(part)),
+        "pockets": _numbered([
+            {"name": f.name, "at_mm": f.at, "axis": f.axis, "area_mm2": f.volume / f.depth, "depth_mm": f.depth}
+            for f in part.features if not isinstance(f, Hole)
+        ]),
+        "limits": {c.name: {"nominal_mm": c.nominal, "upper_mm": c.upper, "lower_mm": c.lower, "key": c.key}
+                   for c in part.characteristics},
+        "contours": [contour_record(c) for c in contours(part)],
+    }  # fmt: skip
+    return _rounded(record)
+
+
+def contours(part: Part) -> tuple[Contour, ...]:
+    """Outline and openings of an extruded part in (x, y), the profile of a turned one in (radius, z)."""
+    if isinstance(part.body, ModelFile):
+        return ()
+    if isinstance(part.body, Extrusion):
+        outer, openings = section(part)
+        return (outer, *openings)
+    return (part.body.profile,)
+
+
+def contour_record(contour: Contour) -> list[list[float]]:
+    """A contour as rows: a line is x0, y0, x1, y1; an arc has its centre and +1 (ccw) or -1 after them."""
+    rows = []
+    for s in contour:
+        row = [*s.start, *s.end]
+        if isinstance(s, Arc):
+            row += [*s.centre, 1.0 if s.ccw else -1.0]
+        rows.append(row)
+    return _rounded(rows)
+
+
+def contour_of(rows: list[list[float]]) -> Contour:
+    """The contour of such rows. Raises ValueError or TypeError where they are none."""
+
+    def segment(row: list[float]) -> Segment:
+        x0, y0, x1, y1, *arc = row
+        if not arc:
+            return Line((x0, y0), (x1, y1))
+        x, y, turn = arc
+        return Arc((x0, y0), (x1, y1), (x, y), turn > 0)
+
+    return Contour(tuple(segment(row) for row in rows))
+
+
+def bill(scene: Scene) -> Record:
+    """The scene's bill of materials by part number, without files and digests."""
+    rows = bom_rows(scene, "", {})
+    return {row.part_no: _rounded(bill_line(asdict(row))) for row in rows}
+
+
+def bill_line(row: Record) -> Record:
+    return {name: value for name, value in row.items() if name not in NOT_COMPARED}
+
+
+def _placed(scene: Scene) -> Record:
+    return {
+        p.designator: _rounded({"part_no": p.part.part_no, "origin_mm": p.origin, "rotation": p.rotation})
+        for p in scene.placements
+    }
+
+
+def _elements(design: Design) -> Record:
+    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung."""
+    layout = Layout(design)
+    hinges = hinge_section(layout, layout.elements)
+    stiffness = ladder.stiffness(hinges, ladder.DEFAULT_RUNG)
+    at_yield = strength.yield_force(hinges, design_alloy(design))
+    return {
+        place.designator: _rounded({
+            "part_no": element_number(design, place),
+            "arm_mm": place.arm,
+            "load_arm_mm": place.load_arm,
+            "hinge_thickness_mm": place.hinge.t,
+            "hinge_length_mm": place.hinge.l,
+            "fillet_radius_mm": place.hinge.r,
+            "arm_height_mm": place.hinge.h,
+            "stiffness_n_per_mm": float(K),
+            "yield_force_n": float(force),
+        })
+        for place, K, force in zip(layout.elements, stiffness, at_yield)
+    }  # fmt: skip
+
+
+def _hole(hole: Hole) -> Record:
+    return {
+        "name": hole.name,
+        "at_mm": hole.at,
+        "axis": hole.axis,
+        "diameter_mm": hole.diameter,
+        "depth_mm": hole.depth,
+        "through": hole.through,
+        "counterbore_mm": hole.counterbore,
+        "thread": hole.thread,
+        "thread_depth_mm": hole.thread_depth,
+        "drill_point": hole.drill_point,
+        "tolerance": hole.tolerance,
+    }
+
+
+def _round_openings(part: Part) -> list[Record]:
+    if not isinstance(part.body, Extrusion):
+        return []
+    found = []
+    for opening in part.body.openings:
+        circle = opening.as_circle()
+        if circle:
+            (x, y), radius = circle
+            name = opening.segments[0].name or "opening"
+            found.append({"name": name, "at_mm": (x, y, 0.0), "diameter_mm": 2 * radius, "through": True})
+    return found
+
+
+def _numbered(features: list[Record]) -> Record:
+    """By name and a count over equal names: "screw_hole 2"."""
+    seen: dict[str, int] = {}
+    named = {}
+    for feature in features:
+        name = feature.pop("name")
+        seen[name] = seen.get(name, 0) + 1
+        named[f"{name} {seen[name]}"] = feature
+    return named
+
+
+def _rounded(value: Any) -> Any:
+    """Plain data with numbers rounded; tuples as lists, as JSON gives them back."""
+    if isinstance(value, dict):
+        return {k: _rounded(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(v) for v in value]
+    if isinstance(value, float):
+        return round(value, DIGITS) + 0.0  # no negative zero
+    return value

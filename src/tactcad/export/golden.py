@@ -1,0 +1,170 @@
+"""Golden geometry: what each design in hardware/ means, committed, and compared at every check.
+
+The golden file of hardware/NAME.toml is exports/golden/<design>.json beside that hardware/; a design that
+stands elsewhere has none.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tactcad.checks.finding import Finding
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.tree import Design
+
+from .difference import Change, differences
+from .geometry import Record, contour_of, geometry
+
+SCHEMA = "tactcad-golden-1"
+MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
+
+
+def golden_path(design_file: Path, design: Design) -> Path | None:
+    """Where the golden file of a design file is, whether it exists or not; None where it can have none."""
+    folder = design_file.resolve().parent
+    return folder.parent / "exports" / "golden" / f"{design.name}.json" if folder.name == "hardware" else None
+
+
+def golden_record(design: Design) -> Record:
+    """The record that a golden file holds."""
+    return {"schema": SCHEMA, "design": design.name, "revision": design.design.revision, **geometry(design)}
+
+
+def golden_bytes(record: Record) -> bytes:
+    """As JSON with a value a line and a list of numbers on one, so that a reviewer reads git's diff."""
+    return (_lines(record, "") + "\n").encode()
+
+
+def _lines(value: Any, indent: str) -> str:
+    deeper = indent + " "
+    if isinstance(value, dict) and value:
+        rows = [f"{deeper}{json.dumps(k, ensure_ascii=False)}: {_lines(v, deeper)}" for k, v in value.items()]
+        return "{\n" + ",\n".join(rows) + f"\n{indent}}}"
+    if isinstance(value, list) and any(isinstance(v, list) for v in value):
+        return "[\n" + ",\n".join(deeper + _lines(v, deeper) for v in value) + f"\n{indent}]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def read_golden(path: Path) -> Record:
+    """The record of a golden file. Raises ValueError where it is absent, damaged or of another schema."""
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise ValueError("it is larger than a golden file can be")
+        record = json.loads(path.read_bytes())
+        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
+            raise ValueError(f"its schema is not {SCHEMA}")
+        missing = [k for k in ("design", "revision", "parts", "scenes", "elements") if k not in record]
+        if missing:
+            raise ValueError(f"it has no {', '.join(missing)}")
+        for part in record["parts"].values():
+            for rows in part["contours"]:
+                contour_of(rows)
+    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise ValueError(f"{path} cannot be used: {error}") from None
+    return record
+
+
+def check_golden(design: Design, path: Path) -> list[Finding]:
+    """Findings on a design against its golden file.
+
+    Geometry that the golden file's revision does not have fails; under a new revision, and where there is
+    no golden file yet, what `make golden` would take up is flagged.
+    """
+    if not path.exists():
+        return [_finding("flag", design, f"there is no {path.name} in exports/golden: `make golden` writes it")]
+    try:
+        old = read_golden(path)
+    except ValueError as error:
+        return [_finding("fail", design, str(error))]
+    return judge(old, golden_record(design))
+
+
+def judge(old: Record, new: Record) -> list[Finding]:
+    """What the differences between golden file and design mean."""
+    changes = [c for c in differences(old, new) if c.path[0] != "revision"]
+    same_revision = old["revision"] == new["revision"]
+    geometric = [c for c in changes if not from_models(c)]
+    if not changes and same_revision:
+        return []
+    name, letter = new["design"], new["revision"]
+    if not same_revision:
+        text = f"revision {old['revision']} -> {letter} with {len(changes)} differences: `make golden` takes it up"
+        head = Finding("golden", "flag", name, (), len(changes), 0, text)
+    elif geometric:
+        text = (
+            f"revision {letter} has other geometry than its golden file, {len(geometric)} differences: "
+            "give the design a new revision letter"
+        )
+        head = Finding("golden", "fail", name, (), len(geometric), 0, text)
+    else:
+        text = f"the geometry is the same, but the models give {len(changes)} other figures: `make golden` takes them up"
+        head = Finding("golden", "fail", name, (), len(changes), 0, text)
+    return [head, *(_about(head.severity, c) for c in changes)]
+
+
+def from_models(change: Change) -> bool:
+    """Whether the figure comes from the mechanics and not from the geometry."""
+    return change.path[0] == "elements" and change.path[-1] in ("stiffness_n_per_mm", "yield_force_n")
+
+
+def _about(severity: str, change: Change) -> Finding:
+    number = lambda v: float(v) if isinstance(v, int | float) else 0.0  # noqa: E731
+    about = change.path[1] if len(change.path) > 1 else change.path[0]
+    return Finding("golden", severity, about, (), number(change.new), number(change.old), str(change))
+
+
+def _finding(severity: str, design: Design, message: str) -> Finding:
+    return Finding("golden", severity, design.name, (), 0, 0, message)
+
+
+def changes_against(path: Path, design: Design) -> list[Change] | None:
+    """What writing the golden file would change, the revision included; None where there is no file yet.
+
+    Raises CheckFailure where the file there cannot be read.
+    """
+    if not path.exists():
+        return None
+    try:
+        old = read_golden(path)
+    except ValueError as error:
+        raise CheckFailure(f"{error}; remove it or take it back from git") from None
+    return differences(old, golden_record(design))
+
+
+def accept(design: Design, path: Path, failures: Sequence[Finding]) -> None:
+    """Write the golden file where anything changed.
+
+    Raises CheckFailure, with nothing written, where a check failed or where the golden file's own revision
+    has other geometry; InputError where the file cannot be written.
+    """
+    left = f"{path.name} is left as it was"
+    if failures:
+        raise CheckFailure(f"{design.name}: {len(failures)} of the checks failed; {left}")
+    changes = changes_against(path, design)
+    if changes and not any(c.path == ("revision",) for c in changes) and not all(map(from_models, changes)):
+        letter = design.design.revision
+        raise CheckFailure(
+            f"{design.name}: revision {letter} has other geometry than its golden file; "
+            f"give the design a new revision letter; {left}"
+        )
+    if changes != []:
+        _replace(path, golden_bytes(golden_record(design)))
+
+
+def _replace(path: Path, data: bytes) -> None:
+    """All or nothing: written beside the file, then moved over it."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.chmod(stream.name, 0o644)
+        os.replace(stream.name, path)
+    except OSError as error:
+        raise InputError(str(path), f"cannot be written: {error.strerror}") from None

@@ -1,0 +1,71 @@
+"""Reports for machines read back with other readers, and the command over several designs."""
+
+from __future__ import annotations
+
+import json
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import pytest
+
+from tactcad.checks.finding import Finding
+from tactcad.checks.report import Report, failure_table, json_bytes, junit_bytes
+from tactcad.cli.main import main
+
+
+def report() -> Report:
+    made = Report("d", "A")
+    part, scene = SimpleNamespace(part_no="d-plate"), SimpleNamespace(name="array")
+    bad = Finding("web", "fail", "d-plate", (1.0, 2.0), 0.1, 0.5, 'web of 0.1 mm < 0.5 mm & "thin" <here>')
+    worse = Finding("overlap", "fail", "S1", (), 3.0, 0.0, "S1 and S2 overlap")
+    note = Finding("hinge", "flag", "d-plate", (), 0.1, 0.5, "quote it")
+    made.run("wire-cut", lambda p: [bad, note], part)
+    made.run("wire-cut", lambda p: [], SimpleNamespace(part_no="d-spacer"))
+    made.run("interference", lambda s: [worse], scene)
+    return made
+
+
+def test_junit_has_a_case_for_every_check_and_every_failure():
+    root = ElementTree.fromstring(junit_bytes([report(), Report("e", "A")]))
+    suite, empty = root.findall("testsuite")
+    assert (suite.get("tests"), suite.get("failures"), empty.get("tests")) == ("3", "2", "0")
+    cases = {(c.get("classname"), c.get("name")): c for c in suite}
+    assert set(cases) == {("d.wire-cut", "d-plate"), ("d.wire-cut", "d-spacer"), ("d.interference", "array")}
+    bad = cases["d.wire-cut", "d-plate"]
+    assert bad.find("failure").get("message") == 'web of 0.1 mm < 0.5 mm & "thin" <here>'
+    assert "quote it" in bad.find("system-out").text
+    assert cases["d.wire-cut", "d-spacer"].find("failure") is None
+
+
+def test_json_and_table_name_every_failure():
+    record = json.loads(json_bytes([report(), Report("e", "A")]))
+    assert record["passed"] is False
+    first, second = record["designs"]
+    assert (first["passed"], second["passed"]) == (False, True)
+    assert first["runs"] == {"wire-cut": 2, "interference": 1}
+    head, _, *rows = failure_table([report()])
+    assert head.split()[:3] == ["design", "part", "check"]
+    assert [row.split()[:3] for row in rows] == [["d", "d-plate", "web"], ["d", "S1", "overlap"]]
+    assert failure_table([Report("e", "A")]) == []
+
+
+@pytest.mark.cad
+def test_all_designs_are_checked_though_one_is_refused(tmp_path, capsys):
+    refused = tmp_path / "refused.toml"
+    refused.write_text("[design]\nname = 1\n")
+    folder = tmp_path / "report"
+    status = main(["check", str(refused), "soft-tissue", "--report", str(folder)])
+    out = capsys.readouterr().out
+    assert status == 1
+    assert "design.name" in out
+    first, second = json.loads((folder / "check.json").read_bytes())["designs"]
+    assert not first["passed"] and second["passed"] and second["runs"]["interference"] == 1
+    suites = ElementTree.parse(folder / "junit.xml").getroot().findall("testsuite")
+    assert [s.get("failures") for s in suites] == ["1", "0"]
+
+
+def test_one_design_alone_that_is_refused_is_bad_input(tmp_path, capsys):
+    refused = tmp_path / "refused.toml"
+    refused.write_text("[design]\nname = 1\n")
+    assert main(["check", str(refused)]) == 2
+    assert "design.name" in capsys.readouterr().err
