@@ -76,7 +76,7 @@ def test_json(thicker, capsys):
 
 def test_a_small_value_of_the_design_counts_in_every_digit(tmp_path, capsys):
     text = SHIPPED.read_text()
-    for name, value in (("a", "-17e-6"), ("b", "-18e-6")):
+    for name, value in (("a", "-17e-6"), ("b", "-17.5e-6")):
         lines = re.sub(r"(?m)^resistance_per_kelvin.*\n", "", text)
         (tmp_path / f"{name}.toml").write_text(lines.replace("[gauge]\n", f"[gauge]\nresistance_per_kelvin = {value}\n"))
     out = diff(capsys, tmp_path / "a.toml", tmp_path / "b.toml")
