@@ -1,11 +1,36 @@
-"""What all tests share: nobody's cache but their own. Its being here also puts tests/ on the import path."""
+"""What all tests share: nobody's cache but their own, and the shipped array's shapes, built once.
+
+Its being here also puts tests/ on the import path, for variants.py and sound_designs.py.
+"""
 
 from __future__ import annotations
 
 import pytest
+from variants import variant
 
 
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path_factory, monkeypatch):
     """No test reads what another run, or the user's own exports, left in the cache."""
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+
+
+@pytest.fixture(scope="session")
+def macro():
+    """The paper's array as shipped."""
+    return variant()
+
+
+@pytest.fixture(scope="session")
+def macro_scene(macro):
+    from tactcad.scenes import make_scene
+
+    return make_scene(macro, "array")
+
+
+@pytest.fixture(scope="session")
+def macro_shapes(macro_scene):
+    """Part number -> the kernel's shape in the part's own frame."""
+    from tactcad.solids.build import build
+
+    return {part.part_no: build(part).wrapped for part in macro_scene.parts}

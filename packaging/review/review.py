@@ -116,7 +116,7 @@ def assembly_faults(path: str, found: dict, bill: list[dict], parts: dict[str, d
 def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
     """Every part stands in FreeCAD's tree under its part number, as often as the bill says.
 
-    FreeCAD makes labels unique by counting up their last digits: M3x30-A2-70, M3x30-A2-071, ...
+    FreeCAD makes labels unique by a running number: macro-array-spacer, macro-array-spacer001, ...
     """
     stem = re.compile(r"\d+$")
     seen = Counter(stem.sub("", label) for label in labels)
@@ -131,12 +131,10 @@ def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
 
 
 def cut_faults(path: str, found: dict, part: dict) -> list[str]:
-    thickness = part["box_mm"][1][2] - part["box_mm"][0][2]
-    section = part["volume_mm3"] / thickness
     size = [part["box_mm"][1][i] - part["box_mm"][0][i] for i in (0, 1)]
     wrong = [] if found["closed"] else [f"{path}: an open contour"]
     for name, got, meant in (
-        ("area", found["area"], section), ("cut length", found["length"], part["cut_length_mm"]),
+        ("area", found["area"], part["section_area_mm2"]), ("cut length", found["length"], part["cut_length_mm"]),
         ("width", found["size"][0], size[0]), ("height", found["size"][1], size[1]),
     ):
         if not isclose(got, meant, rel_tol=AGREES):

@@ -21,9 +21,15 @@ def test_circle_gives_the_segment_of_known_area(axis, at):
     assert below.area + above.area == pytest.approx(circle((0, 0), 2).area, rel=1e-12)
 
 
-@pytest.mark.parametrize("axis,at,below,above", [
-    ("y", 2.0, [7.0], [2.0, 2.0]), ("y", 1.0, [5.0], [3.0, 3.0]), ("x", 1.0, [4.0], [7.0]), ("x", 2.5, [5.5], [5.5]),
-])
+@pytest.mark.parametrize(
+    "axis,at,below,above",
+    [
+        ("y", 2.0, [7.0], [2.0, 2.0]),
+        ("y", 1.0, [5.0], [3.0, 3.0]),
+        ("x", 1.0, [4.0], [7.0]),
+        ("x", 2.5, [5.5], [5.5]),
+    ],
+)
 @pytest.mark.parametrize("turned", [False, True])
 def test_u_shape_falls_into_pieces(axis, at, below, above, turned):
     contour = U_SHAPE.reversed() if turned else U_SHAPE

@@ -16,7 +16,8 @@ from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 
 SECTIONS = {
-    "two": REFERENCE, "one": REFERENCE.with_(two_sided=False),
+    "two": REFERENCE,
+    "one": REFERENCE.with_(two_sided=False),
     "two, full round": REFERENCE.with_(fillet_radius=0.375),
     "one, full round": REFERENCE.with_(fillet_radius=0.375, two_sided=False),
     "two, taller arm": REFERENCE.with_(arm_height=5.0),
@@ -31,11 +32,14 @@ def layout():
 def moved(contour, dx, mirror=False):
     sign = -1.0 if mirror else 1.0
     at = lambda p: (sign * p[0] + dx, p[1])  # noqa: E731
-    return Contour(tuple(
-        Line(at(s.start), at(s.end), s.name) if isinstance(s, Line)
-        else Arc(at(s.start), at(s.end), at(s.centre), s.ccw != mirror, s.name)
-        for s in contour
-    ))
+    return Contour(
+        tuple(
+            Line(at(s.start), at(s.end), s.name)
+            if isinstance(s, Line)
+            else Arc(at(s.start), at(s.end), at(s.centre), s.ccw != mirror, s.name)
+            for s in contour
+        )
+    )
 
 
 @pytest.mark.parametrize("name", SECTIONS)
@@ -48,14 +52,18 @@ def test_reference_contour_is_read_back(name, mirror):
     assert outline(shape).area == pytest.approx(contour.area, rel=1e-12)
     assert shape.two_sided == bool(s.two_sided)
     K = solve_plane(shape, 69000.0, 0.33, 3.0, density=1).stiffness
-    assert K == pytest.approx(solve_plane(reference_shape(s), 69000.0, 0.33, 3.0, density=1).stiffness, rel=1e-7)
+    assert K == pytest.approx(
+        solve_plane(reference_shape(s), 69000.0, 0.33, 3.0, density=1).stiffness, rel=1e-7
+    )
 
 
 def test_element_of_the_array_cut_at_clamp_and_load_line_is_the_model(layout):
     section = hinge_section(layout, layout.elements)
     for i in (0, 1, 3):  # arms 4, 7, 8
         place = layout.elements[i]
-        shape = cut_element(element(layout, place).body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
+        shape = cut_element(
+            element(layout, place).body.outer, layout.clamp_edge, place.hinge_x - place.load_arm
+        )
         K = solve_plane(shape, 69000.0, 0.33, 3.0, density=4).stiffness
         assert K == pytest.approx(float(ladder.stiffness(section.rows(i), "plane")), rel=3.5e-3)
 
@@ -66,16 +74,27 @@ def test_changing_the_contour_alone_changes_the_stiffness(layout):
     contour = element(layout, place).body.outer
     floor = place.hinge.t
     lower = lambda p: (p[0], p[1] - 0.01)  # noqa: E731
-    fillet_ends = {p for s in contour if s.name in ("slot_body_fillet", "slot_arm_fillet") for p in (s.start, s.end)}
+    fillet_ends = {
+        p for s in contour if s.name in ("slot_body_fillet", "slot_arm_fillet") for p in (s.start, s.end)
+    }
 
     def changed(p):
         return lower(p) if p in fillet_ends else p
 
-    cut = Contour(tuple(
-        Line(changed(s.start), changed(s.end), s.name) if isinstance(s, Line)
-        else Arc(changed(s.start), changed(s.end), lower(s.centre) if s.start in fillet_ends else s.centre, s.ccw, s.name)
-        for s in contour
-    ))
+    cut = Contour(
+        tuple(
+            Line(changed(s.start), changed(s.end), s.name)
+            if isinstance(s, Line)
+            else Arc(
+                changed(s.start),
+                changed(s.end),
+                lower(s.centre) if s.start in fillet_ends else s.centre,
+                s.ccw,
+                s.name,
+            )
+            for s in contour
+        )
+    )
     load_x = place.hinge_x - place.load_arm
     before, after = (cut_element(c, layout.clamp_edge, load_x) for c in (contour, cut))
     assert (before.thickness, after.thickness) == (pytest.approx(floor), pytest.approx(floor - 0.01))
@@ -88,14 +107,32 @@ def test_moving_clamp_edge_or_load_line_changes_the_stiffness(layout):
     place = layout.elements[0]
     contour = element(layout, place).body.outer
     load_x = place.hinge_x - place.load_arm
-    K = lambda clamp, at: solve_plane(cut_element(contour, clamp, at), 69000.0, 0.33, 3.0, density=1).stiffness  # noqa: E731
+
+    def K(clamp, at):
+        return solve_plane(cut_element(contour, clamp, at), 69000.0, 0.33, 3.0, density=1).stiffness
+
     base = K(layout.clamp_edge, load_x)
     assert K(layout.clamp_edge - 2.0, load_x) > base  # less body to bend
     assert K(layout.clamp_edge, load_x + 0.3) > 1.1 * base  # shorter arm
 
 
 def test_contour_with_a_lump_on_the_arm_is_refused():
-    contour = chain([(-4, 0), (6, 0), (6, 2), (5, 2), (5, 2.5), (4, 2.5), (4, 2), (0.4, 2), (0.4, 0.5), (-0.4, 0.5), (-0.4, 4), (-4, 4)])
+    contour = chain(
+        [
+            (-4, 0),
+            (6, 0),
+            (6, 2),
+            (5, 2),
+            (5, 2.5),
+            (4, 2.5),
+            (4, 2),
+            (0.4, 2),
+            (0.4, 0.5),
+            (-0.4, 0.5),
+            (-0.4, 4),
+            (-4, 4),
+        ]
+    )
     with pytest.raises(CheckFailure, match="no slot with rounded corners"):
         read(contour, 6.0)
 
@@ -107,11 +144,11 @@ def test_notched_arm_is_refused_not_smoothed_over():
     top = pieces[at]
     bump = [(5.0, 2.0), (5.0, 2.4), (4.0, 2.4), (4.0, 2.0)]
     points = [top.start, *bump, top.end]
-    contour = Contour((*pieces[:at], *(Line(a, b) for a, b in zip(points, points[1:])), *pieces[at + 1:]))
+    contour = Contour((*pieces[:at], *(Line(a, b) for a, b in zip(points, points[1:])), *pieces[at + 1 :]))
     with pytest.raises(CheckFailure, match="stands out of the arm"):
         read(contour, 6.0)
     hollow = [(5.0, 2.0), (5.0, 1.6), (4.0, 1.6), (4.0, 2.0)]
     points = [top.start, *hollow, top.end]
-    contour = Contour((*pieces[:at], *(Line(a, b) for a, b in zip(points, points[1:])), *pieces[at + 1:]))
+    contour = Contour((*pieces[:at], *(Line(a, b) for a, b in zip(points, points[1:])), *pieces[at + 1 :]))
     with pytest.raises(CheckFailure, match="not a plain rectangle"):
         read(contour, 6.0)

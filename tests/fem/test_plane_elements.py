@@ -81,7 +81,15 @@ def test_plane_strain_is_plane_stress_of_another_material():
 def test_stiffness_is_proportional_to_modulus_and_width_and_free_of_size():
     base = solve_plane(ONE, E, NU, B, density=1).stiffness
     assert solve_plane(ONE, 2 * E, NU, 5 * B, density=1).stiffness == pytest.approx(10 * base, rel=1e-9)
-    lengths = ("hinge_thickness", "hinge_length", "fillet_radius", "load_arm", "arm_height", "body_height", "body_length")
+    lengths = (
+        "hinge_thickness",
+        "hinge_length",
+        "fillet_radius",
+        "load_arm",
+        "arm_height",
+        "body_height",
+        "body_length",
+    )
     s = REFERENCE.with_(two_sided=False)
     small = reference_shape(s.with_(**{n: getattr(s, n) / 25 for n in lengths}))
     assert solve_plane(small, E, NU, B, density=1).stiffness == pytest.approx(base, rel=1e-9)
@@ -115,8 +123,13 @@ def test_no_mesh_is_torn_whatever_the_designs_decimals():
         rounded = lambda low, high: round(round(rng.uniform(low, high) / step) * step, 9)  # noqa: E731, B023
         radius = max(rounded(0.1, 0.3), step)
         s = REFERENCE.with_(
-            fillet_radius=radius, hinge_length=2 * radius + rounded(0.0, 1.0), hinge_thickness=max(rounded(0.15, 0.4), step),
-            load_arm=rounded(3, 7), arm_height=rounded(1.5, 3), body_height=rounded(3, 8), body_length=rounded(2, 6),
+            fillet_radius=radius,
+            hinge_length=2 * radius + rounded(0.0, 1.0),
+            hinge_thickness=max(rounded(0.15, 0.4), step),
+            load_arm=rounded(3, 7),
+            arm_height=rounded(1.5, 3),
+            body_height=rounded(3, 8),
+            body_length=rounded(2, 6),
             two_sided=bool(i % 2),
         )
         quad_mesh(plane_mesh(reference_shape(s), 3))

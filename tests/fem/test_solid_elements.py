@@ -32,7 +32,9 @@ def test_refinement_comes_nearer_by_more_than_second_order():
 
 @pytest.mark.parametrize("shape", [TWO, ONE], ids=["two", "one"])
 def test_narrow_strip_is_in_plane_stress_and_a_wide_plate_in_plane_strain(shape):
-    stress, strain = (solve_plane(shape, E, NU, 1.0, density=1, plane_strain=p).stiffness for p in (False, True))
+    stress, strain = (
+        solve_plane(shape, E, NU, 1.0, density=1, plane_strain=p).stiffness for p in (False, True)
+    )
     # on one mesh the two problems differ by what a quadratic u_y can follow of the plane's strain
     finer = solve_plane(shape, E, NU, 1.0, density=3).stiffness
     narrow = solve_solid(shape, E, NU, 0.01, density=3, across=1).stiffness / 0.01

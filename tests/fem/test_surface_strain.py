@@ -17,7 +17,9 @@ E, NU, B = 69000.0, 0.33, 3.0
 
 
 def solved(s, density=6):
-    return solve_plane(reference_shape(s), float(s.youngs_modulus), float(s.poisson), float(s.width), density=density)
+    return solve_plane(
+        reference_shape(s), float(s.youngs_modulus), float(s.poisson), float(s.width), density=density
+    )
 
 
 @pytest.mark.parametrize("two", [True, False], ids=["two", "one"])
@@ -64,7 +66,10 @@ def test_half_millimetre_grid_on_the_reference_design(two, expected):
 
 
 def test_strain_per_newton_falls_in_three_dimensions_as_the_stiffness_grows():
-    plane, solid = solved(REFERENCE, 2), solve_solid(reference_shape(REFERENCE), E, NU, B, density=2, across=1)
+    plane, solid = (
+        solved(REFERENCE, 2),
+        solve_solid(reference_shape(REFERENCE), E, NU, B, density=2, across=1),
+    )
     ratio = face_strain(solid, "flat").mean(0.5) / face_strain(plane, "flat").mean(0.5)
     assert 0.900 < ratio < 0.915
     assert ratio * solid.stiffness / plane.stiffness == pytest.approx(1.0, abs=5e-3)
@@ -76,12 +81,12 @@ def test_closed_forms_of_strain_meet_the_elements_on_fresh_designs():
         one = s.rows(i)
         solution = solved(one)
         nominal = float(strain.nominal(one, 1.0))
-        assert float(strain.fillet_factor(one)) == pytest.approx(face_strain(solution, "slot").peak / nominal, rel=0.02)
+        assert float(strain.fillet_factor(one)) == pytest.approx(
+            face_strain(solution, "slot").peak / nominal, rel=0.02
+        )
         flat = face_strain(solution, "flat")
         if not bool(one.two_sided):
             assert float(strain.face_factor(one)) == pytest.approx(flat.peak / nominal, rel=0.02)
         grid = 0.5 * float(one.hinge_length)
         if not (bool(one.two_sided) and grid > float(one.straight_length) + float(one.fillet_radius)):
             assert float(strain.grid_factor(one, grid)) == pytest.approx(flat.mean(grid) / nominal, rel=0.04)
-
-

@@ -29,7 +29,11 @@ def designs():
     yield "reference", (0.25, 0.75, 0.15, 6.0, 2.0, 4.0, 4.0, 0.33, 69000.0, 3.0), True
     yield "full round", (0.25, 0.5, 0.25, 6.0, 2.0, 4.0, 4.0, 0.33, 69000.0, 3.0), False
     yield "slot of nanometres", (0.25, 1e-6, 2.5e-7, 6.0, 2.0, 4.0, 4.0, 0.33, 69000.0, 3.0), True
-    yield "slot nearly as long as twice the arm", (0.02, 11.999, 0.01, 6.0, 2.0, 4.0, 4.0, 0.33, 69000.0, 3.0), True
+    yield (
+        "slot nearly as long as twice the arm",
+        (0.02, 11.999, 0.01, 6.0, 2.0, 4.0, 4.0, 0.33, 69000.0, 3.0),
+        True,
+    )
     yield "jaw size", (0.01, 0.03, 0.006, 0.24, 0.08, 0.16, 0.16, 0.33, 69000.0, 0.12), False
     yield "knife-thin notch", (1e-5, 2.0, 1.0, 6.0, 3.0, 4.0, 4.0, 0.33, 69000.0, 3.0), False
     yield "two millimetres", (2.0, 6.0, 0.5, 100.0, 20.0, 40.0, 0.001, 0.2, 210000.0, 8.0), True
@@ -40,7 +44,18 @@ def designs():
         l = L * 10 ** rng.uniform(-4, 0.2)  # noqa: E741
         r = l * rng.uniform(0.01, 0.5)
         h, Hb = (t + 2 * r) * 10 ** rng.uniform(0.2, 1.5), (t + 2 * r) * 10 ** rng.uniform(0.2, 1.5)
-        row = (t, l, r, L, h, Hb, 10 ** rng.uniform(-2, 1.5), rng.uniform(0.1, 0.45), 10 ** rng.uniform(0, 6), b)
+        row = (
+            t,
+            l,
+            r,
+            L,
+            h,
+            Hb,
+            10 ** rng.uniform(-2, 1.5),
+            rng.uniform(0.1, 0.45),
+            10 ** rng.uniform(0, 6),
+            b,
+        )
         yield f"random {i}", row, bool(i % 2)
 
 
@@ -97,19 +112,22 @@ def rooted(rung, values, two, G, lc, ends, leaf):
         own = mp.sqrt(A * rho + k["p0"] - k["p1"] / (1 + k["p2"] * rho)) - k["p3"] / eta**2
         return own - k["p4"] * rho / eta**3 - k["p5"] / eta**3 - k["p6"] * mp.exp(-k["p7"] * l / t)
 
-    ga, gb = g(h), g(Hb)
+    ga, gb = g(h), g(Hb) - k["p8"] * (t / Lb) ** 3
     C = ends + leaf(L - lc / 2, lc)
     C += 12 / (E * b * t**2) * (ga * (L - lc / 2 - ga * t / 2) ** 2 + gb * (L + lc / 2 + gb * t / 2) ** 2)
     C += (k["s"] * (ga + gb) - k["s0"]) / (mp.mpf(5) / 6 * G * b)
+    C += 12 * k["e"] * (L - l / 2) / (E * b * h)
     C -= 12 * k["c"] * nu**2 * (L + l / 2) ** 2 / (E * b * Hb**2)
     if rung == "plane":
         return C
     w = {n: mp.mpf(v) for n, v in ladder_data()["width"]["two" if two else "one"].items()}
     x, y = l / b, t / b
-    psi = 1 + w["c1"] * x + w["c2"] * y + w["c3"] * x**2 + w["c4"] * x * y + w["c5"] * y**2
-    psi += w["c6"] * r / b + w["c7"] * y * r / l + w["c8"] * nu * x
-    bent = 4 * ((L - l / 2) / h) ** 3 / (E * b) + 2 * ((L + l / 2 + Lb) ** 3 - (L + l / 2) ** 3) / (E * b * Hb**3)
-    return C / (1 + nu**2 / (1 - nu**2) * psi * (1 - bent / C))
+    leaf = 1 + w["c1"] * x + w["c2"] * y + w["c3"] * x**2 + w["c4"] * x * y + w["c5"] * y**2 + w["c6"] * r / b
+    leaf += w["c7"] * y * r / l + w["c8"] * nu * x + w["c9"] * y * t / l + w["c10"] * t / Hb
+    arm = 4 * ((L - l / 2) / h) ** 3 / (E * b) / C
+    body = 4 * ((L + l / 2 + Lb) ** 3 - (L + l / 2) ** 3) / (E * b * Hb**3) / C
+    psi = (1 - arm - body) * leaf + arm / (1 + w["ca"] * h / b) + body / (1 + w["cb"] * Hb / b)
+    return C / (1 + nu**2 / (1 - nu**2) * psi)
 
 
 def condition(f, values):
@@ -173,12 +191,21 @@ def test_limit_poisson_zero_needs_no_width():
 @pytest.mark.parametrize("two", [True, False])
 def test_stiffness_scales_with_size_and_modulus(rung, two):
     s = REFERENCE.with_(two_sided=two)
-    lengths = ("hinge_thickness", "hinge_length", "fillet_radius", "load_arm", "arm_height", "body_height",
-               "body_length", "width")
+    lengths = (
+        "hinge_thickness",
+        "hinge_length",
+        "fillet_radius",
+        "load_arm",
+        "arm_height",
+        "body_height",
+        "body_length",
+        "width",
+    )
     small = s.with_(**{name: getattr(s, name) / 25 for name in lengths})
     np.testing.assert_allclose(ladder.stiffness(small, rung), ladder.stiffness(s, rung) / 25, rtol=1e-13)
-    np.testing.assert_allclose(ladder.stiffness(s.with_(youngs_modulus=138000.0), rung),
-                               2 * ladder.stiffness(s, rung), rtol=1e-14)
+    np.testing.assert_allclose(
+        ladder.stiffness(s.with_(youngs_modulus=138000.0), rung), 2 * ladder.stiffness(s, rung), rtol=1e-14
+    )
 
 
 def test_blocks_of_a_large_array_give_what_single_designs_give():

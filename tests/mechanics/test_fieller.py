@@ -59,5 +59,8 @@ def test_small_noise_gives_the_linear_interval():
 
 def test_doubtful_calibration_widens_the_interval():
     args = (80.0, 10.0, 0.01, 0.04, 1e-10, 1e-10)
-    plain, doubtful = object_stiffness_interval(*args), object_stiffness_interval(*args, var_K_r=1.0, var_K_m=0.01)
+    plain, doubtful = (
+        object_stiffness_interval(*args),
+        object_stiffness_interval(*args, var_K_r=1.0, var_K_m=0.01),
+    )
     assert doubtful.upper - doubtful.lower > 2 * (plain.upper - plain.lower)

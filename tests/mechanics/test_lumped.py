@@ -100,7 +100,9 @@ def test_differences_carry_every_object_stiffness_to_the_end(pair, x):
     assert abs(mp.mpf(float(deflection)) / true_deflection - 1) <= 8 * EPS
     assert abs(mp.mpf(float(force)) / true_force - 1) <= 8 * EPS
     assert float(lumped.object_stiffness_from_differences(force, deflection)) == pytest.approx(x, rel=4 * EPS)
-    assert float(lumped.object_compliance_from_differences(force, deflection)) == pytest.approx(1 / x, rel=4 * EPS)
+    assert float(lumped.object_compliance_from_differences(force, deflection)) == pytest.approx(
+        1 / x, rel=4 * EPS
+    )
 
 
 def test_limit_k_obj_to_zero_gives_the_ratio_of_the_stiffnesses():
@@ -134,7 +136,7 @@ def test_conditions_are_the_logarithmic_derivatives_and_those_in_k_add_up_to_one
     solve = lambda r, m, q: (r - q * m) / (q - 1)  # noqa: E731
     for i, name in enumerate(("condition_in_reference", "condition_in_measuring", "condition_in_ratio")):
         values = [K_r, K_m, R]
-        slope = mp.diff(lambda v: solve(*values[:i], v, *values[i + 1:]), values[i]) * values[i] / x  # noqa: B023
+        slope = mp.diff(lambda v: solve(*values[:i], v, *values[i + 1 :]), values[i]) * values[i] / x  # noqa: B023
         assert float(getattr(lumped, name)(80.0, 12.0, 5.0)) == pytest.approx(float(slope), rel=1e-12)
     total = lumped.condition_in_reference(80.0, 12.0, 5.0) + lumped.condition_in_measuring(80.0, 12.0, 5.0)
     assert total == pytest.approx(1.0, rel=1e-14)

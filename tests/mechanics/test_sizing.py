@@ -22,7 +22,9 @@ def test_found_hinge_has_the_stiffness(rung, parameter, two):
 
 
 def test_known_design_is_found_again():
-    assert size(REFERENCE, float(ladder.stiffness(REFERENCE)), "hinge_thickness") == pytest.approx(0.25, rel=1e-12)
+    assert size(REFERENCE, float(ladder.stiffness(REFERENCE)), "hinge_thickness") == pytest.approx(
+        0.25, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("wanted", [1e-9, 1e9])

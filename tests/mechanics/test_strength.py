@@ -11,8 +11,13 @@ from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import REFERENCE
 
 ARRAY = REFERENCE.with_(
-    two_sided=False, hinge_length=0.88, fillet_radius=0.30, arm_height=2.6, body_height=3.0,
-    load_arm=[3.0, 5.0, 7.0], body_length=[5.96, 3.96, 1.96],
+    two_sided=False,
+    hinge_length=0.88,
+    fillet_radius=0.30,
+    arm_height=2.6,
+    body_height=3.0,
+    load_arm=[3.0, 5.0, 7.0],
+    body_length=[5.96, 3.96, 1.96],
 )
 
 
@@ -25,15 +30,21 @@ def test_yield_force_puts_the_fillet_at_the_yield_strength():
     for sheet in ALLOYS.values():
         force = strength.yield_force(ARRAY, sheet)
         np.testing.assert_allclose(strain.peak_stress(ARRAY, force), sheet.yield_strength, rtol=1e-12)
-        np.testing.assert_allclose(strength.deflection_at_yield(ARRAY, sheet) * ladder.stiffness(ARRAY), force, rtol=1e-12)
+        np.testing.assert_allclose(
+            strength.deflection_at_yield(ARRAY, sheet) * ladder.stiffness(ARRAY), force, rtol=1e-12
+        )
 
 
 def test_fillet_yields_before_the_flat_face():
-    assert np.all(strength.yield_force(ARRAY, ALLOYS["7075-T6"]) < strength.face_yield_force(ARRAY, ALLOYS["7075-T6"]))
+    assert np.all(
+        strength.yield_force(ARRAY, ALLOYS["7075-T6"]) < strength.face_yield_force(ARRAY, ALLOYS["7075-T6"])
+    )
 
 
-@pytest.mark.parametrize("name,nominal", [("6061-T6", (2.86, 1.72, 1.23)), ("2024-T3", (3.59, 2.16, 1.54)),
-                                          ("7075-T6", (5.26, 3.16, 2.25))])
+@pytest.mark.parametrize(
+    "name,nominal",
+    [("6061-T6", (2.86, 1.72, 1.23)), ("2024-T3", (3.59, 2.16, 1.54)), ("7075-T6", (5.26, 3.16, 2.25))],
+)
 def test_nominal_yield_forces_by_hand(name, nominal):
     """sigma b t^2/(6 L) at L = 3, 5, 7."""
     sheet = alloy(name)
@@ -77,7 +88,9 @@ def test_papers_strains_stand_in_the_ratio_of_the_load_arms():
     nominal = [float(strain.nominal(REFERENCE.with_(load_arm=a - 1.0), 2.0)) for a in (4.0, 8.0)]
     assert nominal[1] / nominal[0] == pytest.approx(7 / 3)
     assert 0.006316 / 0.002711 == pytest.approx(7 / 3, rel=2e-3)
-    assert [printed / own for printed, own in zip((0.002711, 0.006316), nominal)] == pytest.approx([0.972, 0.972], abs=0.03)
+    assert [printed / own for printed, own in zip((0.002711, 0.006316), nominal)] == pytest.approx(
+        [0.972, 0.972], abs=0.03
+    )
 
 
 def test_unknown_alloy_is_refused_with_the_legal_ones():

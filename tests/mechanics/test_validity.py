@@ -73,8 +73,16 @@ def test_whole_promised_box_is_inside_the_range():
     r = np.minimum(r, l / 2)
     u = lambda low, high: rng.uniform(low, high, n)  # noqa: E731
     s = REFERENCE.with_(
-        hinge_thickness=t, hinge_length=l, fillet_radius=r, load_arm=u(3, 7), arm_height=u(1.5, 3),
-        body_height=u(3, 8), body_length=u(2, 6), poisson=u(0.2, 0.4), width=u(1.5, 8), two_sided=rng.random(n) < 0.5,
+        hinge_thickness=t,
+        hinge_length=l,
+        fillet_radius=r,
+        load_arm=u(3, 7),
+        arm_height=u(1.5, 3),
+        body_height=u(3, 8),
+        body_length=u(2, 6),
+        poisson=u(0.2, 0.4),
+        width=u(1.5, 8),
+        two_sided=rng.random(n) < 0.5,
     )
     assert validity.broken_rules(s, "solid") == {}
 

@@ -37,11 +37,20 @@ COLUMNS = (  # heading, unit, field, format
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("design", nargs="?", help="design file, or name in hardware/ (default macro-array)")
-    parser.add_argument("--model", choices=RUNGS, default=DEFAULT_RUNG, metavar="RUNG",
-                        help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another")
-    parser.add_argument("--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)")
+    parser.add_argument(
+        "--model",
+        choices=RUNGS,
+        default=DEFAULT_RUNG,
+        metavar="RUNG",
+        help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another",
+    )
+    parser.add_argument(
+        "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
+    )
     parser.add_argument("--json", action="store_true", help="write JSON")
-    parser.add_argument("--batch", metavar="IN.csv", help="a table of designs, one a line (see docs/mechanics.md)")
+    parser.add_argument(
+        "--batch", metavar="IN.csv", help="a table of designs, one a line (see docs/mechanics.md)"
+    )
     parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
 
 
@@ -84,8 +93,11 @@ def _batch(args: argparse.Namespace) -> int:
 
 def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     document = {
-        "design": design.name, "revision": design.design.revision, "model": model,
-        "alloy": design.material.alloy, "force_N": rows[0]["force"],
+        "design": design.name,
+        "revision": design.design.revision,
+        "model": model,
+        "alloy": design.material.alloy,
+        "force_N": rows[0]["force"],
         "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
         "elements": rows,
     }
@@ -101,12 +113,14 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
     ]
     plastic = [str(row["number"]) for row in rows if not row["elastic"]]
     if plastic:
-        lines.append(f"invalid: above yield at this force, so strain and stress are not given: no. {', '.join(plastic)}")
+        lines.append(
+            f"invalid: above yield at this force, strain and stress not given: no. {', '.join(plastic)}"
+        )
     if uncut:
         lines.append(
-            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between its spacers, plane stress: "
-            f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model cut at load line "
-            "and clamp edge"
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in plane stress: "
+            f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
+            "cut at load line and clamp edge"
         )
     if model in ("plane", "solid"):
         lines.append(_spread(design, first))
@@ -115,17 +129,26 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
 
 def _shown(row: dict) -> dict:
     scaled = {
-        "deflection_um": ("deflection", 1e3), "gauge_microstrain": ("gauge_strain", 1e6),
-        "peak_microstrain": ("peak_strain", 1e6), "yield_deflection_um": ("yield_deflection", 1e3),
+        "deflection_um": ("deflection", 1e3),
+        "gauge_microstrain": ("gauge_strain", 1e6),
+        "peak_microstrain": ("peak_strain", 1e6),
+        "yield_deflection_um": ("yield_deflection", 1e3),
     }
     return row | {name: None if row[of] is None else row[of] * by for name, (of, by) in scaled.items()}
 
 
 def _table(rows: list[dict]) -> list[str]:
     cells = [[heading for heading, *_ in COLUMNS], [unit for _, unit, *_ in COLUMNS]]
-    cells += [["invalid" if row[f] is None else format(row[f], spec) for *_, f, spec in COLUMNS] for row in rows]
+    cells += [[_cell(row, f, spec) for *_, f, spec in COLUMNS] for row in rows]
     widths = [max(len(line[i]) for line in cells) for i in range(len(COLUMNS))]
     return ["  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells]
+
+
+def _cell(row: dict, field: str, spec: str) -> str:
+    """"invalid" above yield, "-" where the gauge's grid does not fit a two-sided hinge."""
+    if row[field] is not None:
+        return format(row[field], spec)
+    return "-" if row["elastic"] else "invalid"
 
 
 def _spread(design, row: dict) -> str:

@@ -13,25 +13,46 @@ from tactcad.design.messages import InputError
 
 EXAMPLES = """\
   tactcad fit --out fit                      # samples, constants and report, about half an hour on one core
-  tactcad fit --out fit --solids 40 --samples 60 --held-out 20 --held-out-solids 4
+  tactcad fit --out fit --solids 40 --samples 60 --held-out 20 --held-out-solids 5
   tactcad fit --out fit --reuse              # constants again from the samples that lie in fit/
   tactcad fit --out fit --shipped-samples    # the shipped constants again from the shipped samples
 """
 
-SEEDS = {"fitted": 20261121, "held out": 31415}
-LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 4}  # more data than constants
+LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 5}  # more data than constants
 FILES = {"fitted": "ladder-samples.csv", "held out": "ladder-heldout.csv"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for samples and ladder.json")
-    parser.add_argument("--samples", type=int, default=1200, help="designs that are fitted (default 1200)")
-    parser.add_argument("--solids", type=int, default=400, help="of them with solid elements too (default 400)")
-    parser.add_argument("--held-out", type=int, default=300, help="designs kept out of the fit (default 300)")
-    parser.add_argument("--held-out-solids", type=int, default=120, help="of them with solid elements (default 120)")
+    parser.add_argument(
+        "--samples",
+        type=int,
+        default=1200,
+        help="designs that are fitted, and a third more on the box's edges (default 1200)",
+    )
+    parser.add_argument(
+        "--solids",
+        type=int,
+        default=400,
+        help="of them with solid elements too, and a fifth more on the edges (default 400)",
+    )
+    parser.add_argument(
+        "--held-out",
+        type=int,
+        default=300,
+        help="designs kept out of the fit, and a third more (default 300)",
+    )
+    parser.add_argument(
+        "--held-out-solids",
+        type=int,
+        default=120,
+        help="of them with solid elements, and a fifth more (default 120)",
+    )
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--reuse", action="store_true", help="take the samples that lie in DIR")
-    source.add_argument("--shipped-samples", action="store_true", help="take the samples that come with the program")
+    source.add_argument(
+        "--shipped-samples", action="store_true", help="take the samples that come with the program"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -40,8 +61,12 @@ def run(args: argparse.Namespace) -> int:
 
     for option, least in LEAST.items():
         if getattr(args, option) < least:
-            raise InputError(f"--{option.replace('_', '-')}", "too few", value=getattr(args, option),
-                             legal=f"at least {least}")
+            raise InputError(
+                f"--{option.replace('_', '-')}",
+                "too few",
+                value=getattr(args, option),
+                legal=f"at least {least}",
+            )
     out = Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     if args.shipped_samples:
@@ -53,12 +78,15 @@ def run(args: argparse.Namespace) -> int:
         tables = {kind: fit_samples.load(out / name) for kind, name in FILES.items()}
     else:
         tables = _sample(args, out)
-    result = fit(tables["fitted"], tables["held out"], _today(), SEEDS)
+    result = fit(tables["fitted"], tables["held out"], _today())
     (out / "ladder.json").write_text(json.dumps(result, indent=1) + "\n", "utf-8")
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
         rungs = ("plane, against plane elements", "solid, against solid elements")
         worst = {name: errors[name]["max"] for name in rungs}
-        print(f"{side}-sided, held out: " + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items()))
+        print(
+            f"{side}-sided, held out: "
+            + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items())
+        )
     print(f"{out / 'ladder.json'} written")
     return 0
 
@@ -66,14 +94,15 @@ def run(args: argparse.Namespace) -> int:
 def _sample(args: argparse.Namespace, out: Path) -> dict:
     from tactcad.studies import fit_samples
 
-    plan = {
-        "fitted": (fit_samples.draw, args.samples, args.solids),
-        "held out": (fit_samples.draw_box, args.held_out, args.held_out_solids),
-    }
-    for kind, (draw, count, solids) in plan.items():
-        designs = draw(count, SEEDS[kind])
+    plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
+    for kind, (count, solids) in plan.items():
         report = lambda line, kind=kind: print(f"{kind}: {line}", file=sys.stderr, flush=True)  # noqa: E731
-        fit_samples.write(fit_samples.compute(designs, solids, report), out / FILES[kind])
+        inside, edges = fit_samples.designs(kind, count)
+        tables = [
+            fit_samples.compute(inside, solids, report),
+            fit_samples.compute(edges, solids // 5, report),
+        ]
+        fit_samples.write(fit_samples.joined(tables), out / FILES[kind])
     # read back: the fit sees the digits that the files hold
     return {kind: fit_samples.load(out / name) for kind, name in FILES.items()}
 

@@ -16,28 +16,54 @@ EXAMPLES = """\
 """
 
 LENGTHS = {  # option: section parameter
-    "hinge-thickness": "hinge_thickness", "hinge-length": "hinge_length", "fillet-radius": "fillet_radius",
-    "arm-height": "arm_height", "body-height": "body_height", "body-length": "body_length", "width": "width",
+    "hinge-thickness": "hinge_thickness",
+    "hinge-length": "hinge_length",
+    "fillet-radius": "fillet_radius",
+    "arm-height": "arm_height",
+    "body-height": "body_height",
+    "body-length": "body_length",
+    "width": "width",
 }
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--stiffness", type=float, required=True, metavar="K", help="wanted tip stiffness, N/mm")
-    parser.add_argument("--load-arm", type=float, required=True, metavar="L", help="hinge centre to load line, mm")
-    parser.add_argument("--solve", choices=("thickness", "length"), default="thickness",
-                        help="what to find: hinge thickness (default) or slot length")
+    parser.add_argument(
+        "--stiffness", type=float, required=True, metavar="K", help="wanted tip stiffness, N/mm"
+    )
+    parser.add_argument(
+        "--load-arm", type=float, required=True, metavar="L", help="hinge centre to load line, mm"
+    )
+    parser.add_argument(
+        "--solve",
+        choices=("thickness", "length"),
+        default="thickness",
+        help="what to find: hinge thickness (default) or slot length",
+    )
     parser.add_argument("--sides", choices=("one", "two"), help="slot from one face or from both")
-    parser.add_argument("--design", default="macro-array", help="design that gives all else (default macro-array)")
+    parser.add_argument(
+        "--design", default="macro-array", help="design that gives all else (default macro-array)"
+    )
     for option in LENGTHS:
         parser.add_argument(f"--{option}", type=float, metavar="MM", help="instead of the design's")
     parser.add_argument("--youngs-modulus", type=float, metavar="MPA", help="instead of the design's")
     parser.add_argument("--poisson", type=float, help="instead of the design's")
     parser.add_argument("--alloy", help="whose strength to use, instead of the design's")
-    parser.add_argument("--force", type=float, metavar="N", help="force on the pad (default: the design's rated force)")
-    parser.add_argument("--tolerance", type=float, metavar="MM",
-                        help="plus and minus of the length found (default: the design's)")
-    parser.add_argument("--model", choices=CLOSED_FORMS, default=DEFAULT_RUNG, metavar="RUNG",
-                        help=f"one of {', '.join(CLOSED_FORMS)} (default {DEFAULT_RUNG})")
+    parser.add_argument(
+        "--force", type=float, metavar="N", help="force on the pad (default: the design's rated force)"
+    )
+    parser.add_argument(
+        "--tolerance",
+        type=float,
+        metavar="MM",
+        help="plus and minus of the length found (default: the design's)",
+    )
+    parser.add_argument(
+        "--model",
+        choices=CLOSED_FORMS,
+        default=DEFAULT_RUNG,
+        metavar="RUNG",
+        help=f"one of {', '.join(CLOSED_FORMS)} (default {DEFAULT_RUNG})",
+    )
     parser.add_argument("--json", action="store_true", help="write JSON")
 
 
@@ -50,7 +76,9 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--poisson", "not a Poisson's ratio", value=args.poisson, legal="0 to 0.5")
     parameter = f"hinge_{args.solve}"
     if getattr(args, parameter) is not None:
-        raise InputError(f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter))
+        raise InputError(
+            f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
+        )
     answer = _answer(args, parameter)
     if args.json:
         print(json.dumps(answer, indent=2))
@@ -72,21 +100,36 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
     tolerance = args.tolerance or getattr(design.tolerance, parameter)
     force = args.force or design.rating.force
     value = size(section, args.stiffness, parameter, args.model)
-    ends = [_stiffness_at(ladder, section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)]
+    ends = [
+        _stiffness_at(ladder, section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)
+    ]
     found = section.with_(**{parameter: value})
     elastic = bool(strength.elastic(found, alloy, force))
-    per_cut = strain.peak(found, force, args.model), strain.gauge(found, force, design.gauge.grid_length, args.model)
+    per_cut = (
+        strain.peak(found, force, args.model),
+        strain.gauge(found, force, design.gauge.grid_length, args.model),
+    )
     yields_at = float(strength.yield_force(found, alloy))
     return {
-        "model": args.model, "solved": parameter, "value": value, "tolerance": tolerance,
-        "stiffness": float(ladder.stiffness(found, args.model)), "stiffness_interval": sorted(ends),
-        "section": {name: float(getattr(found, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS.values())}
+        "model": args.model,
+        "solved": parameter,
+        "value": value,
+        "tolerance": tolerance,
+        "stiffness": float(ladder.stiffness(found, args.model)),
+        "stiffness_interval": sorted(ends),
+        "section": {
+            name: float(getattr(found, name))
+            for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS.values())
+        }
         | {"sides": "two" if bool(found.two_sided) else "one"},
-        "alloy": alloy.name, "force": force, "elastic": elastic,
+        "alloy": alloy.name,
+        "force": force,
+        "elastic": elastic,
         "peak_strain": float(per_cut[0]) if elastic else None,
         "gauge_strain": float(per_cut[1]) if elastic else None,
         "stress": float(strain.peak_stress(found, force)) if elastic else None,
-        "yield_force": yields_at, "yield_deflection": yields_at / args.stiffness,
+        "yield_force": yields_at,
+        "yield_deflection": yields_at / args.stiffness,
         "rated_force": float(min(force, yields_at / design.rating.yield_factor)),
     }
 
@@ -111,15 +154,22 @@ def _section(args: argparse.Namespace, design):
     # an arm longer than the array's moves the clamp edge out and keeps the seat behind its slot
     body_length = max(layout.clamp_edge - hinge_x - slot / 2.0, e.seat_length)
     usual = {
-        "hinge_thickness": e.hinge_thickness, "hinge_length": e.hinge_length, "fillet_radius": e.fillet_radius,
-        "arm_height": e.arm_height, "body_height": e.body_height, "body_length": body_length,
+        "hinge_thickness": e.hinge_thickness,
+        "hinge_length": e.hinge_length,
+        "fillet_radius": e.fillet_radius,
+        "arm_height": e.arm_height,
+        "body_height": e.body_height,
+        "body_length": body_length,
         "width": design.sheet.thickness,
     }
     return HingeSection(
-        **(usual | own), load_arm=args.load_arm,
+        **(usual | own),
+        load_arm=args.load_arm,
         poisson=design.material.poisson if args.poisson is None else args.poisson,
         youngs_modulus=args.youngs_modulus or design.material.youngs_modulus,
-        two_sided=(args.sides or e.sides) == "two", pad_height=e.pad_height, friction=design.rating.friction,
+        two_sided=(args.sides or e.sides) == "two",
+        pad_height=e.pad_height,
+        friction=design.rating.friction,
     )
 
 
@@ -128,15 +178,19 @@ def _report(a: dict) -> str:
     name = a["solved"].replace("_", " ")
     strained = (
         f"strain gauge {1e6 * a['gauge_strain']:.0f}e-6, fillet {1e6 * a['peak_strain']:.0f}e-6, "
-        f"stress {a['stress']:.0f} MPa" if a["elastic"] else "invalid: above yield"
+        f"stress {a['stress']:.0f} MPa"
+        if a["elastic"]
+        else "invalid: above yield"
     )
     s = a["section"]
-    return "\n".join((
-        f"{name} {a['value']:.4f} mm for {a['stiffness']:.4g} N/mm at L {s['load_arm']:g} mm "
-        f"({s['sides']}-sided, rung {a['model']})",
-        f"as cut: +-{a['tolerance']:g} mm leaves {low:.4g} to {high:.4g} N/mm "
-        f"({low / a['stiffness'] - 1:+.1%} to {high / a['stiffness'] - 1:+.1%})",
-        f"at {a['force']:g} N, {a['alloy']}: {strained}",
-        f"yields at {a['yield_force']:.3g} N and {1e3 * a['yield_deflection']:.4g} um; "
-        f"rated force {a['rated_force']:.3g} N",
-    ))
+    return "\n".join(
+        (
+            f"{name} {a['value']:.4f} mm for {a['stiffness']:.4g} N/mm at L {s['load_arm']:g} mm "
+            f"({s['sides']}-sided, rung {a['model']})",
+            f"as cut: +-{a['tolerance']:g} mm leaves {low:.4g} to {high:.4g} N/mm "
+            f"({low / a['stiffness'] - 1:+.1%} to {high / a['stiffness'] - 1:+.1%})",
+            f"at {a['force']:g} N, {a['alloy']}: {strained}",
+            f"yields at {a['yield_force']:.3g} N and {1e3 * a['yield_deflection']:.4g} um; "
+            f"rated force {a['rated_force']:.3g} N",
+        )
+    )

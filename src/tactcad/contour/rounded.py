@@ -84,15 +84,22 @@ def _merged(pieces: list[Segment]) -> list[Segment]:
     """Join neighbouring arcs of one circle (a full round is one arc, not two)."""
     merged: list[Segment] = []
     for piece in pieces:
-        last = merged[-1] if merged else None
-        if isinstance(piece, Arc) and isinstance(last, Arc) and _same_circle(last, piece):
-            merged[-1] = Arc(last.start, piece.end, last.centre, last.ccw, last.name)
+        if merged and _same_circle(merged[-1], piece):
+            merged[-1] = _joined(merged[-1], piece)
         else:
             merged.append(piece)
+    if len(merged) > 1 and _same_circle(merged[-1], merged[0]):
+        merged[0] = _joined(merged.pop(), merged[0])
     return merged
 
 
-def _same_circle(a: Arc, b: Arc) -> bool:
+def _joined(a: Arc, b: Arc) -> Arc:
+    return Arc(a.start, b.end, a.centre, a.ccw, a.name)
+
+
+def _same_circle(a: Segment, b: Segment) -> bool:
+    if not (isinstance(a, Arc) and isinstance(b, Arc)):
+        return False
     near = hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) < ROUNDING_MM
     return near and abs(a.radius - b.radius) < ROUNDING_MM and a.ccw == b.ccw
 

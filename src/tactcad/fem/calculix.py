@@ -22,7 +22,8 @@ Array = NDArray[np.float64]
 THIN = 0.003  # mm: width of the expanded plane elements
 _QUAD = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
 _BRICK = (
-    [(*uv, w) for w in (0, 2) for uv in _QUAD[:4]] + [(*uv, w) for w in (0, 2) for uv in _QUAD[4:]]
+    [(*uv, w) for w in (0, 2) for uv in _QUAD[:4]]
+    + [(*uv, w) for w in (0, 2) for uv in _QUAD[4:]]
     + [(*uv, 1) for uv in _QUAD[:4]]
 )
 
@@ -33,7 +34,7 @@ def executable() -> str | None:
 
 
 def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
-    """Input file of the plane-stress problem, unit force per THIN width; returns the nodal forces (nodes, 2)."""
+    """Input file of the plane-stress problem, unit force per THIN width; returns nodal forces (nodes, 2)."""
     points, cells = merged(np.stack([mesh.cells[:, u, v] for u, v in _QUAD], axis=1))
     cells = _turned(points, cells, [0, 3, 2, 1, 7, 6, 5, 4])
     force = np.zeros_like(points)
@@ -46,7 +47,7 @@ def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
 
 
 def write_solid(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, path: Path) -> Array:
-    """Input file of the solid problem on half the width with 20-node bricks; returns the nodal forces (nodes, 3)."""
+    """Input file of the solid problem, 20-node bricks on half the width; returns nodal forces (nodes, 3)."""
     bricks = swept(mesh, width / 2.0, across)
     points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
     flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
@@ -101,8 +102,14 @@ def _supports(points: Array, mesh: PlaneMesh, dim: int) -> list[tuple[int, int]]
     return sorted(set(held))
 
 
-_FACES = [(0, 1, 2, 3, 8, 9, 10, 11), (4, 5, 6, 7, 12, 13, 14, 15), (0, 1, 5, 4, 8, 17, 12, 16),
-          (1, 2, 6, 5, 9, 18, 13, 17), (2, 3, 7, 6, 10, 19, 14, 18), (3, 0, 4, 7, 11, 16, 15, 19)]
+_FACES = [
+    (0, 1, 2, 3, 8, 9, 10, 11),
+    (4, 5, 6, 7, 12, 13, 14, 15),
+    (0, 1, 5, 4, 8, 17, 12, 16),
+    (1, 2, 6, 5, 9, 18, 13, 17),
+    (2, 3, 7, 6, 10, 19, 14, 18),
+    (3, 0, 4, 7, 11, 16, 15, 19),
+]
 
 
 def _end_faces(points: Array, cells: NDArray[np.int64], mesh: PlaneMesh, width: float):
@@ -149,8 +156,16 @@ def _write(path, points, cells, kind, section, E, nu, supports, force) -> None:
     lines.append(f"*ELEMENT, TYPE={kind}, ELSET=BODY")
     for i, cell in enumerate(cells, 1):
         numbers = [str(i), *(str(n + 1) for n in cell)]
-        lines += [", ".join(numbers[k : k + 10]) + ("," if k + 10 < len(numbers) else "") for k in range(0, len(numbers), 10)]
-    lines += ["*MATERIAL, NAME=SHEET", "*ELASTIC", f"{E:.12g}, {nu:.12g}", "*SOLID SECTION, ELSET=BODY, MATERIAL=SHEET"]
+        lines += [
+            ", ".join(numbers[k : k + 10]) + ("," if k + 10 < len(numbers) else "")
+            for k in range(0, len(numbers), 10)
+        ]
+    lines += [
+        "*MATERIAL, NAME=SHEET",
+        "*ELASTIC",
+        f"{E:.12g}, {nu:.12g}",
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=SHEET",
+    ]
     lines += [section] if section else []
     lines.append("*BOUNDARY")
     lines += [f"{n + 1}, {i + 1}, {i + 1}, 0." for n, i in supports]

@@ -70,7 +70,9 @@ class Converged:
         return 1.0 / self.compliance
 
 
-def converged_plane(shape: HingeShape, E: float, nu: float, width: float, *, plane_strain: bool = False) -> Converged:
+def converged_plane(
+    shape: HingeShape, E: float, nu: float, width: float, *, plane_strain: bool = False
+) -> Converged:
     """Rung fem-plane: two meshes and Richardson's limit; the error is what the limit adds to the finer."""
     pair = [solve_plane(shape, E, nu, width, density=d, plane_strain=plane_strain) for d in PLANE_DENSITIES]
     limit = richardson((pair[0].compliance, pair[1].compliance), PLANE_DENSITIES, ORDER)

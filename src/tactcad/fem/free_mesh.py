@@ -35,7 +35,9 @@ class Fine:
     size: float
 
 
-def triangle_mesh(outer: Contour, holes: tuple[Contour, ...], fine: tuple[Fine, ...], largest: float) -> MeshTri2:
+def triangle_mesh(
+    outer: Contour, holes: tuple[Contour, ...], fine: tuple[Fine, ...], largest: float
+) -> MeshTri2:
     """Mesh with elements of at most `largest` mm, finer at `fine` and at arcs. Raises CheckFailure where
     the triangles do not follow the boundary."""
     contours = (outer, *holes)
@@ -105,14 +107,16 @@ def _inner_points(contours: tuple[Contour, ...], border: Array, size: _Size) -> 
             distance, _ = cKDTree(accepted).query(p)
             accepted = np.concatenate([accepted, p[distance > APART * level]])
         level *= 2.0
-    return accepted[len(border):]
+    return accepted[len(border) :]
 
 
 def inside(contours: tuple[Contour, ...], p: Array) -> NDArray[np.bool_]:
     """Whether points lie in the first contour and in none of the others: crossings of a ray towards +x."""
     odd = np.zeros(len(p), dtype=bool)
     for c in contours:
-        corners = np.array([s.at(u) for s in c for u in (np.linspace(0, 1, 33)[:-1] if isinstance(s, Arc) else (0.0,))])
+        corners = np.array(
+            [s.at(u) for s in c for u in (np.linspace(0, 1, 33)[:-1] if isinstance(s, Arc) else (0.0,))]
+        )
         for (x0, z0), (x1, z1) in zip(corners, np.roll(corners, -1, axis=0)):
             if z0 == z1:
                 continue

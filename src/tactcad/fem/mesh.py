@@ -79,7 +79,9 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
     for block in (shape.arm, shape.body):
         low, high = block.low_fillet, block.high_fillet
         if abs(low.wall - high.wall) > 1e-9 or abs(low.radius - high.radius) > 1e-9:
-            raise CheckFailure("slots from both faces differ in length or radius; the mapped mesh cannot join them")
+            raise CheckFailure(
+                "slots from both faces differ in length or radius; the mapped mesh cannot join them"
+            )
     lower = _half(shape, middle, upper=False, density=density)
     return PlaneMesh(np.concatenate([upper, lower]), shape, False, middle)
 
@@ -138,7 +140,9 @@ def merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[n
     step = SAME_POINT * np.ptp(flat, axis=0).max() / np.e
     count = len(flat)
     links = [_first_of_group(np.floor(flat / step + shift).astype(np.int64)) for shift in (0.0, 0.5)]
-    graph = coo_matrix((np.ones(2 * count), (np.tile(np.arange(count), 2), np.concatenate(links))), shape=(count, count))
+    graph = coo_matrix(
+        (np.ones(2 * count), (np.tile(np.arange(count), 2), np.concatenate(links))), shape=(count, count)
+    )
     _, index = connected_components(graph, directed=False)
     _, first = np.unique(index, return_index=True)
     return flat[first], index.reshape(corners.shape[:2])
@@ -190,8 +194,13 @@ def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArra
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
         direction = 1.0 if block is shape.arm else -1.0
         root = _Root(
-            strip_height=sign * strip_height, radius=fillet.radius, wall=abs(fillet.wall - centre),
-            end=abs(block.end - centre), height=face, square_height=min(heights), column=column,
+            strip_height=sign * strip_height,
+            radius=fillet.radius,
+            wall=abs(fillet.wall - centre),
+            end=abs(block.end - centre),
+            height=face,
+            square_height=min(heights),
+            column=column,
         )
         grids += [grid * (direction, 1.0) for grid in root.grids(density)]
     cells = np.concatenate([_cells(grid) for grid in grids])
@@ -233,9 +242,14 @@ class _Root:
         columns = max(MOUTH, _count(pi / 2.0 * self.radius / self.column)) * density
         u = np.linspace(0.0, 1.0, 2 * columns + 1)
         turn = pi / 2.0 * u
-        arc = np.stack([strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))], axis=-1)
+        arc = np.stack(
+            [strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))],
+            axis=-1,
+        )
         # opposite the arc's points near the strip, so that the thinnest elements are not sheared
-        floor = np.stack([strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1)
+        floor = np.stack(
+            [strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1
+        )
         left = _edge((strip_end, 0.0), (strip_end, self.strip_height), np.linspace(0.0, 1.0, 2 * rows + 1))
         grids = [_coons(floor, arc, left, ring)]
 

@@ -49,7 +49,9 @@ class FaceStrain:
         x = self.x[order]
         borders = np.concatenate([[2 * x[0] - x[1]], (x[1:] + x[:-1]) / 2.0, [2 * x[-1] - x[-2]]])
         ends = (-grid / 2.0, grid / 2.0)
-        return float(np.diff(np.interp(ends, borders, total))[0] / np.diff(np.interp(ends, borders, along))[0])
+        return float(
+            np.diff(np.interp(ends, borders, total))[0] / np.diff(np.interp(ends, borders, along))[0]
+        )
 
 
 def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrain:

@@ -15,8 +15,16 @@ LARGEST = 0.6  # mm of an element far from anything
 
 
 def uncut_compliance(
-    outer: Contour, holes: tuple[Contour, ...], shape: HingeShape, spacer: tuple[float, float, float],
-    pad: tuple[float, float, float], E: float, nu: float, width: float, *, per_thickness: float = 3.0,
+    outer: Contour,
+    holes: tuple[Contour, ...],
+    shape: HingeShape,
+    spacer: tuple[float, float, float],
+    pad: tuple[float, float, float],
+    E: float,
+    nu: float,
+    width: float,
+    *,
+    per_thickness: float = 3.0,
 ) -> float:
     """Plane-stress compliance (mm/N) of the part under 1 N spread evenly over the pad's face.
 
@@ -27,7 +35,9 @@ def uncut_compliance(
     fillets = [f for b in (shape.arm, shape.body) for f in (b.low_fillet, b.high_fillet) if f]
     walls = sorted({f.wall for f in fillets})
     middle = (shape.low + shape.high) / 2.0
-    fine = tuple(Fine((x, middle), shape.thickness / per_thickness) for x in np.linspace(walls[0], walls[-1], 9))
+    fine = tuple(
+        Fine((x, middle), shape.thickness / per_thickness) for x in np.linspace(walls[0], walls[-1], 9)
+    )
     mesh = triangle_mesh(outer, holes, fine, LARGEST)
     basis = Basis(mesh, ElementTriP2(), intorder=4)
     A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=True)) * width

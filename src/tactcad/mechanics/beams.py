@@ -72,7 +72,7 @@ def body(s: HingeSection) -> Array:
 
 
 def body_bending(s: HingeSection) -> Array:
-    """4 [(p + Lb)^3 - p^3]/(E b Hb^3), p = L + l/2, written out so that a short body keeps its digits, mm/N."""
+    """4 [(p + Lb)^3 - p^3]/(E b Hb^3), p = L + l/2, written out so that a short body keeps digits; mm/N."""
     Hb, Lb = s.body_height, s.body_length
     p = s.load_arm + s.hinge_length / 2.0
     cubes = Lb * (3.0 * p * (p + Lb) + Lb * Lb)

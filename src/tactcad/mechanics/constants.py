@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import lru_cache
-from importlib import resources
+from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from .section import Array
 @lru_cache(maxsize=1)
 def ladder_data() -> dict:
     """data/ladder.json as written by the fit."""
-    return json.loads(resources.files(__package__).joinpath("data/ladder.json").read_text("utf-8"))
+    # not importlib.resources, which takes longer to import than all of this room
+    return json.loads((Path(__file__).parent / "data" / "ladder.json").read_text("utf-8"))
 
 
 def by_sides(group: str, two_sided: Array) -> dict[str, Array | float]:

@@ -39,7 +39,10 @@ def ratio_interval(
     """
     q = NormalDist().inv_cdf(0.975) if quantile is None else quantile
     N, D, vN, vD, c = np.broadcast_arrays(
-        *(np.asarray(v, dtype=float) for v in (numerator, denominator, var_numerator, var_denominator, covariance))
+        *(
+            np.asarray(v, dtype=float)
+            for v in (numerator, denominator, var_numerator, var_denominator, covariance)
+        )
     )
     # a x^2 - 2 h x + k <= 0
     a, h, k = D * D - q * q * vD, N * D - q * q * c, N * N - q * q * vN
@@ -60,7 +63,17 @@ def ratio_interval(
 
 
 def object_stiffness_interval(
-    K_r, K_m, d_r, d_m, var_r, var_m, covariance=0.0, *, var_K_r=0.0, var_K_m=0.0, quantile: float | None = None
+    K_r,
+    K_m,
+    d_r,
+    d_m,
+    var_r,
+    var_m,
+    covariance=0.0,
+    *,
+    var_K_r=0.0,
+    var_K_m=0.0,
+    quantile: float | None = None,
 ) -> RatioInterval:
     """Fieller's interval for K_obj = (K_r d_r - K_m d_m)/(d_m - d_r), N/mm.
 
@@ -70,8 +83,11 @@ def object_stiffness_interval(
     K_r, K_m, d_r, d_m = (np.asarray(v, dtype=float) for v in (K_r, K_m, d_r, d_m))
     numerator, denominator = K_r * d_r - K_m * d_m, d_m - d_r
     var_numerator = (
-        K_r * K_r * var_r + K_m * K_m * var_m - 2.0 * K_r * K_m * covariance
-        + d_r * d_r * var_K_r + d_m * d_m * var_K_m
+        K_r * K_r * var_r
+        + K_m * K_m * var_m
+        - 2.0 * K_r * K_m * covariance
+        + d_r * d_r * var_K_r
+        + d_m * d_m * var_K_m
     )
     var_denominator = var_r + var_m - 2.0 * np.asarray(covariance)
     cov = (K_r + K_m) * covariance - K_r * var_r - K_m * var_m

@@ -37,7 +37,7 @@ class Result:
 
 
 def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
-    """Tip stiffness of every design by a closed-form rung; a design out of its range gets NaN and a reason."""
+    """Tip stiffness of every design by a closed-form rung; out of its range NaN and a reason."""
     reason = validity.reasons(s, rung)
     valid = reason == ""
     stiffness = np.full(s.shape, np.nan)

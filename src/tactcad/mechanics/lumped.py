@@ -68,7 +68,7 @@ def differences(K_r, K_m, K_obj, approach) -> tuple[Array, Array]:
 
 
 def object_stiffness_from_differences(force_difference, deflection_difference) -> Array:
-    """K_obj = (F_r - F_m)/(d_m - d_r), N/mm; infinite where the deflections are equal, NaN where nothing differs."""
+    """K_obj = (F_r - F_m)/(d_m - d_r), N/mm; infinite for equal deflections, NaN where nothing differs."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.divide(force_difference, deflection_difference)
 

@@ -11,7 +11,10 @@ from tactcad.design.messages import CheckFailure
 from . import ladder
 from .section import HingeSection
 
-SEARCHED = {"hinge_thickness": (0.005, 5.0), "hinge_length": (0.01, 50.0)}  # mm, as a design file may have them
+SEARCHED = {
+    "hinge_thickness": (0.005, 5.0),
+    "hinge_length": (0.01, 50.0),
+}  # mm, as a design file may have them
 GRID = 4001  # points, by logarithm, on which the rung's range is looked for
 
 
@@ -33,8 +36,11 @@ def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.D
             f"the range of rung {rung}, stiffness goes from {found.min():.4g} to {found.max():.4g} N/mm"
         )
     at = np.flatnonzero(np.diff(np.sign(found - stiffness)) != 0)[0] if found[0] != stiffness else 0
-    return _bisect(lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
-                   reached[at], reached[at + 1])
+    return _bisect(
+        lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
+        reached[at],
+        reached[at + 1],
+    )
 
 
 def _bisect(excess: Callable[[float], float], low: float, high: float) -> float:

@@ -17,6 +17,8 @@ from .section import Array, HingeSection
 
 Constants = plane.Constants
 
+SMALL_STEP = 30.0  # below it the rise of ln(1 + e^z) is computed without a difference
+
 
 def nominal(s: HingeSection, force) -> Array:
     """6 F L/(E b t^2), beam theory's surface strain at the hinge's centre; force in N."""
@@ -71,7 +73,10 @@ def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
-    """Strain per deflection at mid-width over the plane value: 1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b."""
+    """Strain per deflection at mid-width over the plane value.
+
+    1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b.
+    """
     k = k or by_sides(f"mid-width {at}", s.two_sided)
     x, y, nu = s.hinge_length / s.width, s.hinge_thickness / s.width, s.poisson
     return 1.0 + nu * nu * (x * (k["a"] * x + k["d"] * y) + k["e"] * y * y)
@@ -91,7 +96,10 @@ def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def face_factor(s: HingeSection, k: Constants | None = None) -> Array:
-    """Peak on the gauge face over nominal: [1 + (a lc/2 - b t)/L] [1 - c/(d + rho) exp(-e lc/t)], one-sided."""
+    """Peak on the gauge face over nominal; on a two-sided hinge the fillet's.
+
+    One-sided: [1 + (a lc/2 - b t)/L] [1 - c/(d + rho) exp(-e lc/t)].
+    """
     k = k or by_sides("face", np.False_)
     t, lc = s.hinge_thickness, s.straight_length
     flat = (1.0 + (k["a"] * lc / 2.0 - k["b"] * t) / s.load_arm) * (
@@ -129,31 +137,42 @@ def one_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> A
 
     g is the mean `root` length in t: beyond the mouth the strain fades, part of it soon, part in the block.
     """
-    g = root
-
-    def fade(w: Array) -> Array:
-        near = np.logaddexp(0.0, k["u"] * (w / g - k["v"])) / k["u"]
-        far = np.logaddexp(0.0, k["x"] * (w / g - k["y"])) / k["x"]
-        return -g * (k["m"] * near + (1.0 - k["m"]) * far)
-
-    return _mean(s, grid, fade)
+    g, middle, step = root, *_reach(s, grid)
+    near = _softplus_rise(k["u"] * (middle / g - k["v"]), k["u"] * step / g) / k["u"]
+    far = _softplus_rise(k["x"] * (middle / g - k["y"]), k["x"] * step / g) / k["x"]
+    return 1.0 - 2.0 * g * (k["m"] * near + (1.0 - k["m"]) * far) / step
 
 
 def two_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> Array:
     """X = -g f(u, v; w/g) + m rho^-x [1 + tanh(y (w/sqrt(rho) - z))]/2: fading, and the fillet's peak."""
-    g = root
+    g, middle, step = root, *_reach(s, grid)
     rho = s.fillet_radius / s.hinge_thickness
-
-    def excess(w: Array) -> Array:
-        fading = np.logaddexp(0.0, k["u"] * (w / g - k["v"])) / k["u"]
-        bump = k["m"] * rho ** -k["x"] * (1.0 + np.tanh(k["y"] * (w / np.sqrt(rho) - k["z"]))) / 2.0
-        return bump - g * fading
-
-    return _mean(s, grid, excess)
+    fading = _softplus_rise(k["u"] * (middle / g - k["v"]), k["u"] * step / g) / k["u"]
+    slope = 2.0 * k["y"] / np.sqrt(rho)
+    bump = k["m"] * rho ** -k["x"] * _logistic_rise(slope * middle - 2.0 * k["y"] * k["z"], slope * step)
+    return 1.0 + 2.0 * (bump - g * fading) / step
 
 
-def _mean(s: HingeSection, grid: Array, excess) -> Array:
-    t, lc = s.hinge_thickness, s.straight_length
-    short = 1e-3 * t  # a point is taken as a grid of a thousandth of the thickness
-    grid = np.maximum(grid, short)
-    return 1.0 + 2.0 * t / grid * (excess((grid - lc) / (2.0 * t)) - excess((-grid - lc) / (2.0 * t)))
+def _reach(s: HingeSection, grid: Array) -> tuple[Array, Array]:
+    """Middle of w- and w+, and their distance: -lc/(2 t) and grid/t. A point is a grid of t/1000."""
+    t = s.hinge_thickness
+    return -s.straight_length / (2.0 * t), np.maximum(grid / t, 1e-3)
+
+
+def _softplus_rise(middle: Array, step: Array) -> Array:
+    """ln(1 + e^(middle + step/2)) - ln(1 + e^(middle - step/2)), to the last digits for small steps too."""
+    low = middle - step / 2.0
+    small = np.minimum(step, SMALL_STEP)
+    near = np.log1p(_logistic(low) * np.expm1(small))
+    return np.where(step < SMALL_STEP, near, np.logaddexp(0.0, low + step) - np.logaddexp(0.0, low))
+
+
+def _logistic_rise(middle: Array, step: Array) -> Array:
+    """L(middle + step/2) - L(middle - step/2) of the logistic L, as L(high) L(-low) (1 - e^-step)."""
+    return _logistic(middle + step / 2.0) * _logistic(step / 2.0 - middle) * -np.expm1(-step)
+
+
+def _logistic(z: Array) -> Array:
+    """1/(1 + e^-z) = (1 + tanh(z/2))/2"""
+    with np.errstate(over="ignore"):
+        return 1.0 / (1.0 + np.exp(-z))

@@ -14,8 +14,14 @@ from .section import Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = (
-    "hinge_thickness", "hinge_length", "load_arm", "arm_height", "body_height", "body_length",
-    "youngs_modulus", "width",
+    "hinge_thickness",
+    "hinge_length",
+    "load_arm",
+    "arm_height",
+    "body_height",
+    "body_length",
+    "youngs_modulus",
+    "width",
 )
 
 
@@ -51,8 +57,10 @@ GEOMETRY = (
     Rule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
     Rule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),
     Rule("pad_height or friction is negative", lambda s: (s.pad_height < 0.0) | (s.friction < 0.0)),
-    Rule("friction locks the arm: mu (pad_height + t/2) >= L",
-         lambda s: s.friction * friction.lever(s) >= s.load_arm),
+    Rule(
+        "friction locks the arm: mu (pad_height + t/2) >= L",
+        lambda s: s.friction * friction.lever(s) >= s.load_arm,
+    ),
 )
 
 
@@ -86,10 +94,14 @@ def _fitted(rung: str) -> tuple[Rule, ...]:
     sampled = ladder_data()["range"]
     height = sampled["least_height"]
     rules = [
-        Rule(f"arm too low for the fit: h < {height:g} (t + n r)",
-             lambda s: s.arm_height < height * (1.0 - ROUNDING) * _slot_depth(s)),
-        Rule(f"body too low for the fit: Hb < {height:g} (t + n r)",
-             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s)),
+        Rule(
+            f"arm too low for the fit: h < {height:g} (t + n r)",
+            lambda s: s.arm_height < height * (1.0 - ROUNDING) * _slot_depth(s),
+        ),
+        Rule(
+            f"body too low for the fit: Hb < {height:g} (t + n r)",
+            lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s),
+        ),
     ]
     for name, value in (PLANE_GROUPS if rung == "plane" else PLANE_GROUPS | SOLID_GROUPS).items():
         low, high = sampled["groups"][name]
@@ -97,7 +109,9 @@ def _fitted(rung: str) -> tuple[Rule, ...]:
     return tuple(rules)
 
 
-def _outside(value: Callable[[HingeSection], Array], low: float, high: float) -> Callable[[HingeSection], np.ndarray]:
+def _outside(
+    value: Callable[[HingeSection], Array], low: float, high: float
+) -> Callable[[HingeSection], np.ndarray]:
     low, high = low * (1.0 - ROUNDING), high * (1.0 + ROUNDING)
 
     def broken(s: HingeSection) -> np.ndarray:

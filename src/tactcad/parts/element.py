@@ -57,14 +57,17 @@ def element(layout: Layout, place: ElementPlace) -> Part:
 
 
 def element_number(design: Design, place: ElementPlace) -> str:
-    """Part number from the arm length, and from what an override changes; never from list order."""
+    """Part number from the arm length, and from what an override changes; never from list order.
+
+    It ends in a letter: FreeCAD makes the names of equal parts unique by counting up their last digits.
+    """
     base = design.element
     usual = HingeShape(base.hinge_thickness, base.hinge_length, base.fillet_radius, base.arm_height)
-    number = f"{design.name}-element-a{shortest(place.arm)}"
+    number = f"{design.name}-element-a{shortest(place.arm)}mm"
     for letter in ("t", "l", "r", "h"):
         value = getattr(place.hinge, letter)
         if value != getattr(usual, letter):
-            number += f"-{letter}{shortest(value)}"
+            number += f"-{letter}{shortest(value)}mm"
     return number
 
 

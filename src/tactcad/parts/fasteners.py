@@ -73,9 +73,15 @@ def carrier_screw(layout: Layout) -> CarrierScrew | None:
     It engages 1.5 d and 0.8 mm of the 1.5 d + 1 mm of thread; its head is sunk.
     """
     d = layout.design.clamp
-    most = d.carrier_thickness - METRIC[d.screw].head_height
-    for length in CAP_SCREW_LENGTHS[d.screw]:
-        under = round(length - engagement(d.screw) - 0.8, 9)
-        if LEAST_UNDER_CARRIER_HEAD <= under <= most:
-            return CarrierScrew(length, under)
-    return None
+    fits = thinnest_carrier(d.screw) <= d.carrier_thickness + 1e-9  # mm: written in decimals, kept in binary
+    return _shortest_carrier_screw(d.screw) if fits else None
+
+
+def thinnest_carrier(thread: str) -> float:
+    """Least carrier thickness that sinks the head of its screws, mm."""
+    return round(_shortest_carrier_screw(thread).under_head + METRIC[thread].head_height, 9)
+
+
+def _shortest_carrier_screw(thread: str) -> CarrierScrew:
+    under = ((length, round(length - engagement(thread) - 0.8, 9)) for length in CAP_SCREW_LENGTHS[thread])
+    return next(CarrierScrew(*pair) for pair in under if pair[1] >= LEAST_UNDER_CARRIER_HEAD)

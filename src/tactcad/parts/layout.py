@@ -14,12 +14,17 @@ from tactcad.design.tree import Design
 
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
 
+# Least gap between parts that must not meet, in mm; chosen: a hair.
+LEAST_GAP = 0.1
 # Least material between a carrier screw's hole and the heads below it; chosen: a third of an M3.
 END_PLATE_WEB = 1.0
 # Set screws end this far below the carrier's top, so that the axis's plate lies flat on it.
 SUNK = 1.0
-# Set screws stand this far from the rear bodies; chosen: more than their threads' play in the carrier.
+# Set screws stand this far from rear bodies and end plates; chosen: more than their threads' play in the carrier.
 BESIDE_SET_SCREW = 0.3
+# Least material between holes of the carrier, and to its edge; chosen: what drilling leaves standing.
+CARRIER_WEB = 0.5
+CARRIER_EDGE = 1.0
 
 
 @dataclass(frozen=True)
@@ -200,15 +205,23 @@ class Layout:
 
     @cached_property
     def hold_down(self) -> HoldDown:
-        """The shortest standard set screw that lets the carrier clear the clamping screws' heads."""
+        """The shortest standard set screw that lets the carrier stand high enough."""
         c = self.design.clamp
-        head = self.design.holes.height + counterbore_diameter(c.screw) / 2
-        lowest = head + END_PLATE_WEB + tapped_depth(c.screw)
+        lowest = self.lowest_carrier
         for length in SET_SCREW_LENGTHS[c.screw]:
             reach = round(length - c.carrier_thickness + SUNK, 9)
             if self.stop_plate_top + reach >= lowest and reach > 0:
                 return HoldDown(length, reach)
         return HoldDown(None, round(lowest - self.stop_plate_top, 9))
+
+    @cached_property
+    def lowest_carrier(self) -> float:
+        """Least z of the carrier's underside: over the rear bodies, and its threads over screw heads and dowels."""
+        c = self.design.clamp
+        below = max(counterbore_diameter(c.screw), float(c.dowel)) / 2 + END_PLATE_WEB
+        return max(
+            self.design.holes.height + below + tapped_depth(c.screw), self.design.element.rear_height + LEAST_GAP
+        )
 
     @property
     def end_plate_half(self) -> float:
@@ -249,10 +262,11 @@ class Layout:
 
     @property
     def hold_down_y(self) -> tuple[float, ...]:
-        """y of the set screws of a row: one over a short stack, else even, no further apart than allowed."""
-        pitch = self.design.array.pitch
-        span = (self.positions - 1) * pitch
-        if self.positions == 1:
+        """y of the set screws of a row: over the outermost elements or as near as the end plates allow, even, no
+        further apart than allowed; one in the middle where two would run into each other."""
+        d = METRIC[self.design.clamp.screw].d
+        span = min((self.positions - 1) * self.design.array.pitch, self.stack - d - 2 * BESIDE_SET_SCREW)
+        if span < d + CARRIER_WEB:
             return (0.0,)
         count = 2
         while span / (count - 1) > self.design.clamp.hold_down_pitch:
@@ -266,9 +280,12 @@ class Layout:
 
     @property
     def carrier_size(self) -> tuple[float, float]:
-        """Length along x, width along y: over the end plates, and over the axis's thread pattern."""
+        """Length along x, width along y: over the end plates, its own screws' heads, and the axis's threads."""
         c = self.design.clamp
         edge = 4.0  # material beyond a thread of the axis's pattern: one diameter of the usual M4
+        head = counterbore_diameter(c.screw) / 2 + CARRIER_EDGE
         along_x = 2 * (self.end_plate_half + c.carrier_margin)
-        along_y = max(self.stack + 2 * c.end_plate_thickness, c.mount_pitch_y + 2 * edge)
+        along_y = max(
+            self.stack + 2 * c.end_plate_thickness, c.mount_pitch_y + 2 * edge, 2 * (self.end_plate_y + head)
+        )
         return (round(along_x, 6), round(along_y, 6))

@@ -7,21 +7,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from math import cos, hypot, pi
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
-from .fasteners import LEAST_GRIP, carrier_screw, clamping
-from .layout import END_PLATE_WEB, SUNK, ElementPlace, Layout
-from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement, tapped_depth
+from .fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
+from .layout import (
+    BESIDE_SET_SCREW,
+    CARRIER_EDGE,
+    CARRIER_WEB,
+    END_PLATE_WEB,
+    LEAST_GAP,
+    SUNK,
+    ElementPlace,
+    Layout,
+)
+from .library.dowels import largest_dowel
+from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement
 from .stop_gap import land_room, stop_gap
 
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
-# Least gap between facing pads, and between pad and gauge carrier; chosen: a hair, 0.1 mm.
-LEAST_GAP = 0.1
 # Tie rod and ground rod are sold in bars of up to 3 m (DIN 976-1: 1, 2 and 3 m).
 LONGEST_ROD = 3000.0
 
@@ -46,6 +54,8 @@ def broken_rules(design: Design) -> list[Broken]:
     layout = Layout(design)
     found = []
     for name, rule in RULES.items():
+        if name in ASK_THE_GAP and any(b.rule in NO_GAP for b in found):
+            continue
         for path, what, value, legal in rule(layout):
             found.append(Broken(name, path, what, value, legal))
             break
@@ -130,15 +140,6 @@ def fillets_fit_slot(layout: Layout) -> Iterator[Finding]:
             )
 
 
-def body_takes_slot(layout: Layout) -> Iterator[Finding]:
-    e = layout.design.element
-    sides = 1 if e.sides == "one" else 2
-    for p in layout.elements:
-        least = p.hinge.t + sides * p.hinge.r
-        if e.body_height < least - SAME:
-            yield ("element.body_height", "body lower than hinge and fillets", e.body_height, f"at least {least:g} mm")
-
-
 def ledges_in_one_plane(layout: Layout) -> Iterator[Finding]:
     for p in layout.elements:
         if abs(layout.ledge_of(p.hinge) - layout.ledge) > SAME:
@@ -165,6 +166,15 @@ def pad_root_fits_pad(layout: Layout) -> Iterator[Finding]:
         yield ("element.pad_root_radius", "larger than the pad is high", e.pad_root_radius, f"at most {e.pad_height:g} mm")
 
 
+def pad_stands_out_of_body(layout: Layout) -> Iterator[Finding]:
+    """A two-sided body may be thicker than its arm; the pad must still be what meets the object."""
+    e = layout.design.element
+    for p in layout.elements:
+        least = LEAST_GAP - layout.body_bottom(p.hinge)
+        if e.pad_height < least - SAME:
+            yield ("element.pad_height", f"body of element {p.number} meets the object before its pad", e.pad_height, f"at least {least:g} mm")
+
+
 def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.element.sides == "two":
@@ -184,17 +194,6 @@ def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
             yield (
                 "gauge.carrier_body_side", f"carrier reaches the wire recess behind element {p.number}",
                 d.gauge.carrier_body_side, f"at most {behind:g} mm there",
-            )
-
-
-def estimator_holds(layout: Layout) -> Iterator[Finding]:
-    for p in layout.elements:
-        try:
-            stop_gap(layout, p)
-        except CheckFailure as error:
-            yield (
-                _at(p, "hinge_length", layout), f"the estimator cannot give element {p.number} a stop gap: {error}",
-                p.hinge.l, "a hinge inside the estimator's range, or its gap in [stop.gaps]",
             )
 
 
@@ -300,8 +299,9 @@ def holes_inside_body(layout: Layout) -> Iterator[Finding]:
             "holes.height", "holes too near the edge of the rear body or its spacer", h.height,
             f"from {low + h.web + widest / 2:g} to {high - h.web - widest / 2:g} mm",
         )
-    if dowel < float(d.clamp.dowel) + 0.002:
-        yield ("holes.dowel_hole", "smaller than the dowel", h.dowel_hole, f"more than {d.clamp.dowel} mm")
+    pin = largest_dowel(d.clamp.dowel)
+    if h.dowel_hole < pin - SAME:
+        yield ("holes.dowel_hole", "smaller than the dowel may be (m6)", h.dowel_hole, f"at least {pin:g} mm")
     elif h.dowel_hole > float(d.clamp.dowel) + 0.1:
         yield ("holes.dowel_hole", "does not locate on the dowel", h.dowel_hole, f"at most {float(d.clamp.dowel) + 0.1:g} mm")
     holes = [("holes.screw_offsets", x, screw) for x in h.screw_offsets]
@@ -323,18 +323,19 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     # a counterbore needs material around it; a nut only has to lie on the plate
     around = (m.nut / cos(pi / 6) if rod else counterbore_diameter(c.screw)) / 2
     web = LEAST_GAP if rod else END_PLATE_WEB
-    if d.holes.height - around - z0 < web - SAME:
+    below = max(around + web, float(c.dowel) / 2 + END_PLATE_WEB)
+    if d.holes.height - below - z0 < -SAME:
         yield (
-            "clamp.end_plate_bottom", "end plate ends in the screw heads", z0,
-            f"at most {d.holes.height - around - web:g} mm",
+            "clamp.end_plate_bottom", "end plate ends in screw heads or dowels", z0,
+            f"at most {d.holes.height - below:g} mm",
         )
-    top = max(
-        d.holes.height + counterbore_diameter(c.screw) / 2 + END_PLATE_WEB + tapped_depth(c.screw),
-        layout.stop_plate_top + LEAST_GAP,
-    )
+    top = max(layout.lowest_carrier, layout.stop_plate_top + LEAST_GAP)
     if z1 < top - SAME and layout.hold_down.length is not None:
-        yield ("clamp.end_plate_height", "too low for the carrier's screws over the clamping screws", z1 - z0, f"at least {top - z0:g} mm")
-    rear = layout.rear_end - layout.screw_x[-1]
+        yield (
+            "clamp.end_plate_height", "carrier too low over rear bodies and clamping screws", z1 - z0,
+            f"at least {top - z0:g} mm",
+        )
+    rear = layout.rear_end - max(layout.screw_x)
     if rear + c.end_plate_margin < around + web - SAME:
         yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + web - rear:g} mm")
     spots = [(x, around) for x in layout.screw_x] + [(x, float(c.dowel) / 2) for x in layout.dowel_x]
@@ -365,7 +366,7 @@ def carrier_can_be_screwed(layout: Layout) -> Iterator[Finding]:
     if carrier_screw(layout) is None:
         yield (
             "clamp.carrier_thickness", f"no standard {c.screw} screw sinks its head and engages the end plate",
-            c.carrier_thickness, "another thickness, about 6 mm for M3",
+            c.carrier_thickness, f"at least {thinnest_carrier(c.screw):g} mm",
         )
     least = engagement(c.mount_thread)
     if c.carrier_thickness < least - SAME:
@@ -382,10 +383,26 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
             "clamp.stop_plate_thickness", f"no standard {c.screw} set screw reaches from the carrier to the stop plate",
             c.stop_plate_thickness, f"at least {c.stop_plate_thickness + short:.4g} mm, or a larger screw",
         )
+    elif c.carrier_thickness - SUNK < engagement(c.screw) - SAME:
+        yield (
+            "clamp.carrier_thickness", f"too thin for the threads of {c.screw} set screws", c.carrier_thickness,
+            f"at least {engagement(c.screw) + SUNK:g} mm",
+        )
     elif not engagement(c.screw) - SAME <= hold.length - gap <= c.carrier_thickness + SAME:
         yield (
             "clamp.end_plate_height", f"the {hold.length:g} mm set screw does not engage the carrier as it should",
             c.end_plate_height, "leave it out, to have it derived",
+        )
+    widest = min(BESIDE_SET_SCREW + (METRIC[c.screw].d - METRIC[c.screw].set_point) / 2, layout.spacer + d.sheet.thickness / 2)
+    if c.stop_plate_gap > widest + SAME:
+        yield (
+            "clamp.stop_plate_gap", "stop plate ends before the set screws, or before the outermost ledge",
+            c.stop_plate_gap, f"at most {widest:g} mm",
+        )
+    if layout.stack < METRIC[c.screw].d + 2 * BESIDE_SET_SCREW - SAME:
+        yield (
+            "clamp.screw", f"no room for an {c.screw} set screw between the end plates", layout.stack,
+            f"a stack of at least {METRIC[c.screw].d + 2 * BESIDE_SET_SCREW:g} mm",
         )
     needed = layout.clamp_edge - layout.hold_down_x
     if d.element.seat_length < needed - SAME:
@@ -398,20 +415,25 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
 
 
 def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
-    """Screw heads, axis threads and set screws in the carrier leave 0.5 mm between them and to its edge."""
-    c = layout.design.clamp
-    spots = [("clamp.carrier_screw_offset", layout.carrier_screw_x, layout.end_plate_y, counterbore_diameter(c.screw) / 2)]
-    spots.append(("clamp.mount_pitch_y", layout.mount_x, c.mount_pitch_y / 2, METRIC[c.mount_thread].d / 2))
-    spots += [("clamp.mount_pitch_y", layout.hold_down_x, y, METRIC[c.screw].d / 2) for y in layout.hold_down_y]
-    for (_, x0, y0, r0), (path, x1, y1, r1) in combinations(spots, 2):
-        apart = hypot(x1 - x0, y1 - y0)
-        if apart < r0 + r1 + 0.5 - SAME:
-            value = c.mount_pitch_y if path.endswith("y") else c.carrier_screw_offset
-            yield (path, f"holes of the carrier {apart:.3g} mm apart", value, f"at least {r0 + r1 + 0.5:.3g} mm apart")
+    """Screw heads, axis threads and set screws in the carrier leave CARRIER_WEB between them, CARRIER_EDGE around."""
+    c, seat = layout.design.clamp, layout.design.element.seat_length
+    spots = [
+        ("clamp.carrier_screw_offset", c.carrier_screw_offset, layout.carrier_screw_x, layout.end_plate_y, counterbore_diameter(c.screw) / 2),
+        ("clamp.mount_pitch_y", c.mount_pitch_y, layout.mount_x, c.mount_pitch_y / 2, METRIC[c.mount_thread].d / 2),
+    ]
+    spots += [("element.seat_length", seat, layout.hold_down_x, y, METRIC[c.screw].d / 2) for y in layout.hold_down_y]
+    # one quadrant against all four: rows and ends are each other's mirror images
+    for (i, a), (j, b), sx, sy in product(enumerate(spots), enumerate(spots), (1, -1), (1, -1)):
+        if j < i or (a[2], a[3]) == (sx * b[2], sy * b[3]):
+            continue
+        apart, least = hypot(a[2] - sx * b[2], a[3] - sy * b[3]), a[4] + b[4] + CARRIER_WEB
+        if apart < least - SAME:
+            path, value = (a if b[0] == "element.seat_length" else b)[:2]
+            yield (path, f"holes of the carrier {apart:.3g} mm apart", value, f"at least {least:.3g} mm apart")
     half = layout.carrier_size[0] / 2
-    for path, x, _, r in spots:
-        if x + r + 1.0 > half + SAME:
-            yield (path, "hole at the carrier's edge", x, f"at most {half - r - 1.0:g} mm from the middle")
+    for path, value, x, _, r in spots:
+        if x + r + CARRIER_EDGE > half + SAME:
+            yield (path, f"hole at the carrier's edge, {x:g} mm from the middle", value, f"at most {half - r - CARRIER_EDGE:g} mm from the middle")
     if layout.carrier_screw_x + METRIC[c.screw].tap_drill / 2 + END_PLATE_WEB > layout.end_plate_half:
         yield (
             "clamp.carrier_screw_offset", "carrier screw outside the end plate", c.carrier_screw_offset,
@@ -435,16 +457,15 @@ RULES: dict[str, Rule] = {
         arms_clear_opposite_row,
         hinge_thinner_than_arm,
         fillets_fit_slot,
-        body_takes_slot,
         ledges_in_one_plane,
         slot_clears_pad,
         pad_root_fits_pad,
+        pad_stands_out_of_body,
         gauge_fits_face,
         arms_clear_end_plates,
         ledge_below_rear,
         recess_fits_rear,
         stop_land_above_arm,
-        estimator_holds,
         stop_gap_above_tolerance,
         stop_land_fits_arm,
         holes_inside_body,
@@ -455,5 +476,8 @@ RULES: dict[str, Rule] = {
         carrier_holes_apart,
     )
 }
-# Rules whose breach would make later ones fail for the same reason, or not computable.
-STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "estimator_holds"})
+# Rules whose breach would make later ones fail for the same reason.
+STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
+# Rules that need the stop gap, and those without which there is none: what is no hinge has no stiffness.
+ASK_THE_GAP = frozenset({"stop_gap_above_tolerance", "stop_land_fits_arm"})
+NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})

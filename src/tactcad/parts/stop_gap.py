@@ -18,9 +18,11 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
     [stop.gaps] where it names the arm, else yield_fraction of the nominal deflection at yield,
-    carried from the load line to the tip by the rigid arm's lever a/L, but no more than there is room
-    for under the ledge, and rounded down to 0.01 mm (below 0.1 mm to 0.001).
-    Nominal yield: 6 F L/(b t^2) = yield strength.
+    carried from the load line to the tip by the rigid arm's lever a/L and rounded to 0.01 mm (below 0.1 mm
+    to 0.001), but no more than there is room for under the ledge.
+    Nominal yield: 6 F L/(b t^2) = yield strength. Stiffness from the solid rung; beyond the range of its fit from
+    the section integral, which has none and errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as
+    stiff, 1.02 in the median (20 000 random designs).
     """
     design = layout.design
     if design.stop.gaps and place.arm in design.stop.gaps:
@@ -31,9 +33,10 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
         design.material.youngs_modulus, design.material.poisson, design.material.yield_strength,
         design.stop.yield_fraction,
     )
-    gap = min(wanted, land_room(layout, place.hinge))
-    step = STEP_MM if gap >= 10 * STEP_MM else STEP_MM / 10
-    return round(floor(gap / step + 1e-9) * step, 6)
+    room = land_room(layout, place.hinge)
+    step = STEP_MM if min(wanted, room) >= 10 * STEP_MM else STEP_MM / 10
+    steps = min(round(wanted / step), floor(room / step + 1e-9))
+    return round(steps * step, 6)
 
 
 def land_room(layout: Layout, hinge: HingeShape) -> float:
@@ -49,6 +52,7 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
 def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
-    K = float(ladder.stiffness(section, "solid"))
+    fitted = ladder.evaluate(section, "solid")
+    K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
     deflection = yield_strength * b * t**2 / (6 * L) / K
     return fraction * deflection * a / L

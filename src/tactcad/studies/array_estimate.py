@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.materials import Alloy
+from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.element import element
@@ -16,7 +17,10 @@ from tactcad.parts.layout import ElementPlace, Layout
 
 @dataclass(frozen=True)
 class ElementEstimate:
-    """One element at one force. Strain and stress are None where the stress would pass the yield strength."""
+    """One element at one force. Strain and stress are None where the stress would pass the yield strength.
+
+    gauge_strain is None too where the grid does not fit a two-sided hinge.
+    """
 
     number: int
     arm: float  # mm
@@ -66,11 +70,15 @@ class _PerNewton:
 
 def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
     peak = strain.peak(s, 1.0, rung)
+    try:
+        gauge = strain.gauge(s, 1.0, grid, rung)
+    except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
+        gauge = np.nan
     if rung in ladder.WITH_ROOTS:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (strain.gauge(s, 1.0, grid, rung), peak, stress, face)))
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
 
 
 def _by_elements(
@@ -94,31 +102,51 @@ def _by_elements(
         # along the hinge stress follows from equilibrium: the plane rung's factors hold for the solid too
         stress, face = strain.peak_stress(section, 1.0), strain.face_stress(section, 1.0)
     else:
-        stress, face = (E * np.array([getattr(r, name) for r in results]) for name in ("fillet_peak", "face_peak"))
+        stress, face = (
+            E * np.array([getattr(r, name) for r in results]) for name in ("fillet_peak", "face_peak")
+        )
     return np.array([r.stiffness for r in results]), _PerNewton(
         np.array([r.gauge_strain for r in results]), np.array([r.fillet_peak for r in results]), stress, face
     )
 
 
 def _estimates(
-    places: tuple[ElementPlace, ...], section: HingeSection, alloy: Alloy, K: Array, per_newton: _PerNewton,
-    force: float, safety: float,
+    places: tuple[ElementPlace, ...],
+    section: HingeSection,
+    alloy: Alloy,
+    K: Array,
+    per_newton: _PerNewton,
+    force: float,
+    safety: float,
 ) -> list[ElementEstimate]:
     rows = []
     for i, place in enumerate(places):
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
-        at = lambda value: float(value) * force if elastic else None  # noqa: E731
+        at = lambda value: float(value) * force if elastic and np.isfinite(value) else None  # noqa: E731
         stress = float(per_newton.fillet_stress[i])
-        rows.append(ElementEstimate(
-            number=place.number, arm=place.arm, load_arm=place.load_arm, stiffness=float(K[i]),
-            stiffness_ratio=float(K.max() / K[i]), force=force, deflection=at(1.0 / K[i]),
-            gauge_strain=at(per_newton.gauge[i]), peak_strain=at(per_newton.fillet[i]), stress=at(stress),
-            elastic=elastic, yield_factor_fillet=yield_force / force, yield_factor_face=face_yield / force,
-            goodman_factor=strength.goodman(alloy, stress * force) if elastic else None, yield_force=yield_force,
-            yield_deflection=yield_force / float(K[i]), rated_force=min(force, yield_force / safety),
-        ))
+        rows.append(
+            ElementEstimate(
+                number=place.number,
+                arm=place.arm,
+                load_arm=place.load_arm,
+                stiffness=float(K[i]),
+                stiffness_ratio=float(K.max() / K[i]),
+                force=force,
+                deflection=at(1.0 / K[i]),
+                gauge_strain=at(per_newton.gauge[i]),
+                peak_strain=at(per_newton.fillet[i]),
+                stress=at(stress),
+                elastic=elastic,
+                yield_factor_fillet=yield_force / force,
+                yield_factor_face=face_yield / force,
+                goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
+                yield_force=yield_force,
+                yield_deflection=yield_force / float(K[i]),
+                rated_force=min(force, yield_force / safety),
+            )
+        )
     return rows
 
 
@@ -143,7 +171,11 @@ def compare_uncut(layout: Layout) -> UncutComparison:
     shape = cut_element(part.body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
     material = d.material.youngs_modulus, d.material.poisson, d.sheet.thickness
     compliance = uncut_compliance(
-        part.body.outer, part.body.openings, shape, (layout.clamp_edge, *layout.spacer_z),
-        (layout.pad_inner, layout.pad_outer, -d.element.pad_height), *material,
+        part.body.outer,
+        part.body.openings,
+        shape,
+        (layout.clamp_edge, *layout.spacer_z),
+        (layout.pad_inner, layout.pad_outer, -d.element.pad_height),
+        *material,
     )
     return UncutComparison(place.number, 1.0 / compliance, converged_plane(shape, *material).stiffness)

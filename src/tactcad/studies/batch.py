@@ -16,8 +16,16 @@ from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
 
 REQUIRED = (
-    "hinge_thickness", "hinge_length", "fillet_radius", "load_arm", "arm_height", "body_height", "body_length",
-    "poisson", "youngs_modulus", "width",
+    "hinge_thickness",
+    "hinge_length",
+    "fillet_radius",
+    "load_arm",
+    "arm_height",
+    "body_height",
+    "body_length",
+    "poisson",
+    "youngs_modulus",
+    "width",
 )
 OPTIONAL = {"pad_height": 0.0, "friction": 0.0}
 SIDES = {"one": False, "two": True}
@@ -66,8 +74,10 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
         if not row:  # an empty line
             continue
         if len(row) != len(header):
-            raise InputError(f"{path}:{number}:{min(len(row), len(header)) + 1}",
-                             f"{len(row)} fields where the header has {len(header)}")
+            raise InputError(
+                f"{path}:{number}:{min(len(row), len(header)) + 1}",
+                f"{len(row)} fields where the header has {len(header)}",
+            )
         rows.append((number, row))
     return header, [row for _, row in rows], _section(path, header, rows)
 
@@ -100,8 +110,11 @@ def _check_header(path: Path, header: list[str]) -> None:
             raise InputError(f"{path}:1:{column}", "column is one that this command adds", value=name)
     missing = [name for name in REQUIRED if name not in header]
     if missing:
-        raise InputError(f"{path}:1:{len(header) + 1}", f"column {missing[0]} is missing",
-                         legal=", ".join(REQUIRED) + "; optional sides, " + ", ".join(OPTIONAL))
+        raise InputError(
+            f"{path}:1:{len(header) + 1}",
+            f"column {missing[0]} is missing",
+            legal=", ".join(REQUIRED) + "; optional sides, " + ", ".join(OPTIONAL),
+        )
 
 
 def _section(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -> HingeSection:
@@ -109,7 +122,9 @@ def _section(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -
     for name in (*REQUIRED, *OPTIONAL):
         if name in header:
             column = header.index(name)
-            numbers[name] = np.array([_number(path, line, column, row[column]) for line, row in rows], dtype=float)
+            numbers[name] = np.array(
+                [_number(path, line, column, row[column]) for line, row in rows], dtype=float
+            )
         else:
             numbers[name] = np.full(len(rows), OPTIONAL[name])
     sides = [DEFAULT_SIDES] * len(rows)
@@ -132,12 +147,19 @@ def _number(path: Path, line: int, column: int, text: str) -> float:
 def _side(path: Path, line: int, column: int, text: str) -> str:
     side = text.strip()
     if side not in SIDES:
-        raise InputError(f"{path}:{line}:{column + 1}", "unknown notch form", value=text, legal=", ".join(SIDES))
+        raise InputError(
+            f"{path}:{line}:{column + 1}", "unknown notch form", value=text, legal=", ".join(SIDES)
+        )
     return side
 
 
 def _write(
-    path: Path, header: list[str], rows: list[list[str]], stiffness: list[float], reasons: list[str], rung: str
+    path: Path,
+    header: list[str],
+    rows: list[list[str]],
+    stiffness: list[float],
+    reasons: list[str],
+    rung: str,
 ) -> None:
     """The whole file or none: written beside it, then moved into its place."""
     temporary = None
@@ -149,7 +171,9 @@ def _write(
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([*header, *ADDED])
             for row, value, reason in zip(rows, stiffness, reasons):
-                writer.writerow([*row, "" if reason else repr(value), rung, "false" if reason else "true", reason])
+                writer.writerow(
+                    [*row, "" if reason else repr(value), rung, "false" if reason else "true", reason]
+                )
         os.chmod(temporary, 0o666 & ~_umask())
         os.replace(temporary, path)
     except OSError as error:

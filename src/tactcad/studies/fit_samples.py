@@ -22,21 +22,36 @@ Columns = dict[str, NDArray[np.float64]]
 
 # The box over which the closed forms promise their error (mm; Poisson's ratio).
 BOX = {
-    "hinge_thickness": (0.15, 0.4), "hinge_length": (0.3, 1.5), "fillet_radius": (0.1, 0.3),
-    "load_arm": (3.0, 7.0), "arm_height": (1.5, 3.0), "body_height": (3.0, 8.0), "body_length": (2.0, 6.0),
-    "poisson": (0.2, 0.4), "width": (1.5, 8.0),
+    "hinge_thickness": (0.15, 0.4),
+    "hinge_length": (0.3, 1.5),
+    "fillet_radius": (0.1, 0.3),
+    "load_arm": (3.0, 7.0),
+    "arm_height": (1.5, 3.0),
+    "body_height": (3.0, 8.0),
+    "body_length": (2.0, 6.0),
+    "poisson": (0.2, 0.4),
+    "width": (1.5, 8.0),
 }
 # Beyond the box, for small versions and short or deeply rounded slots; drawn by logarithm.
 WIDE = {
-    "hinge_thickness": (0.05, 0.4), "hinge_length": (0.1, 2.0), "fillet_radius": (0.03, 0.6),
-    "load_arm": (2.0, 9.0), "arm_height": (1.2, 4.0), "body_height": (2.0, 10.0), "body_length": (1.0, 8.0),
-    "poisson": (0.15, 0.45), "width": (1.0, 10.0),
+    "hinge_thickness": (0.05, 0.4),
+    "hinge_length": (0.1, 2.0),
+    "fillet_radius": (0.03, 0.6),
+    "load_arm": (2.0, 9.0),
+    "arm_height": (1.2, 4.0),
+    "body_height": (2.0, 10.0),
+    "body_length": (1.0, 8.0),
+    "poisson": (0.15, 0.45),
+    "width": (1.0, 10.0),
 }
 LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block any more
 FILLET_RATIO = (0.15, 6.0)  # r/t
 FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
 WIDE_SHARE = 0.4
 EDGE_SHARE = 0.65  # of the parameters of a design on the box's edges stand at an end of their range
+
+EDGE_PART = 3  # for so many designs inside the box one more stands on its edges
+SEEDS = {"fitted": 20261121, "held out": 31415}
 
 PLANE_DENSITY = (3, 6)  # Richardson's pair
 SOLID_DENSITY = (2, 1)  # in the plane, across the width; K3D/K2D on one plane mesh errs by about 1e-4
@@ -49,7 +64,9 @@ def draw(count: int, seed: int) -> Columns:
     rows = []
     while len(rows) < count:
         wide = rng.random() < WIDE_SHARE
-        row = {k: _log_uniform(rng, *v) if wide else rng.uniform(*v) for k, v in (WIDE if wide else BOX).items()}
+        row = {
+            k: _log_uniform(rng, *v) if wide else rng.uniform(*v) for k, v in (WIDE if wide else BOX).items()
+        }
         if rng.random() < FULL_ROUND_SHARE:
             row["hinge_length"] = 2.0 * row["fillet_radius"]
         row["two_sided"] = float(len(rows) % 2)
@@ -74,7 +91,9 @@ def draw_edges(count: int, seed: int) -> Columns:
     rng = np.random.default_rng(seed)
     rows = []
     while len(rows) < count:
-        row = {k: v[rng.integers(2)] if rng.random() < EDGE_SHARE else rng.uniform(*v) for k, v in BOX.items()}
+        row = {
+            k: v[rng.integers(2)] if rng.random() < EDGE_SHARE else rng.uniform(*v) for k, v in BOX.items()
+        }
         row |= {"two_sided": float(len(rows) % 2)}
         row["fillet_radius"] = min(row["fillet_radius"], row["hinge_length"] / 2.0)
         if _possible(row):
@@ -82,11 +101,19 @@ def draw_edges(count: int, seed: int) -> Columns:
     return _as_written(rows)
 
 
+def designs(kind: str, count: int) -> tuple[Columns, Columns]:
+    """The "fitted" or "held out" designs: `count` inside the box (for the fit also beyond it), and a third
+    as many on its edges."""
+    inside = draw if kind == "fitted" else draw_box
+    return inside(count, SEEDS[kind]), draw_edges(count // EDGE_PART, SEEDS[kind] + 1)
+
+
 def joined(tables: Sequence[Columns]) -> Columns:
     """The rows of several tables as one; a result that one of them lacks is NaN there."""
     names = list(dict.fromkeys(name for table in tables for name in table))
     return {
-        name: np.concatenate([t.get(name, np.full(len(t["two_sided"]), math.nan)) for t in tables]) for name in names
+        name: np.concatenate([t.get(name, np.full(len(t["two_sided"]), math.nan)) for t in tables])
+        for name in names
     }
 
 
@@ -97,7 +124,7 @@ def section(columns: Columns) -> HingeSection:
 
 
 def plane_results(s: HingeSection) -> dict[str, float]:
-    """One design (scalars): plane-stress stiffness for unit width and modulus, and face strains over nominal."""
+    """One design (scalars): plane-stress stiffness of unit width and modulus, face strains over nominal."""
     shape, nu, L, t = reference_shape(s), float(s.poisson), float(s.load_arm), float(s.hinge_thickness)
     coarse, fine = (solve_plane(shape, 1.0, nu, 1.0, density=d) for d in PLANE_DENSITY)
     order = 4.0
@@ -106,8 +133,11 @@ def plane_results(s: HingeSection) -> dict[str, float]:
     nominal = 6.0 * L / (t * t)
     slot, flat = face_strain(fine, "slot"), face_strain(fine, "flat")
     result = {
-        "plane_stiffness": 1.0 / compliance, "plane_change": fine.compliance / coarse.compliance - 1.0,
-        "slot_peak": slot.peak / nominal, "flat_peak": flat.peak / nominal, "flat_centre": flat.centre / nominal,
+        "plane_stiffness": 1.0 / compliance,
+        "plane_change": fine.compliance / coarse.compliance - 1.0,
+        "slot_peak": slot.peak / nominal,
+        "flat_peak": flat.peak / nominal,
+        "flat_centre": flat.centre / nominal,
     }
     for grid in GRIDS:
         inside = grid * float(s.hinge_length)
@@ -117,7 +147,7 @@ def plane_results(s: HingeSection) -> dict[str, float]:
 
 
 def solid_results(s: HingeSection) -> dict[str, float]:
-    """One design (scalars): K3D/K2D on one plane mesh, and strain at mid-width over the plane's, per newton."""
+    """One design (scalars): K3D/K2D on one plane mesh, and mid-width over plane strain, per newton."""
     shape, nu, b = reference_shape(s), float(s.poisson), float(s.width)
     density, across = SOLID_DENSITY
     plane = solve_plane(shape, 1.0, nu, b, density=density)
@@ -127,7 +157,8 @@ def solid_results(s: HingeSection) -> dict[str, float]:
     peaks = [face_strain(r, "slot").peak for r in (solid, plane)]
     return {
         "width_factor": plane.compliance / solid.compliance,
-        "mid_grid_ratio": means[0] / means[1], "mid_peak_ratio": peaks[0] / peaks[1],
+        "mid_grid_ratio": means[0] / means[1],
+        "mid_peak_ratio": peaks[0] / peaks[1],
     }
 
 

@@ -14,7 +14,10 @@ from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
-PAPER_STRAIN = {4.0: 0.2711, 8.0: 0.6316}  # per cent at 2 N, by arm length in mm: the paper's finite-element study
+PAPER_STRAIN = {
+    4.0: 0.2711,
+    8.0: 0.6316,
+}  # per cent at 2 N, by arm length in mm: the paper's finite-element study
 PAPER_FORCE = 2.0  # N
 PAD_HALF = 1.0  # mm: the load stands at the pad's centre
 GRID = 0.5  # mm
@@ -23,7 +26,10 @@ GRID = 0.5  # mm
 def errors() -> str:
     """Error of every closed form over the promised box, on designs that the fit has not seen."""
     report = ladder_data()["report"]["relative_error"]
-    lines = ["| rung | against converged | two-sided: rms | max | one-sided: rms | max |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| rung | against converged | two-sided: rms | max | one-sided: rms | max |",
+        "|---|---|---|---|---|---|",
+    ]
     for rung in ladder.CLOSED_FORMS:
         solid = rung == "solid"
         name = f"{rung}, against {'solid' if solid else 'plane'} elements"
@@ -88,7 +94,9 @@ def _closed_form(s: HingeSection, rung: str) -> tuple[float, float]:
 def _strain_table(rungs: tuple[str, ...], strains: Callable[[HingeSection, str], tuple[float, float]]) -> str:
     arms = list(PAPER_STRAIN)
     lines = [
-        "| rung | notch | " + " | ".join(f"a = {a:g}: gauge | over paper's | at the fillet" for a in arms) + " |",
+        "| rung | notch | "
+        + " | ".join(f"a = {a:g}: gauge | over paper's | at the fillet" for a in arms)
+        + " |",
         "|---|---|" + "---|" * (3 * len(arms)),
     ]
     for rung in rungs:
@@ -96,14 +104,20 @@ def _strain_table(rungs: tuple[str, ...], strains: Callable[[HingeSection, str],
             cells = []
             for a in arms:
                 gauge, peak = strains(REFERENCE.with_(load_arm=a - PAD_HALF, two_sided=sides == "two"), rung)
-                cells.append(f"{100 * gauge:.4f} % | {100 * gauge / PAPER_STRAIN[a]:.3f} | {100 * peak:.4f} %")
+                cells.append(
+                    f"{100 * gauge:.4f} % | {100 * gauge / PAPER_STRAIN[a]:.3f} | {100 * peak:.4f} %"
+                )
             lines.append(f"| {rung} | {sides} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
 TABLES = {
-    "errors": errors, "beyond": beyond, "range": fitted_range, "strain errors": strain_errors,
-    "paper's strains": papers_strains, "paper's strains by elements": papers_strains_by_elements,
+    "errors": errors,
+    "beyond": beyond,
+    "range": fitted_range,
+    "strain errors": strain_errors,
+    "paper's strains": papers_strains,
+    "paper's strains by elements": papers_strains_by_elements,
 }
 
 

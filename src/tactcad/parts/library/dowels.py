@@ -11,8 +11,8 @@ HARDENED = Material("hardened steel", 7850)
 _SERIES = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40, 45, 50)
 # Longest preferred length by diameter, ISO 8734:1997 table 1.
 _LONGEST = {"2": 20, "2.5": 24, "3": 30, "4": 40, "5": 50}
-# Middle of m6 (ISO 286-2): +2/+8 um up to 3 mm, +4/+12 um above.
-_M6_MIDDLE = {"2": 0.005, "2.5": 0.005, "3": 0.005, "4": 0.008, "5": 0.008}
+# Deviations of m6 (ISO 286-2): +2/+8 um up to 3 mm, +4/+12 um above.
+_M6 = {"2": (0.002, 0.008), "2.5": (0.002, 0.008), "3": (0.002, 0.008), "4": (0.004, 0.012), "5": (0.004, 0.012)}
 
 
 def dowel_lengths(size: str) -> tuple[float, ...]:
@@ -22,7 +22,12 @@ def dowel_lengths(size: str) -> tuple[float, ...]:
 
 def dowel_diameter(size: str) -> float:
     """Diameter as modelled, mm: the middle of tolerance m6."""
-    return float(size) + _M6_MIDDLE[size]
+    return round(float(size) + sum(_M6[size]) / 2, 6)
+
+
+def largest_dowel(size: str) -> float:
+    """Upper limit of the diameter, mm."""
+    return round(float(size) + _M6[size][1], 6)
 
 
 def dowel(size: str, length: float) -> Part:
@@ -32,7 +37,7 @@ def dowel(size: str, length: float) -> Part:
         f"ISO 8734 {size} m6 x {length:g} - A - St" if standard else f"ground rod {size} m6, cut to {length:g} mm"
     )
     return Part(
-        part_no=f"ISO8734-{size}x{length:g}" if standard else f"GROUND-ROD-{size}m6x{length:g}",
+        part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",
         name=f"Dowel pin {size}x{length:g}",
         process="bought",
         material=HARDENED,

@@ -99,7 +99,7 @@ def cap_screw(thread: str, length: float) -> Part:
                       (m.d / 2, length), (0, length)])
     designation = f"ISO 4762 {thread}x{length:g} A2-70"
     return Part(
-        part_no=f"ISO4762-{thread}x{length:g}-A2-70",
+        part_no=f"ISO4762-{thread}x{length:g}-A2-70-screw",
         name=f"Socket head cap screw {thread}x{length:g}",
         process="bought",
         material=STAINLESS,
@@ -135,7 +135,7 @@ def nut(thread: str) -> Part:
     """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along +z."""
     m = METRIC[thread]
     return Part(
-        part_no=f"ISO4032-{thread}-A2-70",
+        part_no=f"ISO4032-{thread}-A2-70-nut",
         name=f"Hexagon nut {thread}",
         process="bought",
         material=STAINLESS,
@@ -150,7 +150,7 @@ def threaded_rod(thread: str, length: float) -> Part:
     """DIN 976-1 threaded rod cut to length, along +z from 0."""
     m = METRIC[thread]
     return Part(
-        part_no=f"DIN976-1-{thread}x{length:g}-A2-70",
+        part_no=f"DIN976-1-{thread}x{length:g}-A2-70-rod",
         name=f"Threaded rod {thread}, cut to {length:g}",
         process="bought",
         material=STAINLESS,

@@ -1,0 +1,136 @@
+"""Parts that are good, and shapes that are bad in one way each."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import trimesh
+
+from tactcad.checks import mesh as mesh_check
+from tactcad.checks.brep import check_brep
+from tactcad.checks.mesh import check_mesh, check_triangles
+from tactcad.checks.run import run_checks
+from tactcad.contour import circle, rectangle
+from tactcad.parts.description import Extrusion, Material, Part
+from tactcad.solids import build as builder
+from tactcad.solids.mesh import triangles
+
+pytestmark = pytest.mark.cad
+
+STEEL = Material("steel", 7850.0)
+BLOCK = Part("BLOCK", "block", "milled", STEEL, Extrusion(rectangle(0, 0, 10, 8), 5, (circle((5, 4), 3),)))
+
+
+@pytest.fixture(scope="module")
+def shape():
+    return builder.build(BLOCK).wrapped
+
+
+def test_a_good_part_has_no_findings(shape):
+    assert check_brep(BLOCK, shape) == []
+    assert check_mesh(BLOCK, shape) == []
+
+
+def test_every_shipped_part_is_good(macro_scene, macro_shapes):
+    for part in macro_scene.parts:
+        assert check_brep(part, macro_shapes[part.part_no]) == []
+        assert check_mesh(part, macro_shapes[part.part_no]) == []
+
+
+def test_bad_shapes_are_seen(shape):
+    from build123d import Box, Compound, Pos, Shell, Solid, Sphere
+
+    two = Compound([Box(1, 1, 1).solid(), Pos(5, 0, 0) * Box(1, 1, 1).solid()]).wrapped
+    assert [f.check for f in check_brep(BLOCK, two)] == ["one-solid"]
+    hollow = (Box(10, 8, 5) - Sphere(1)).solid().wrapped
+    assert [f.check for f in check_brep(BLOCK, hollow)] == ["one-solid"]
+    five_faces = Shell(Box(10, 8, 5).faces()[:5])
+    opened = Solid(_solid_of(five_faces.wrapped))
+    assert "shell-closed" in [f.check for f in check_brep(BLOCK, opened.wrapped)]
+
+
+def _solid_of(shell):
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Solid
+
+    solid, make = TopoDS_Solid(), BRep_Builder()
+    make.MakeSolid(solid)
+    make.Add(solid, shell)
+    return solid
+
+
+def test_another_volume_is_seen(shape):
+    larger = replace(BLOCK, body=Extrusion(BLOCK.body.outer, 5.00001, BLOCK.body.openings))
+    assert [f.check for f in check_brep(larger, shape)] == ["volume"]
+
+
+def test_an_invalid_solid_is_seen():
+    """A face whose wire crosses itself, extruded: the kernel builds it and calls it invalid."""
+    from build123d import Solid
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+    from OCP.gp import gp_Pnt, gp_Vec
+
+    polygon = BRepBuilderAPI_MakePolygon()
+    for x, y in ((0, 0), (9, 9), (9, 0), (0, 8)):
+        polygon.Add(gp_Pnt(x, y, 0))
+    polygon.Close()
+    face = BRepBuilderAPI_MakeFace(polygon.Wire()).Face()
+    bow_tie = Solid(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 5)).Shape())
+    assert "brep-valid" in [f.check for f in check_brep(BLOCK, bow_tie.wrapped)]
+
+
+# --- meshes ---
+
+
+def soup(shape) -> tuple[np.ndarray, np.ndarray]:
+    return triangles(shape, 0.05, 0.2)
+
+
+def checked(vertices, faces) -> list[str]:
+    return [f.check for f in check_triangles("BLOCK", trimesh.Trimesh(vertices, faces, process=False))]
+
+
+def test_meshes_that_are_open_turned_or_doubled_are_seen(shape):
+    vertices, faces = soup(shape)
+    assert checked(vertices, faces) == []
+    assert checked(vertices, faces[1:]) == ["mesh-watertight"]
+    flipped = faces.copy()
+    flipped[0] = flipped[0][::-1]
+    assert checked(vertices, flipped) == ["mesh-winding"]
+    assert checked(vertices, faces[:, ::-1]) == ["mesh-winding"]
+    assert checked(vertices, np.vstack([faces, faces[:1]])) == ["mesh-watertight"]
+
+
+def test_the_mesh_is_the_solid_within_its_tessellation(shape):
+    """Inscribed facets of a bore: the block keeps a little more than the circle would leave; within w^2/6 of the bore."""
+    vertices, faces = soup(shape)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    bore = np.pi * 1.5**2 * 5
+    assert 0 < mesh.volume - BLOCK.volume < bore * 0.2**2 / 6
+    assert mesh.is_watertight and mesh.euler_number == 0  # one through hole
+
+
+def test_a_mesh_of_another_size_is_seen(shape, monkeypatch):
+    larger = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])  # noqa: E731
+    monkeypatch.setattr(mesh_check, "triangles", larger)
+    assert [f.check for f in check_mesh(BLOCK, shape)] == ["mesh-volume", "mesh-area"]
+
+
+def test_run_reports_what_cannot_be_built(macro, monkeypatch):
+    """A part whose solid does not hold is a finding, not a crash, and its scene is not called free of overlap."""
+    from tactcad.checks import run
+
+    def refuse(part: Part):
+        if part.part_no.endswith("carrier"):
+            raise builder.SolidError(f"{part.part_no}: the kernel calls the solid invalid")
+        return builder.build(part)
+
+    monkeypatch.setattr(run, "build", refuse)
+    report = run_checks(macro, ["array"])
+    assert [(f.check, f.severity, f.part) for f in report.failures] == [("build", "fail", "macro-array-carrier")]
+    assert "interference" not in report.runs
+    assert report.runs["brep"] == report.runs["mesh"] == 13
+    assert len([f for f in report.findings if f.severity == "flag" and "hinge" in f.check]) == 5

@@ -1,0 +1,440 @@
+"""Whole exports: equal bytes anywhere, nothing rebuilt without need, everything rebuilt with need, whole when killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from math import atan2, cos, hypot, pi, sin, sqrt, tau
+from pathlib import Path
+
+import pytest
+from variants import HARDWARE, variant
+
+import tactcad
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export import inputs as export_inputs
+from tactcad.export import pipeline
+from tactcad.export.manifest import check_manifest, read_manifest
+from tactcad.export.pipeline import export
+from tactcad.parts.description import Part
+from tactcad.parts.layout import Layout
+
+pytestmark = pytest.mark.cad
+
+CHILD = """
+import json, sys
+from tactcad.cli.main import main
+status = main(sys.argv[1:])
+loaded = {m.split(".")[0] for m in sys.modules}
+rooms = {m.split(".")[1] for m in sys.modules if m.startswith("tactcad.")}
+print(json.dumps({"status": status, "loaded": sorted(loaded), "rooms": sorted(rooms)}))
+"""
+HEAVY = {"OCP", "build123d", "cadquery", "numpy", "scipy", "ezdxf", "matplotlib", "skfem"}
+TWO_ARMS = {"array.row_arms": [[4.0, 6.0]]}
+TWO_ARMS_TEXT = (HARDWARE / "macro-array.toml").read_text().replace(
+    "[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]"
+).split("\n[origin]\n")[0]  # fmt: skip
+
+
+def run(*arguments: str, cwd: Path, source: Path | None = None, **environment: str) -> tuple[dict, str]:
+    """`tactcad ARGUMENTS` in a fresh process: what it loaded (and its status), and what it said."""
+    environment = {
+        **{k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")},
+        "PYTHONPATH": str(source or Path(tactcad.__file__).parents[1]),
+        **environment,
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+    )
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert said["status"] == 0 and "Traceback" not in done.stderr, done.stderr
+    return said, done.stderr
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+class Notes:
+    """Progress that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.steps: list[str] = []
+
+    def line(self, text: str) -> None:
+        self.lines.append(text)
+
+    def step(self, done: int, total: int, text: str) -> None:
+        self.steps.append(text)
+
+
+def exported(design, out: Path):
+    notes = Notes()
+    return export(design, ("array",), out, notes), notes
+
+
+# --- the shipped array, twice in fresh processes ---
+
+
+@pytest.fixture(scope="module")
+def two_exports(tmp_path_factory):
+    """The same design exported by two processes that share nothing but the code."""
+    folders = []
+    for seed, zone, language in (("1", "Pacific/Auckland", "C"), ("4242", "America/St_Johns", "C.UTF-8")):
+        home = tmp_path_factory.mktemp(f"home {seed}")
+        (home / "designs").mkdir()
+        shutil.copy(HARDWARE / "macro-array.toml", home / "designs" / "paper.toml")
+        said, _ = run(
+            "export", "designs/paper.toml", "--out", f"out-{seed}", cwd=home,
+            HOME=str(home), TZ=zone, LANG=language, PYTHONHASHSEED=seed, TACTCAD_CACHE=str(home / "cache"),
+        )
+        # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room apart)
+        assert "solids" in said["rooms"]
+        assert set(said["rooms"]) - {"cli"} <= set(pipeline.ROOMS)
+        folders.append(home)
+    return folders
+
+
+def test_two_processes_write_equal_bytes_in_every_file(two_exports):
+    first, second = (contents(home / f"out-{seed}") for home, seed in zip(two_exports, ("1", "4242")))
+    assert sorted(first) == sorted(second)
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+def test_the_export_is_what_the_contract_says(two_exports):
+    folder = two_exports[0] / "out-1"
+    assert check_manifest(folder) == []
+    record = json.loads((folder / "manifest.json").read_text())
+    kinds = {f["kind"] for f in record["files"]}
+    assert kinds == {"step-part", "step-assembly", "dxf", "bom", "picture"}
+    parts = {p["part_no"] for p in record["parts"]}
+    assert {f["part_no"] for f in record["files"] if f["kind"] == "step-part"} == parts
+    cut = {p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"}
+    assert {f["part_no"] for f in record["files"] if f["kind"] == "dxf"} == cut
+    rows = json.loads((folder / "bom.json").read_text())["rows"]
+    assert sum(r["qty"] for r in rows if r["has_solid"]) == sum(p["qty"] for p in record["parts"])
+
+
+def test_nothing_in_the_export_names_the_machine(two_exports):
+    for home, seed in zip(two_exports, ("1", "4242")):
+        for name, data in contents(home / f"out-{seed}").items():
+            for trace in (str(home), str(home.parent), "/root", "/home", os.uname().nodename):
+                assert trace.encode() not in data, f"{trace} in {name}"
+
+
+def test_a_second_export_does_nothing_and_loads_nothing(two_exports):
+    home = two_exports[0]
+    before = {p: p.lstat().st_mtime_ns for p in home.rglob("*") if p.name != ".out-1.lock" and "pycache" not in str(p)}
+    link = os.readlink(home / "out-1")
+    said, log = run(
+        "export", "designs/paper.toml", "--out", "out-1", cwd=home, HOME=str(home), TACTCAD_CACHE=str(home / "cache")
+    )
+    assert HEAVY & set(said["loaded"]) == set()
+    assert "nothing was rebuilt" in log and log.count("\n") == 1
+    assert os.readlink(home / "out-1") == link
+    assert {p: p.lstat().st_mtime_ns for p in before} == before
+
+
+# --- what a cut file says, measured in it ---
+
+
+def dxf_segments(path: Path) -> list[tuple]:
+    import ezdxf
+
+    found = []
+    for e in ezdxf.readfile(path).modelspace():
+        kind = e.dxftype()
+        assert kind in ("LINE", "ARC", "CIRCLE")
+        if kind == "LINE":
+            found.append(("line", tuple(e.dxf.start)[:2], tuple(e.dxf.end)[:2]))
+        elif kind == "ARC":
+            found.append(("arc", tuple(e.dxf.center)[:2], e.dxf.radius, e.dxf.start_angle, e.dxf.end_angle))
+        else:
+            found.append(("circle", tuple(e.dxf.center)[:2], e.dxf.radius))
+    return found
+
+
+def heights_at(segments: list[tuple], x: float) -> list[float]:
+    """y of every crossing of the vertical line at x."""
+    found = []
+    for kind, *s in segments:
+        if kind == "line":
+            (x0, y0), (x1, y1) = s
+            if min(x0, x1) < x < max(x0, x1):
+                found.append(y0 + (y1 - y0) * (x - x0) / (x1 - x0))
+        else:
+            (cx, cy), r, first, last = *s[:2], *(s[2:] or (0.0, 360.0))
+            if abs(x - cx) < r:
+                for sign in (1, -1):
+                    y = sign * sqrt(r * r - (x - cx) ** 2)
+                    turn = (atan2(y, x - cx) - first * pi / 180) % tau
+                    if turn <= ((last - first) % 360 or 360) * pi / 180:
+                        found.append(cy + y)
+    return sorted(found)
+
+
+def area_of(segments: list[tuple]) -> float:
+    """Green's theorem on fine chords: outline less circles (within 1e-7 of the exact one)."""
+    chains, holes = [], 0.0
+    for kind, *s in segments:
+        if kind == "circle":
+            holes += pi * s[1] ** 2
+        elif kind == "line":
+            chains.append(list(s))
+        else:
+            (cx, cy), r, first, last = s
+            sweep, n = ((last - first) % 360) * pi / 180, 400
+            arc = [first * pi / 180 + sweep * k / n for k in range(n + 1)]
+            # points a little outside, so that the chords' polygon has the arc's own area
+            out = r * sqrt((sweep / n) / sin(sweep / n))
+            points = [(cx + out * cos(a), cy + out * sin(a)) for a in arc]
+            ends = [(cx + r * cos(a), cy + r * sin(a)) for a in (arc[0], arc[-1])]
+            chains.append([ends[0], *points[1:-1], ends[1]])
+    outline = chains.pop(0)
+    while chains:
+        gaps = [(min(hypot(c[i][0] - outline[-1][0], c[i][1] - outline[-1][1]) for i in (0, -1)), n) for n, c in enumerate(chains)]
+        gap, n = min(gaps)
+        assert gap < 1e-6, "open chain"
+        nxt = chains.pop(n)
+        if hypot(nxt[0][0] - outline[-1][0], nxt[0][1] - outline[-1][1]) > 1e-6:
+            nxt.reverse()
+        outline += nxt[1:]
+    assert hypot(outline[0][0] - outline[-1][0], outline[0][1] - outline[-1][1]) < 1e-6, "open chain"
+    twice = sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(outline, outline[1:]))
+    return abs(twice) / 2 - holes
+
+
+def test_hinge_and_area_measured_in_the_cut_files(two_exports):
+    folder, design = two_exports[0] / "out-1", variant()
+    volumes = {p.part_no: p.volume_mm3 for p in read_manifest(folder).parts}
+    for place in Layout(design).elements:
+        number = f"macro-array-element-a{place.arm:g}"
+        segments = dxf_segments(folder / "dxf" / f"{number}_A.dxf")
+        face, floor = heights_at(segments, place.hinge_x)[:2]
+        assert floor - face == pytest.approx(design.element.hinge_thickness, abs=1e-6)
+        tip = heights_at(segments, place.hinge_x - place.arm + design.stop.land_length / 2)
+        assert tip[0] == pytest.approx(-design.element.pad_height, abs=1e-6)
+        assert area_of(segments) == pytest.approx(volumes[number] / design.sheet.thickness, rel=2e-6)
+
+
+# --- what is rebuilt, and why: two elements, in this process ---
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    """An export of two elements, to be copied: where it lies with its cache, what it did and said."""
+    base = tmp_path_factory.mktemp("one")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TACTCAD_CACHE", str(base / "cache"))
+        done, notes = exported(variant(TWO_ARMS), base / "out")
+    return base, done, notes
+
+
+@pytest.fixture
+def mine(one, tmp_path, monkeypatch):
+    """A copy of that export and cache, free to be damaged."""
+    shutil.copytree(one[0], tmp_path / "copy", symlinks=True)
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "copy" / "cache"))
+    return tmp_path / "copy" / "out"
+
+
+def test_the_first_export_makes_everything_and_says_why(one):
+    _, done, notes = one
+    assert done.reasons == ("there is no earlier export",)
+    assert len(done.made) == done.files - 3  # the two bills and the manifest are written every time
+    assert any("no earlier export" in line for line in notes.lines)
+
+
+def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
+    before = contents(mine)
+    done, notes = exported(variant({"array.row_arms": [[4.5, 6.0]]}), mine)
+    assert done.reasons == ("design.array.row_arms[0][0] changed 4.0 -> 4.5",)
+    assert any("4.0 -> 4.5" in line for line in notes.lines)
+    assert done.built == ("macro-array-element-a4.5",)
+    assert set(done.made) == {
+        "step/macro-array-element-a4.5_A.step", "dxf/macro-array-element-a4.5_A.dxf", "pictures/macro-array-element-a4.5.svg",
+        "step/macro-array-array_A.step", "pictures/macro-array-array-above.svg", "pictures/macro-array-array-below.svg",
+        "pictures/macro-array-array-open.svg",
+    }  # fmt: skip
+    after = contents(mine)
+    assert not [name for name in after if "-a4." in name and "-a4.5" not in name], "the old element is gone"
+    same = set(before) & set(after) - set(done.made) - {"bom.csv", "bom.json", "manifest.json"}
+    assert len(same) > 20 and all(before[name] == after[name] for name in same)
+
+
+def test_what_is_taken_from_the_cache_equals_what_is_made_anew(mine, tmp_path, monkeypatch):
+    """4 -> 4.5 with a warm cache, and 4.5 from nothing: the same bytes."""
+    design = variant({"array.row_arms": [[4.5, 6.0]]})
+    exported(design, mine)
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "empty"))
+    exported(design, tmp_path / "fresh")
+    assert contents(mine) == contents(tmp_path / "fresh")
+
+
+def test_a_change_that_no_file_depends_on_makes_nothing(mine):
+    done, _ = exported(variant({**TWO_ARMS, "rating.force": 1.5}), mine)
+    assert done.reasons == ("design.rating.force changed 2.0 -> 1.5",)
+    assert (done.made, done.built) == ((), ())
+
+
+def test_another_author_writes_headers_anew_and_builds_no_solid(mine):
+    done, _ = exported(variant({**TWO_ARMS, "design.author": "J\u00f6rg"}), mine)
+    assert done.built == ()
+    assert {n for n in done.made if n.startswith("step/")} == {n for n in contents(mine) if n.startswith("step/")}
+    assert all(b"J\\X2\\00F6\\X0\\rg" in data for name, data in contents(mine).items() if name.startswith("step/"))
+
+
+def test_another_revision_is_in_every_name_and_file(mine):
+    done, _ = exported(variant({**TWO_ARMS, "design.revision": "B"}), mine)
+    names = [n for n in contents(mine) if n.startswith(("step/", "dxf/"))]
+    assert names and all("_B." in name for name in names)
+    assert all(r.revision == "B" for r in read_manifest(mine).files)
+    assert done.built == ()
+
+
+def test_a_library_of_another_version_rebuilds(mine, monkeypatch):
+    version = export_inputs.metadata.version
+    monkeypatch.setattr(
+        export_inputs.metadata, "version", lambda name: "9.9.9" if name == "ezdxf" else version(name)
+    )
+    done, _ = exported(variant(TWO_ARMS), mine)
+    assert len(done.reasons) == 1 and done.reasons[0].startswith("ezdxf ") and done.reasons[0].endswith("-> 9.9.9")
+    assert len(done.made) == done.files - 3
+
+
+@pytest.mark.parametrize("room", pipeline.ROOMS)
+def test_a_touched_source_file_of_any_room_is_a_reason(room, mine, monkeypatch):
+    """Only the reason is asked for: what is made then is tried below."""
+    digest = export_inputs.source_digest
+    monkeypatch.setattr(export_inputs, "source_digest", lambda r: "touched" if r == room else digest(r))
+    design = variant(TWO_ARMS)
+    now = export_inputs.inputs_of({"design": design, "scenes": ("array",)}, pipeline.ROOMS, pipeline.LIBRARIES)
+    why, _ = pipeline._reasons(pipeline.published(mine), now)
+    assert why == [f"source of tactcad{'.' if room else ''}{room} changed"]
+
+
+def test_a_comment_in_the_source_rebuilds_in_a_fresh_process(mine, tmp_path):
+    source = tmp_path / "src"
+    shutil.copytree(Path(tactcad.__file__).parent, source / "tactcad", ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "two.toml").write_text(TWO_ARMS_TEXT)
+    arguments = {"cwd": tmp_path, "source": source, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
+    _, log = run("export", "two.toml", "--out", str(mine), **arguments)
+    assert "nothing was rebuilt" in log, "the same code elsewhere is the same code"
+    before = contents(mine)
+    with (source / "tactcad" / "contour" / "rounded.py").open("a") as file:
+        file.write("# touched\n")
+    said, log = run("export", "two.toml", "--out", str(mine), **arguments)
+    assert "source of tactcad.contour changed" in log
+    assert " 0 taken from the cache" in log
+    assert "OCP" in said["loaded"]
+    after = contents(mine)
+    assert {n for n in before if before[n] != after[n]} == {"manifest.json"}, "a comment changes no geometry"
+
+
+# --- damage ---
+
+
+@pytest.mark.parametrize("damage", ["changed", "cut", "removed", "added", "manifest", "manifest emptied"])
+def test_a_damaged_export_is_noticed_and_made_whole(damage, mine):
+    good = contents(mine)
+    target = mine / "dxf" / "macro-array-element-a4_A.dxf"
+    if damage == "changed":
+        target.write_bytes(target.read_bytes().replace(b"0.25", b"0.26", 1))
+    elif damage == "cut":
+        target.write_bytes(target.read_bytes()[:100])
+    elif damage == "removed":
+        target.unlink()
+    elif damage == "added":
+        (mine / "dxf" / "notes.txt").write_text("mine")
+    else:
+        (mine / "manifest.json").write_text("{}" if damage == "manifest" else "")
+    done, _ = exported(variant(TWO_ARMS), mine)
+    assert done.reasons and done.made == ()
+    assert contents(mine) == good
+
+
+def test_a_damaged_cache_is_noticed_and_made_whole(mine):
+    good = contents(mine)
+    cache = Path(os.environ["TACTCAD_CACHE"])
+    entries = [p for p in cache.rglob("*") if p.is_file()]
+    for n, path in enumerate(entries):
+        data = bytearray(path.read_bytes())
+        data[(n * 7919) % len(data)] ^= 0x20
+        path.write_bytes(data)
+    (mine / "bom.csv").unlink()
+    done, notes = exported(variant(TWO_ARMS), mine)
+    assert sum("damaged" in line for line in notes.lines) >= len(done.made) > 20
+    assert contents(mine) == good
+
+
+def test_a_file_that_does_not_read_back_leaves_the_earlier_export(mine, monkeypatch):
+    good, link = contents(mine), os.readlink(mine)
+    from tactcad.export import dxf
+
+    write = dxf.dxf_bytes
+    monkeypatch.setattr(dxf, "dxf_bytes", lambda part: re.sub(rb"(?m)^0\.25(\r?)$", rb"0.26\1", write(part)))
+    with pytest.raises(CheckFailure, match="DXF"):
+        exported(variant({"array.row_arms": [[4.7, 6.0]]}), mine)
+    assert contents(mine) == good and os.readlink(mine) == link
+    assert {p.name for p in (mine.parent / ".out.builds").iterdir()} == {Path(link).name}
+
+
+def test_a_measured_part_must_agree_with_its_description(mine, monkeypatch):
+    """Centre of mass and box from the kernel are compared with the closed forms."""
+    made = variant({"array.row_arms": [[4.7, 6.0]]})
+    centre = Part.centre.fget
+    monkeypatch.setattr(Part, "centre", property(lambda self: (centre(self)[0] + 1e-5, *centre(self)[1:])))
+    with pytest.raises(CheckFailure, match="centre of mass"):
+        exported(made, mine)
+
+
+def test_a_broken_rule_leaves_the_earlier_export(mine):
+    good = contents(mine)
+    with pytest.raises(InputError, match="fillets_fit_slot"):
+        exported(variant({**TWO_ARMS, "element.fillet_radius": 0.5}), mine)
+    assert contents(mine) == good
+
+
+# --- killed ---
+
+
+def test_killed_at_any_moment_the_earlier_or_the_new_export_stands_whole(mine, tmp_path):
+    """kill -9 at random moments of exports that take turns between two revisions; cold ones first."""
+    environment = {"cwd": tmp_path, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
+    designs = {}
+    for revision in "BA":
+        text = TWO_ARMS_TEXT.replace('revision = "A"', f'revision = "{revision}"')
+        (tmp_path / f"{revision}.toml").write_text(text)
+        run("export", f"{revision}.toml", "--out", str(mine), **environment)
+        designs[revision] = contents(mine)
+    assert designs["A"] != designs["B"]
+    chance = random.Random(7)
+    revision, outcomes = "A", set()
+    for turn in range(14):
+        wanted = "B" if revision == "A" else "A"
+        cold = turn < 2
+        child = subprocess.Popen(
+            [sys.executable, "-m", "tactcad", "export", f"{wanted}.toml", "--out", str(mine)], cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(Path(tactcad.__file__).parents[1]),
+                 **({"TACTCAD_CACHE": str(tmp_path / f"cold{turn}")} if cold else {})},
+            stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        time.sleep(chance.uniform(1, 3) if cold else chance.uniform(0.1, 0.6))
+        child.send_signal(signal.SIGKILL)
+        child.wait()
+        revision = read_manifest(mine).revision
+        assert contents(mine) == designs[revision]
+        outcomes.add(revision == wanted)
+    assert False in outcomes, "no kill came before the end"
+    run("export", f"{wanted}.toml", "--out", str(mine), **environment)
+    assert contents(mine) == designs[wanted]
+    left = {p.name for p in (mine.parent / ".out.builds").iterdir()}
+    assert len(left) <= 2 and not [name for name in left if name.endswith(".part")]

@@ -1,0 +1,215 @@
+"""Every rule has designs that break it and nothing else; designs that keep all of them are never refused."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields, is_dataclass
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from sound_designs import sound_designs
+from variants import table, variant
+
+from tactcad.design.load import SECTION_TYPES, from_table, names, paths
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.parts.designs import load
+from tactcad.parts.rules import RULES, broken_rules, refuse_broken
+from tactcad.scenes import make_scene
+
+MACRO = "macro-array"
+ONE = {"array.row_arms": [[4.0]]}
+TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
+
+# rule -> designs that break it alone: what is changed, and the field that the message points at
+WITNESSES = {
+    "override_names_element": [({"element.override.11.hinge_thickness": 0.2}, "element.override.11")],
+    "pitch_is_sheet_and_spacer": [
+        ({"array.spacer": 1.1}, "array.spacer"),
+        ({"array.pitch": 4.5}, "array.spacer"),
+        ({"sheet.thickness": 3.1}, "array.spacer"),
+    ],
+    "arms_clear_opposite_row": [
+        ({"array.row_pitch": 2.0}, "array.row_pitch"),
+        ({"array.row_pitch": 0.1}, "array.row_pitch"),
+        ({"element.pad_length": 3.95, "array.row_arms": [[6], [6]]}, "array.row_pitch"),
+    ],
+    "hinge_thinner_than_arm": [
+        ({"element.hinge_thickness": 3.0}, "element.hinge_thickness"),
+        ({"element.hinge_thickness": 2.6}, "element.hinge_thickness"),
+        ({"element.hinge_thickness": 2.4}, "element.fillet_radius"),
+        ({"element.override.3.hinge_thickness": 2.5}, "element.fillet_radius"),
+        ({"element.override.3.hinge_thickness": 2.7}, "element.override.3.hinge_thickness"),
+        ({**TWO_SIDED, "element.hinge_thickness": 2.2}, "element.fillet_radius"),
+    ],
+    "fillets_fit_slot": [
+        ({"element.fillet_radius": 0.441}, "element.fillet_radius"),
+        ({"element.hinge_length": 0.59}, "element.fillet_radius"),
+        ({"element.override.4.fillet_radius": 0.6}, "element.override.4.fillet_radius"),
+    ],
+    "ledges_in_one_plane": [
+        (
+            {**TWO_SIDED, "array.row_arms": [[4, 4]], "element.override.2.arm_height": 2.7},
+            "element.override.2.arm_height",
+        )
+    ],
+    "slot_clears_pad": [
+        ({"array.row_arms": [[6], [2.7]], "gauge.carrier_arm_side": 0.2}, "array.row_arms[1][0]"),
+        ({**TWO_SIDED, "array.row_arms": [[2.7]]}, "array.row_arms[0][0]"),
+    ],
+    "pad_root_fits_pad": [
+        ({"element.pad_height": 0.25}, "element.pad_root_radius"),
+        ({"element.pad_root_radius": 2.1, "array.row_arms": [[6]]}, "element.pad_root_radius"),
+    ],
+    "pad_stands_out_of_body": [
+        (
+            {**TWO_SIDED, "element.body_height": 7.0, "element.rear_height": 12.0, "clamp.spacer_drop": 4.1,
+             "stop.land_length": 0.3}, "element.pad_height",
+        ),
+        ({**TWO_SIDED, "element.pad_height": 0.55, "element.pad_root_radius": 0.2}, "element.pad_height"),
+    ],
+    "gauge_fits_face": [
+        ({"gauge.carrier_arm_side": 1.71}, "gauge.carrier_arm_side"),
+        ({"gauge.carrier_body_side": 4.1}, "gauge.carrier_body_side"),
+        ({**TWO_SIDED, "gauge.grid_length": 0.9}, "gauge.grid_length"),
+    ],
+    "arms_clear_end_plates": [({"array.spacer": 0.06, "array.pitch": 3.06}, "array.spacer")],
+    "ledge_below_rear": [
+        ({"clamp.stop_plate_gap": 0.25}, "clamp.stop_plate_gap"),
+        ({"element.body_height": 7.5, "stop.land_length": 0.1, "array.row_arms": [[9]]}, "element.rear_height"),
+        ({"clamp.stop_plate_gap": 0.8, "element.corner_radius": 0.8, "element.recess_depth": 0.8}, "element.seat_length"),
+    ],
+    "recess_fits_rear": [
+        ({"clamp.spacer_bottom": 0.7}, "clamp.spacer_bottom"),
+        ({"element.recess_depth": 0.2}, "element.recess_depth"),
+        ({"element.recess_offset": 18.0}, "element.recess_offset"),
+    ],
+    "stop_land_above_arm": [
+        ({"element.body_height": 2.65}, "element.body_height"),
+        ({"element.body_height": 0.3}, "element.body_height"),
+        ({"stop.gaps": {"6": 0.5}}, "stop.gaps.6"),
+    ],
+    "stop_gap_above_tolerance": [
+        ({"stop.tolerance": 0.1, "stop.yield_fraction": 0.4}, "stop.tolerance"),
+        ({"stop.gaps": {"4": 0.015}}, "stop.tolerance"),
+    ],
+    "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],
+    "holes_inside_body": [
+        ({"holes.screw_offsets": [4.1, 15.0], "clamp.end_plate_margin": 1.0}, "holes.screw_offsets"),
+        ({"holes.height": 4.0, "clamp.end_plate_bottom": 0.0}, "holes.height"),
+        ({"holes.dowel_hole": 3.0}, "holes.dowel_hole"),
+        ({"holes.dowel_hole": 3.2}, "holes.dowel_hole"),
+        ({"clamp.dowel": "2.5"}, "holes.dowel_hole"),
+        ({"holes.web": 2.0}, "element.rear_height"),
+        ({"holes.screw_offsets": [4.1], "holes.dowel_offsets": [9.1, 17.0]}, "holes.dowel_offsets"),
+    ],
+    "stack_can_be_clamped": [({"array.row_arms": [[4] * 500], "array.pitch": 6.0, "array.spacer": 3.0}, "array.row_arms")],
+    "end_plate_takes_holes": [
+        ({"clamp.end_plate_bottom": 0.9}, "clamp.end_plate_bottom"),
+        ({"clamp.end_plate_thickness": 4.0}, "clamp.end_plate_thickness"),
+        ({"clamp.end_plate_height": 14.5, "clamp.stop_plate_thickness": 2.0}, "clamp.end_plate_height"),
+    ],
+    "carrier_can_be_screwed": [
+        ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
+    ],
+    "stop_plate_can_be_held": [
+        ({"element.seat_length": 1.7}, "element.seat_length"),
+        ({"clamp.stop_plate_gap": 0.85}, "clamp.stop_plate_gap"),
+        ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
+        ({"clamp.stop_plate_thickness": 0.5}, "clamp.stop_plate_thickness"),
+        (
+            {**ONE, "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0},
+            "clamp.screw",
+        ),
+    ],
+    "carrier_holes_apart": [
+        ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
+        ({"clamp.carrier_screw_offset": 6.0, "clamp.mount_pitch_y": 25.0}, "clamp.mount_pitch_y"),
+    ],
+}  # fmt: skip
+
+CASES = [(rule, n) for rule, cases in WITNESSES.items() for n in range(len(cases))]
+
+
+def test_every_rule_has_a_witness():
+    assert set(WITNESSES) == set(RULES)
+
+
+@pytest.mark.parametrize(("rule", "n"), CASES, ids=[f"{rule}-{n}" for rule, n in CASES])
+def test_the_witness_breaks_its_rule_alone(rule, n):
+    changes, path = WITNESSES[rule][n]
+    design = variant(changes)
+    assert [b.rule for b in broken_rules(design)] == [rule]
+    with pytest.raises(InputError) as caught:
+        refuse_broken(design)
+    error = caught.value
+    assert error.where == path
+    assert path.split("[")[0] in paths(design) or path.startswith(("element.override.", "stop.gaps."))
+    assert rule in error.what and error.legal
+    text = str(error)
+    assert text.isprintable()
+    assert not re.search(r"\d\.\d{8}", text), "shows digits that nobody wrote"
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_shipped_designs_keep_every_rule(name):
+    assert broken_rules(load(name)) == []
+
+
+def test_several_broken_rules_are_all_named():
+    design = variant({"array.row_pitch": 2.0, "element.fillet_radius": 0.5})
+    assert [b.rule for b in broken_rules(design)] == ["arms_clear_opposite_row", "fillets_fit_slot"]
+    with pytest.raises(InputError, match="rule arms_clear_opposite_row .and fillets_fit_slot"):
+        refuse_broken(design)
+
+
+@settings(max_examples=150, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+@given(sound_designs())
+def test_a_design_made_to_keep_all_rules_is_not_refused(design):
+    assert broken_rules(design) == []
+    scene = make_scene(design, "array")
+    assert all(part.volume > 0 for part in scene.parts)
+
+
+@pytest.mark.parametrize("rows", [[1], [3], [5, 5], [1, 7], [7, 1], [20, 20], [50, 50], [500, 500], [500]])
+def test_the_shipped_hinge_in_rows_of_any_length(rows):
+    """Neither 2 nor 5 stands in code: with only the arms changed, 1 x 1 to 2 x 500 are designs."""
+    arms = [[(4, 5, 6, 7, 8)[(i * 7 + row) % 5] for i in range(n)] for row, n in enumerate(rows)]
+    for base in (MACRO, "soft-tissue"):
+        design = variant({"array.row_arms": arms}, base=base)
+        assert broken_rules(design) == []
+        scene = make_scene(design, "array")
+        placed = [p.designator for p in scene.placements if p.designator[0] == "E" and p.designator[1].isdigit()]
+        assert sorted(placed, key=lambda d: int(d[1:])) == [f"E{n + 1}" for n in range(sum(rows))]
+
+
+def _numbers() -> list[tuple[str, float, float]]:
+    found = []
+    for section, kind in SECTION_TYPES.items():
+        for f in fields(kind) if is_dataclass(kind) else ():
+            spec = f.metadata.get("spec")
+            if spec is not None and hasattr(spec, "low") and f.name != "gaps" and section in ("sheet", "array", "element", "holes", "clamp", "stop", "gauge"):
+                found.append((f"{section}.{f.name}", spec.low, spec.high))
+    return found
+
+
+@settings(max_examples=300, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.data())
+def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_drawn(data):
+    """Values anywhere in their ranges: the rules answer, and whatever they let pass becomes a scene."""
+    known = _numbers()
+    chosen = data.draw(st.lists(st.sampled_from(known), min_size=1, max_size=4, unique=True))
+    changes = {}
+    for path, low, high in chosen:
+        value = data.draw(st.sampled_from([low, high]) | st.floats(low, high))
+        changes[path] = value
+    changes["element.sides"] = data.draw(st.sampled_from(["one", "two"]))
+    changes["clamp.screw"] = data.draw(st.sampled_from(["M2", "M3", "M5"]))
+    arms = data.draw(st.sampled_from([[[4]], [[0.1]], [[100]], [[4, 5], [6]], [[8, 4]]]))
+    changes["array.row_arms"] = arms
+    tree = table(changes)
+    tree.pop("origin")
+    design: Design = from_table(tree)
+    if not broken_rules(design):
+        make_scene(design, "array")

@@ -1,0 +1,100 @@
+"""What the README says is true: its commands exist, its outputs are the program's, its pictures are generated."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tactcad.cli.main import COMMANDS, main
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks() -> list[str]:
+    """Indented blocks of the README, without their indentation."""
+    return [re.sub(r"(?m)^    ", "", b) for b in re.findall(r"(?:(?:^    .*|^)\n)+", README, flags=re.M) if b.strip()]
+
+
+def quoted(first: str) -> str:
+    """The block that starts with `first`."""
+    (found,) = (b for b in (block.strip("\n") for block in blocks()) if b.startswith(first))
+    return found
+
+
+def test_first_screen_has_the_picture_and_the_two_commands():
+    head = "\n".join(README.splitlines()[:12])
+    assert "docs/images/" in head and "make export" in head and "make test" in head
+
+
+def test_every_command_named_is_a_command_and_every_option_is_known(capsys):
+    lines = [line for block in blocks() for line in block.splitlines()] + re.findall(r"`([^`\n]+)`", README)
+    calls = [re.match(r"(?:\.venv/bin/)?tactcad (\w+)([^#]*)", line) for line in lines]
+    named = [call.groups() for call in calls if call]
+    assert len(named) >= 8 and {name for name, _ in named} <= set(COMMANDS)
+    for name, rest in named:
+        with pytest.raises(SystemExit):
+            main([name, "--help"])
+        text = capsys.readouterr().out
+        for option in re.findall(r"--[a-z]+", rest):
+            assert option in text, f"tactcad {name} has no {option}"
+
+
+def test_make_targets_named_exist():
+    makefile = (ROOT / "Makefile").read_text()
+    named = set(re.findall(r"(?:`|^    )make ([a-z]+)", README, flags=re.M))
+    assert {"export", "test", "check", "review"} <= named
+    for target in named:
+        assert re.search(rf"^{target}:", makefile, flags=re.M), target
+
+
+def test_files_linked_exist():
+    for path in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / path).is_file(), path
+
+
+def test_estimate_shown_is_the_one_printed(capsys, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert main(["estimate"]) == 0
+    printed = capsys.readouterr().out.strip("\n")
+    assert quoted("macro-array A, 7075-T6").rstrip() == printed.rstrip()
+
+
+def test_refusal_shown_is_the_one_printed(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "hardware" / "macro-array.toml").read_text().replace("fillet_radius = 0.30", "fillet_radius = 0.50")
+    (tmp_path / "wrong.toml").write_text(text)
+    assert main(["export", "wrong.toml"]) == 2
+    assert capsys.readouterr().err.strip() == quoted("tactcad: element.fillet_radius").strip()
+
+
+@pytest.mark.cad
+def test_python_shown_runs():
+    script = quoted("from tactcad.parts.designs import load")
+    run = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+
+
+@pytest.mark.cad
+def test_pictures_shown_are_the_exports(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert main(["export", "macro-array", "--out", str(tmp_path / "out")]) == 0
+    for name in ("open", "below"):
+        made = (tmp_path / "out" / "pictures" / f"macro-array-array-{name}.svg").read_bytes()
+        assert (ROOT / "docs" / "images" / f"macro-array-{name}.svg").read_bytes() == made, name
+
+
+def test_findings_quoted_stand_in_the_report(tmp_path, monkeypatch, capsys):
+    """Every number of the README's findings about the paper is in the report that validate makes now."""
+    monkeypatch.chdir(ROOT)
+    assert main(shlex.split(f"validate --out {tmp_path / 'report'}")) == 0
+    report = capsys.readouterr().out
+    section = README.split("## Held against the paper")[1].split("\n## ")[0]
+    # numbers with a decimal point or a unit, as the report writes them
+    for number in re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])|\d+ (?=%)", section):
+        assert number.strip() in report, number
