@@ -131,12 +131,10 @@ def name_faults(path: str, labels: list[str], rows: list[dict]) -> list[str]:
 
 
 def cut_faults(path: str, found: dict, part: dict) -> list[str]:
-    thickness = part["box_mm"][1][2] - part["box_mm"][0][2]
-    section = part["volume_mm3"] / thickness
     size = [part["box_mm"][1][i] - part["box_mm"][0][i] for i in (0, 1)]
     wrong = [] if found["closed"] else [f"{path}: an open contour"]
     for name, got, meant in (
-        ("area", found["area"], section), ("cut length", found["length"], part["cut_length_mm"]),
+        ("area", found["area"], part["section_area_mm2"]), ("cut length", found["length"], part["cut_length_mm"]),
         ("width", found["size"][0], size[0]), ("height", found["size"][1], size[1]),
     ):
         if not isclose(got, meant, rel_tol=AGREES):

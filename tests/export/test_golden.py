@@ -90,7 +90,7 @@ def test_same_revision_with_other_geometry_fails_with_old_and_new_value(record):
     findings = judge(record, golden_record(thicker))
     assert severities(findings) == {"fail"}
     assert "new revision letter" in findings[0].message
-    [box] = [f for f in findings if f.part == "macro-array-element-a4" and "box_mm" in f.message]
+    [box] = [f for f in findings if f.part == "macro-array-element-a4mm" and "box_mm" in f.message]
     assert "3]] -> " in box.message and box.message.endswith("2.9]]")
 
 
@@ -140,9 +140,9 @@ def test_added_and_removed_count_once(record):
 
 
 def test_a_hole_that_moved_is_seen(record):
-    holes = record["parts"]["macro-array-element-a4"]["holes"]
+    holes = record["parts"]["macro-array-element-a4mm"]["holes"]
     assert len(holes) == 3  # two screws and a dowel
-    path = ("parts", "macro-array-element-a4", "holes", "dowel_hole 1", "at_mm")
+    path = ("parts", "macro-array-element-a4mm", "holes", "dowel_hole 1", "at_mm")
     [change] = differences(record, edited(record, path, lambda at: [at[0] + 0.01, *at[1:]]))
     assert change.path == path
 

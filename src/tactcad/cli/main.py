@@ -18,6 +18,7 @@ COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
     "golden": "run every check, show what changed, and write a design's golden geometry",
+    "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
     "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
     "fit": "make the finite-element samples and fit the closed forms' constants on them",

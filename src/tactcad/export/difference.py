@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import isclose
 from typing import Any, Literal
 
-from tactcad.contour import Contour
+from tactcad.contour import Contour, Point
 from tactcad.contour.nearest import distance_to
 
 from .geometry import Record, contour_of
@@ -25,7 +25,7 @@ BY_SHARE = ("_mm2", "_mm3", "_g", "_n_per_mm", "_n")
 class Change:
     """One difference. `path` leads to the value; `old` and `new` are None where there is none.
 
-    `moved` is how far (mm) a contour strays from the other one, None for other values.
+    `moved` is how far (mm) a contour strays from the other one and `at` where most; None for other values.
     """
 
     kind: Literal["added", "removed", "changed"]
@@ -33,18 +33,28 @@ class Change:
     old: Any
     new: Any
     moved: float | None = None
+    at: Point | None = None
 
     def __str__(self) -> str:
         where = " / ".join(self.path)
-        if self.moved is not None:
-            return f"changed {where}: {_drawn(self.old)} -> {_drawn(self.new)}, up to {self.moved:.6g} mm apart"
-        if self.kind == "changed":
-            return f"changed {where}: {shown(self.old)} -> {shown(self.new)}{self._share()}"
-        return f"{self.kind:7} {where}: {shown(self.new if self.kind == 'added' else self.old)}"
+        old, new = self.shown()
+        if self.kind != "changed":
+            return f"{self.kind:7} {where}: {new if self.kind == 'added' else old}"
+        remark = self.remark()
+        return f"changed {where}: {old} -> {new}" + (f" ({remark})" if remark else "")
 
-    def _share(self) -> str:
+    def shown(self) -> tuple[str, str]:
+        """Old and new value on one line each."""
+        if self.path[-1] == "contours":
+            return _drawn(self.old), _drawn(self.new)
+        return shown(self.old), shown(self.new)
+
+    def remark(self) -> str:
+        """How large the change is: per cent of a number, millimetres of a contour."""
+        if self.moved is not None:
+            return f"up to {self.moved:.6g} mm apart"
         if _is_number(self.old) and _is_number(self.new) and self.old:
-            return f" ({100 * (self.new - self.old) / abs(self.old):+.3g} %)"
+            return f"{100 * (self.new - self.old) / abs(self.old):+.3g} %"
         return ""
 
 
@@ -65,6 +75,9 @@ def _compare(old: Any, new: Any, path: tuple[str, ...]) -> Iterator[Change]:
                 yield from _compare(old[key], new[key], here)
     elif path[-1:] == ("contours",):
         yield from _compare_contours(old, new, path)
+    elif path[:1] == ("values",):  # what the user wrote: every digit counts
+        if old != new:
+            yield Change("changed", path, old, new)
     elif not _same(old, new, path[-1] if path else ""):
         yield Change("changed", path, old, new)
 
@@ -88,20 +101,19 @@ def _compare_contours(old: list, new: list, path: tuple[str, ...]) -> Iterator[C
     if old == new:
         return
     before, after = [contour_of(rows) for rows in old], [contour_of(rows) for rows in new]
-    moved = max(_stray(before, after), _stray(after, before))
+    if not before or not after:
+        yield Change("changed", path, old, new)
+        return
+    moved, at = max(_stray(before, after), _stray(after, before))
     if moved > LENGTH_MM:
-        yield Change("changed", path, old, new, moved)
+        yield Change("changed", path, old, new, moved, at)
 
 
-def _stray(contours: list[Contour], others: list[Contour]) -> float:
-    """Largest distance (mm) of ends and middles of the one's segments from the others' curves."""
+def _stray(contours: list[Contour], others: list[Contour]) -> tuple[float, Point]:
+    """Largest distance (mm) of ends and middles of the one's segments from the others' curves, and where."""
     segments = [s for c in others for s in c]
     points = [s.at(u) for c in contours for s in c for u in (0.0, 0.5)]
-    if not points:
-        return 0.0
-    if not segments:
-        return float("inf")
-    return max(min(distance_to(s, p) for s in segments) for p in points)
+    return max((min(distance_to(s, p) for s in segments), p) for p in points)
 
 
 def shown(value: Any) -> str:
@@ -118,5 +130,7 @@ def shown(value: Any) -> str:
     return "none" if value is None else str(value) or '""'
 
 
-def _drawn(contours: list) -> str:
+def _drawn(contours: list | None) -> str:
+    if contours is None:
+        return "none"
     return f"{sum(len(c) for c in contours)} segments in {len(contours)} contours"

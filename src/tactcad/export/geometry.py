@@ -16,7 +16,7 @@ from tactcad.parts.description import Extrusion, Hole, ModelFile, Part
 from tactcad.parts.element import element_number
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import Layout
-from tactcad.parts.section import section
+from tactcad.parts.section import cut_section, section
 from tactcad.parts.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import Scene
@@ -54,7 +54,7 @@ def part_record(part: Part, qty: int) -> Record:
         "mass_g": part.mass,
         "centre_mm": None if file else part.centre,
         "box_mm": None if file else part_box(part),
-        "cut_length_mm": part.body.cut_length if part.process == "wire-cut" else None,
+        "cut_length_mm": cut_section(part).cut_length if part.process == "wire-cut" else None,
         "holes": _numbered([_hole(f) for f in part.features if isinstance(f, Hole)] + _round_openings(part)),
         "pockets": _numbered([
             {"name": f.name, "at_mm": f.at, "axis": f.axis, "area_mm2": f.volume / f.depth, "depth_mm": f.depth}

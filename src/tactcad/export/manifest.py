@@ -27,7 +27,8 @@ class FileRecord:
 
 @dataclass(frozen=True)
 class PartRecord:
-    """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` None where nothing is wire-cut.
+    """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and
+    `section_area_mm2` are the cut file's; None where nothing is wire-cut.
 
     `box_mm` is ((x, y, z) least, (x, y, z) largest).
     """
@@ -42,6 +43,7 @@ class PartRecord:
     centre_mm: tuple[float, float, float]
     box_mm: tuple[tuple[float, float, float], tuple[float, float, float]]
     cut_length_mm: float | None
+    section_area_mm2: float | None = None
 
 
 @dataclass(frozen=True)

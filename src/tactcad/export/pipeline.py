@@ -172,11 +172,13 @@ def _write_bills(
 
 
 def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cache) -> PartRecord:
+    from tactcad.parts.section import cut_section
+
     from .products import part_facts
 
     facts = part_facts(part, shapes, cache)
     low, high = facts["box"]
-    wire_cut = part.process == "wire-cut"
+    cut = cut_section(part) if part.process == "wire-cut" else None
     return PartRecord(
         part_no=part.part_no,
         name=part.name,
@@ -187,5 +189,6 @@ def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cac
         mass_g=part.mass,
         centre_mm=tuple(facts["centre"]),
         box_mm=(tuple(low), tuple(high)),
-        cut_length_mm=part.body.cut_length if wire_cut else None,
+        cut_length_mm=cut.cut_length if cut else None,
+        section_area_mm2=cut.section_area if cut else None,
     )

@@ -20,3 +20,9 @@ def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
         if isinstance(f, Hole) and f.through and f.axis[:2] == (0.0, 0.0)
     )
     return part.body.outer, part.body.openings + holes
+
+
+def cut_section(part: Part) -> Extrusion:
+    """What the wire leaves of a wire-cut part before anything else is done to it: its section, extruded."""
+    outer, openings = section(part)
+    return Extrusion(outer, part.body.thickness, openings)

@@ -1,0 +1,156 @@
+"""The two sides of `tactcad diff`: a design, an export's folder or a golden file, as a record of geometry."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from tactcad.design.messages import InputError
+from tactcad.parts.designs import load
+
+from .difference import Change, differences
+from .dxf import read_dxf
+from .geometry import Record, bill_line, contour_record, geometry
+from .golden import read_golden
+from .inputs import flattened, inputs_from_json
+from .manifest import NAME, Manifest, check_manifest, read_manifest
+
+# What an export's files say of a part; holes, placements and stiffness are in none of them.
+IN_EXPORTS = (
+    "name", "process", "qty", "volume_mm3", "area_mm2", "mass_g", "centre_mm", "box_mm", "cut_length_mm", "contours",
+)  # fmt: skip
+FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side: what was named and what it is, its record, and for an export its folder.
+
+    `values` are the design's fields by path, None where the side does not tell them (a golden file).
+    """
+
+    source: str
+    kind: Literal["design", "export", "golden"]
+    design: str
+    revision: str
+    record: Record
+    values: dict[str, Any] | None = None
+    folder: Path | None = None
+
+    def pictures(self) -> dict[str, bytes]:
+        """An export's pictures by path."""
+        if self.folder is None:
+            return {}
+        files = [f.path for f in read_manifest(self.folder).files if f.kind == "picture"]
+        return {path: (self.folder / path).read_bytes() for path in files}
+
+
+def read_side(source: str) -> Side:
+    """What `source` names: a folder with a manifest, a golden file (*.json), else a design.
+
+    Raises InputError where it is none of them, or damaged.
+    """
+    path = Path(source)
+    if path.is_dir():
+        return _export(source, path.resolve())
+    if path.suffix == ".json":
+        try:
+            record = read_golden(path)
+        except ValueError as error:
+            raise InputError(source, f"not a golden file: {error}") from None
+        sections = {name: record[name] for name in ("parts", "scenes", "elements")}
+        return Side(source, "golden", record["design"], record["revision"], sections)
+    design = load(source)
+    return Side(source, "design", design.name, design.design.revision, geometry(design), _values(flattened(design)))
+
+
+def _export(source: str, folder: Path) -> Side:
+    wrong = check_manifest(folder)
+    if wrong:
+        raise InputError(source, f"not a sound export: {wrong[0]}", legal=f"a folder with {NAME}, as `tactcad export` writes")
+    manifest = read_manifest(folder)
+    inputs = inputs_from_json(manifest.inputs)
+    # an export records its design as "design", beside the scenes it was asked for
+    values = {k.removeprefix("design."): v for k, v in inputs.values.items() if k.startswith("design.")} if inputs else None
+    try:
+        record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(source, f"not a sound export: {error}") from None
+    return Side(source, "export", manifest.design, manifest.revision, record, values and _values(values), folder)
+
+
+def _values(fields: dict[str, Any]) -> dict[str, Any]:
+    """A design's fields without the sources of its values, and without what stands at the head of every side."""
+    head = ("design.name", "design.revision")
+    return {path: v for path, v in fields.items() if not path.startswith("origin.") and path not in head}
+
+
+def _exported_parts(folder: Path, manifest: Manifest) -> Record:
+    drawn = {f.part_no: f.path for f in manifest.files if f.kind == "dxf"}
+    parts = {}
+    for part in sorted(manifest.parts, key=lambda p: p.part_no):
+        facts = {name: _plain(getattr(part, name)) for name in IN_EXPORTS if name != "contours"}
+        if part.part_no in drawn:
+            file = read_dxf(folder / drawn[part.part_no])
+            facts["contours"] = [contour_record(c) for c in (file.outer, *file.openings)]
+        parts[part.part_no] = facts
+    return parts
+
+
+def _plain(value: Any) -> Any:
+    return [_plain(v) for v in value] if isinstance(value, tuple) else value
+
+
+def _exported_bills(folder: Path, manifest: Manifest) -> Record:
+    scenes = {}
+    for file in manifest.files:
+        if file.kind == "bom" and file.path.endswith(".json"):
+            bill = json.loads((folder / file.path).read_bytes())
+            scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
+    return scenes
+
+
+def compare_sides(old: Side, new: Side) -> list[Change]:
+    """What changed, in as much as both sides tell it: names, the design's values, then the geometry."""
+    records = []
+    for side in (old, new):
+        record = {**side.record, "parts": {number: dict(part) for number, part in side.record["parts"].items()}}
+        if "export" in (old.kind, new.kind):
+            record = _as_exported(record)
+        head: Record = {"design": side.design, "revision": side.revision}
+        if old.values is not None and new.values is not None:
+            head["values"] = side.values
+        records.append({**head, **record})
+    _drop_unknown(*records)
+    return differences(*records)
+
+
+def not_compared(old: Side, new: Side) -> list[str]:
+    """What one of the sides does not tell."""
+    missing = []
+    if "golden" in (old.kind, new.kind):
+        missing.append("a golden file holds no design values")
+    if "export" in (old.kind, new.kind) and old.kind != new.kind:
+        missing.append("an export holds no hole list, no placements and no stiffness")
+    return missing
+
+
+def _as_exported(record: Record) -> Record:
+    """Only what an export's files hold; contours stand in them for wire-cut parts."""
+    parts = {}
+    for number, part in record["parts"].items():
+        known = IN_EXPORTS if part["process"] == "wire-cut" else IN_EXPORTS[:-1]
+        parts[number] = {name: part[name] for name in known if name in part}
+    return {"parts": parts, "scenes": {name: {"bom": scene["bom"]} for name, scene in record["scenes"].items()}}
+
+
+def _drop_unknown(old: Record, new: Record) -> None:
+    """A part whose shape comes from a file is measured by the kernel only: not known without an export."""
+    for number in set(old["parts"]) & set(new["parts"]):
+        parts = [old["parts"][number], new["parts"][number]]
+        for name in FROM_SHAPE:
+            if any(part.get(name) is None for part in parts):
+                for part in parts:
+                    part.pop(name, None)
