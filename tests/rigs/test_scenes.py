@@ -93,6 +93,8 @@ def test_weights_lie_on_each_other(weights):
     scene = make_scene(load("macro-array"), "grasping", Pose(weights=weights))
     discs = [p for p in scene.placements if p.designator.startswith("WT")]
     assert len(discs) == weights
+    for p in discs:  # as high as its mass asks for
+        assert build(p.part).volume * p.part.material.density * 1e-6 == pytest.approx(100.0, rel=1e-3)
     heights = [p.origin[2] for p in discs]
     assert all(b - a == pytest.approx(discs[0].part.body.thickness) for a, b in zip(heights, heights[1:]))
 

@@ -11,7 +11,7 @@ from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, Rig
 
 from .array import DOWN, array
 from .builder import Builder
-from .common import CORNERS, LENGTH, THREAD, UNDER, place_force_axis, place_stand
+from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
 from .scene import REST, Motion, Pose, Rotation, Scene
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
@@ -31,14 +31,14 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     px, py = pads[pose.element - 1]
     dx, dy = -px, py  # the array lies on its back: its y runs against the scene's
     b = Builder()
-    base, post = place_stand(b, rig, stages=True)
-    under = _stages(b, rig, base, dx, dy)
+    post = place_stand(b, rig, stages=True)
+    under = _stages(b, rig, dx, dy)
     _mounted_array(b, rig, under, dx, dy, pose)
     contact = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
     c = design.calibration
     b.meet(contact, "TI1", "press")
     b.step(
-        "Roller tip", (0, 0, -30),
+        "Roller tip", (0, -130, AXIS_LIFT - 40),
         "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, roller along y: "
         f"lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, set x by the edge of "
         f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
@@ -48,13 +48,13 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     return b.scene("calibration", _motions(design, pads, px, py), cover=b.groups["axis"])
 
 
-def _stages(b: Builder, rig: RigLayout, base: str, dx: float, dy: float) -> str:
+def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
     c = rig.design.calibration
     fixed, moving = bought.stage_fixed(c.stage_travel), bought.stage_moving(c.stage_travel)
     head = bought.micrometer(c.stage_travel, 0.01)
     t, half = STAGE_PLATE, STAGE / 2
-    below, at = base, (0.0, 0.0)
+    below, at = STAND, (0.0, 0.0)
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", OUT_OF_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")

@@ -22,11 +22,13 @@ from .array import AGAINST_Y, ALONG_Y
 from .builder import Builder
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
+STAND = "BP1"  # the base plate
+AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 
 
-def place_stand(b: Builder, rig: RigLayout, stages: bool) -> tuple[str, str]:
-    """Base plate and post; returns their designators."""
+def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
+    """Base plate (STAND) and post; returns the post's designator."""
     base = b.place("BP", stand.base_plate(rig, stages), (0, 0, -BASE[1]))
     post = b.place("PO", stand.post(rig), (0, rig.post_y, 0), ALONG_Y)
     b.meet(base, post)
@@ -35,15 +37,16 @@ def place_stand(b: Builder, rig: RigLayout, stages: bool) -> tuple[str, str]:
         at = (x, rig.post_y + POST[1] / 2 + y, -BASE[1] + head)
         b.screw("M5", 16.0, at, (0, 0, 1), base, post)
     b.step(
-        "Stand", (0, 40, 0),
+        "Stand", (0, 0, 0) if stages else (0, 0, -60),
         "Screw the post on the base plate from below. Before the last turn, check with a square on the upper face "
-        "that the post's front stands square within 0.02 mm on 100 mm, both ways.",
+        "that the post's front stands square within 0.02 mm on 100 mm, both ways."
+        + ("" if stages else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."),
     )
-    return base, post
+    return post
 
 
-def place_cart(b: Builder, rig: RigLayout, base: str, roll: float, dents=(), depth: float = 0.0) -> str:
-    """Cart on the base plate with holder and sample; returns the sample's designator."""
+def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float = 0.0) -> str:
+    """Cart for the base plate, with holder and sample; returns the sample's designator."""
     b.group("cart")
     c, bear = rig.cart, rig.bearing
     plate = b.place("CT", cart.cart_plate(rig), (roll, 0, c.clearance))
@@ -66,7 +69,7 @@ def place_cart(b: Builder, rig: RigLayout, base: str, roll: float, dents=(), dep
             b.meet(near, ball)
             b.meet(ball, beyond)
             b.meet(axle, ball, "press")
-            b.meet(ball, base)
+            b.meet(ball, STAND)
         b.step(
             f"Wheels, {which}", (0, sy * 70, 25),
             "Put shim, bearing, shim on each axle and start its thread."
@@ -134,7 +137,7 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     b.meet(fixed, moving)
     b.group(None)
     b.step(
-        "Vertical stage", (0, -40, 0),
+        "Vertical stage", (0, -40, AXIS_LIFT),
         f"Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the post's rows at "
         f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to the base plate: "
         "0.01 mm on the whole travel against a square.",
@@ -145,7 +148,7 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     b.meet(moving, plate)
     for sx, sy in CORNERS:
         b.screw(THREAD, LENGTH, (sx * STAGE_HOLE, back - UNDER, z + sy * STAGE_HOLE), (0, 1, 0), plate, moving)
-    b.step("Axis plate", (0, -80, 0), "Screw the axis plate on the stage's moving half.")
+    b.step("Axis plate", (0, -80, AXIS_LIFT), "Screw the axis plate on the stage's moving half.")
     front = back - 2 * PLATE
     gauge_plate = b.place("GP", stand.gauge_plate(rig), (0, front, z), ALONG_Y)
     gauge_end = rig.gauge_bottom(touch) + height - GAUGE_SHAFT
@@ -153,13 +156,13 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     b.meet(gauge_plate, gauge)
     for dz in bought.GAUGE_THREADS:
         b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
-    b.step("Force gauge", (0, -130, 0), "On the bench: screw the force gauge on its plate from behind, heads sunk.")
+    b.step("Force gauge", (0, -130, AXIS_LIFT), "On the bench: screw the force gauge on its plate from behind, heads sunk.")
     b.meet(plate, gauge_plate)
     for sx, sy in CORNERS:
         at = (sx * stand.GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * stand.GAUGE_SCREW_Z)
         b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
     b.step(
-        "Gauge on its axis", (0, -150, 0),
+        "Gauge on its axis", (0, -150, AXIS_LIFT),
         "Screw the gauge plate on the axis plate, beside the gauge. Zero the gauge only after its cable is strapped to the post.",
     )
     tip_z = touch + height

@@ -32,10 +32,10 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     g = design.grasping
     weights = round(g.weights) if pose.weights is None else pose.weights
     b = Builder()
-    base, post = place_stand(b, rig, stages=False)
     pads = pad_middles(rig.array)
     dents = tuple((x - pose.cart, y) for x, y in pads) if pose.deflection else ()
-    sample = place_cart(b, rig, base, pose.cart, dents, pose.deflection)
+    sample = place_cart(b, rig, pose.cart, dents, pose.deflection)
+    post = place_stand(b, rig, stages=False)
     rail = _guide(b, rig, post)
     lift = pose.height - pose.deflection
     mass = g.moving_weight / STANDARD_GRAVITY * 1e3 - unballasted_mass(rig)
@@ -51,7 +51,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     b.group(None)
     if weights:
         b.step(
-            "Weights", (0, 0, 190),
+            "Weights", (0, 0, 330),
             "One disc a loading step, laid on without a knock; each is weighed before. Without any, the grasping force is "
             f"the moving weight: {g.moving_weight:g} N.",
         )
@@ -104,7 +104,7 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
         at = (sx * STAGE_HOLE, front + rig.riser_depth - stand.RISER_UNDER_HEAD, z + sy * RISER_PITCH)
         b.screw("M4", stand.RISER_SCREW, at, (0, 1, 0), riser, post)
     b.step(
-        "Riser", (0, -50, 0),
+        "Riser", (0, -50, 110),
         "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square on the base plate.",
     )
     rail = b.place("RL", bought.rail(length), (0, front, z), AGAINST_Y)
@@ -112,7 +112,7 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
     for dz in bought.rail_holes(length):
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
     b.step(
-        "Guide rail", (0, -85, 0),
+        "Guide rail", (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the middle outwards.",
     )
     return rail
@@ -126,7 +126,7 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, ballast: float) 
     zc = rig.carriage_middle + lift
     carriage = b.place("CG", bought.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
     b.meet(rail, carriage)
-    b.step("Carriage", (0, -85, 60), "Slide the carriage from its transport rail on the guide, seals taken off, one drop of thin oil.")
+    b.step("Carriage", (0, -85, 200), "Slide the carriage from its transport rail on the guide, seals taken off, one drop of thin oil.")
     foot = b.place("FO", carried.foot(rig), (0, 0, rig.foot_bottom + lift))
     bar = b.place("BR", carried.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
     b.meet(foot, bar)
@@ -159,17 +159,17 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, ballast: float) 
     b.meet(bar, platform)
     for sx in (-1, 1):
         b.screw("M4", 10.0, (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, z - PLATFORM + under), (0, 0, -1), platform, bar)
-    b.step("Platform", (0, 0, 110), "Screw the platform on the bar, heads sunk.")
+    b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
     pin = b.place("PN", carried.pin(rig), (0, 0, z))
     b.meet(platform, pin)
     b.screw("M4", 10.0, (0, 0, z - under), (0, 0, 1), platform, pin)
-    b.step("Pin", (0, 0, 140), "Screw the pin on the platform from below.")
+    b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.")
     if ballast > 0:
         disc = carried.ballast(rig, ballast)
         name = b.place("BA", disc, (0, 0, z))
         b.meet(platform, name)
         b.step(
-            "Ballast", (0, 0, 165),
+            "Ballast", (0, 0, 305),
             f"Weigh all that moves: with the ballast it must be {design.grasping.moving_weight:g} N. Turn the ballast thinner until it is.",
         )
         z += disc.body.thickness
