@@ -18,6 +18,7 @@ from .interference import check_interference
 from .mesh import check_mesh
 from .report import Report
 from .shop import DEFAULT, load_shop
+from .strength import check_strength
 from .wirecut import check_wirecut
 
 
@@ -32,6 +33,7 @@ def run_checks(
     """
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)
+    report.run("strength", check_strength, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
