@@ -213,7 +213,7 @@ def test_equal_elements_share_a_number_and_different_ones_never_do():
 def test_numbers_do_not_depend_on_the_order_of_the_list():
     arms = [4, 5.5, 6]
     reference = parts_by_number(variant({"array.row_arms": [arms]}))
-    assert set(reference) == {"macro-array-element-a4", "macro-array-element-a5.5", "macro-array-element-a6"}
+    assert set(reference) == {"macro-array-element-a4mm", "macro-array-element-a5.5mm", "macro-array-element-a6mm"}
     for order in permutations(arms):
         assert parts_by_number(variant({"array.row_arms": [list(order)]})) == reference
     assert parts_by_number(variant({"array.row_arms": [[6, 6], [4, 5.5]]})) == reference

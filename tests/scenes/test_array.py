@@ -59,7 +59,7 @@ def apart(a: np.ndarray, b: np.ndarray, gap: float = 1e-6) -> bool:
 
 def test_designators_are_table_1s():
     scene = make_scene(DESIGNS["macro"], "array")
-    arms = {n: float(p.part.part_no.rsplit("-a", 1)[1]) for n, p in elements(scene).items()}
+    arms = {n: float(p.part.part_no.rsplit("-a", 1)[1].removesuffix("mm")) for n, p in elements(scene).items()}
     assert sorted(arms) == list(range(1, 11))
     assert {n: arms[n] for n in PUBLISHED} == PUBLISHED
     assert [p.designator for p in scene.placements if p.designator.startswith("E") and p.designator[1:].isdigit()] == [

@@ -24,6 +24,7 @@ from .moving_weight import check_moving_weight
 from .overload import check_stops
 from .report import Report
 from .shop import DEFAULT, load_shop
+from .strength import check_strength
 from .wirecut import check_wirecut
 
 
@@ -38,6 +39,7 @@ def run_checks(
     """
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)
+    report.run("strength", check_strength, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)

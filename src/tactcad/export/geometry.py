@@ -119,10 +119,10 @@ def _placed(scene: Scene) -> Record:
 
 
 def _elements(design: Design) -> Record:
-    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung."""
+    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its range."""
     layout = Layout(design)
     hinges = hinge_section(layout, layout.elements)
-    stiffness = ladder.stiffness(hinges, ladder.DEFAULT_RUNG)
+    known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
     at_yield = strength.yield_force(hinges, design_alloy(design))
     return {
         place.designator: _rounded({
@@ -133,10 +133,10 @@ def _elements(design: Design) -> Record:
             "hinge_length_mm": place.hinge.l,
             "fillet_radius_mm": place.hinge.r,
             "arm_height_mm": place.hinge.h,
-            "stiffness_n_per_mm": float(K),
-            "yield_force_n": float(force),
+            "stiffness_n_per_mm": float(K) if valid else None,
+            "yield_force_n": float(force) if valid else None,
         })
-        for place, K, force in zip(layout.elements, stiffness, at_yield)
+        for place, K, force, valid in zip(layout.elements, known.stiffness, at_yield, known.valid)
     }  # fmt: skip
 
 

@@ -90,9 +90,15 @@ def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
     """
     k = k or by_sides("fillet", s.two_sided)
     t, r, lc = s.hinge_thickness, s.fillet_radius, s.straight_length
-    where = lc / 2.0 + k["a"] * np.sqrt(r * t) - k["b"] * r
     notch = 1.0 + k["d"] * np.exp(-k["e"] * lc / t)
-    return (1.0 + where / s.load_arm) * (1.0 + k["c"] * (r / t) ** -k["m"] * notch)
+    return (1.0 + peak_position(s, k) / s.load_arm) * (1.0 + k["c"] * (r / t) ** -k["m"] * notch)
+
+
+def peak_position(s: HingeSection, k: Constants | None = None) -> Array:
+    """How far the peak sits from the hinge's centre towards the body, mm: lc/2 + a sqrt(r t) - b r."""
+    k = k or by_sides("fillet", s.two_sided)
+    t, r = s.hinge_thickness, s.fillet_radius
+    return s.straight_length / 2.0 + k["a"] * np.sqrt(r * t) - k["b"] * r
 
 
 def face_factor(s: HingeSection, k: Constants | None = None) -> Array:

@@ -7,6 +7,7 @@ from math import floor, sqrt
 
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.stop import largest_closing_force
 
 from .layout import ElementPlace, HingeShape, Layout
 
@@ -19,7 +20,8 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
     [stop.gaps] where it names the arm, else yield_fraction of the nominal deflection at yield,
     carried from the load line to the tip by the rigid arm's lever a/L and rounded to 0.01 mm (below 0.1 mm
-    to 0.001), but no more than there is room for under the ledge.
+    to 0.001), but no more than there is room for under the ledge, nor than the fillet bears when the overload
+    force has closed the gap with its tolerance. Where no gap could save it, `tactcad check` says so.
     Nominal yield: 6 F L/(b t^2) = yield strength. Stiffness from the solid rung; beyond the range of its fit from
     the section integral, which has none and errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as
     stiff, 1.02 in the median (20 000 random designs).
@@ -27,15 +29,17 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     design = layout.design
     if design.stop.gaps and place.arm in design.stop.gaps:
         return design.stop.gaps[place.arm]
-    wanted = _at_yield_fraction(
+    wanted, bearable = _before_yield(
         place.hinge.t, place.hinge.l, place.hinge.r, place.hinge.h, place.arm, place.load_arm, place.body_length,
         design.element.body_height, design.sheet.thickness, design.element.sides == "two",
         design.material.youngs_modulus, design.material.poisson, design.material.yield_strength,
-        design.stop.yield_fraction,
+        design.stop.yield_fraction, design.rating.overload_force,
     )
-    room = land_room(layout, place.hinge)
-    step = STEP_MM if min(wanted, room) >= 10 * STEP_MM else STEP_MM / 10
-    steps = min(round(wanted / step), floor(room / step + 1e-9))
+    most = land_room(layout, place.hinge)
+    if bearable > 2 * design.stop.tolerance:
+        most = min(most, bearable - design.stop.tolerance)
+    step = STEP_MM if min(wanted, most) >= 10 * STEP_MM else STEP_MM / 10
+    steps = min(round(wanted / step), floor(most / step + 1e-9))
     return round(steps * step, 6)
 
 
@@ -50,9 +54,13 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _at_yield_fraction(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction) -> float:
+def _before_yield(
+    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction, overload
+) -> tuple[float, float]:
+    """The wanted gap, and the one that the overload force closes when the fillet is about to yield; mm at the tip."""
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
-    deflection = yield_strength * b * t**2 / (6 * L) / K
-    return fraction * deflection * a / L
+    nominal = yield_strength * b * t**2 / (6 * L) / K
+    bearable = float(largest_closing_force(section, K, a, overload, yield_strength)) / K
+    return fraction * nominal * a / L, bearable * a / L
