@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from datetime import date
 from pathlib import Path
 
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -282,6 +283,7 @@ def run(smoke: bool) -> dict:
     repeats = 2 if smoke else 7
     ours = plane_meshes((2, 3) if smoke else (1, 2, 3, 4, 6, 8), repeats)
     result = {
+        "date": date.today().isoformat(),
         "machine": {
             "processor": platform.machine(),
             "system": platform.system(),
@@ -325,8 +327,8 @@ def goals(result: dict) -> list[str]:
 
 def show(result: dict) -> None:
     for title, rows in result.items():
-        print(f"\n{title}")
-        for row in rows if isinstance(rows, list) else [rows]:
+        print(f"\n{title}" if not isinstance(rows, str) else f"{title} {rows}")
+        for row in rows if isinstance(rows, list) else [rows] if isinstance(rows, dict) else []:
             print(
                 "  "
                 + ", ".join(f"{k} {v:.3g}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())

@@ -55,7 +55,7 @@ def test_two_designs(thicker, capsys):
     [K] = [line for line in lines if line.startswith("changed elements / E1 / stiffness")]
     old, new = map(float, re.search(r": (\S+) -> (\S+) ", K).groups())
     assert (new / old) == pytest.approx((0.17 / 0.15) ** 3, rel=0.05)  # a hinge's stiffness goes with t^3
-    [outline] = [line for line in lines if "element-a9 / contours" in line]
+    [outline] = [line for line in lines if "element-a9mm / contours" in line]
     assert "mm apart" in outline
     assert not [line for line in lines if "spacer" in line or "carrier" in line]
 
@@ -97,7 +97,7 @@ def test_the_page_needs_nothing_else_and_shows_values_and_contours(thicker, tmp_
     diff(capsys, SHIPPED, thicker, "--html", out)
     text = out.read_text()
     assert_offline(text)
-    assert "element.hinge_thickness" in text and "soft-tissue-element-a9" in text
+    assert "element.hinge_thickness" in text and "soft-tissue-element-a9mm" in text
     assert text.count('<path class="old"') == text.count('<path class="new"') == 4  # two parts, whole and enlarged
 
 
@@ -135,13 +135,13 @@ def test_two_exports(exports, tmp_path, capsys):
     html = tmp_path / "changes.html"
     out = diff(capsys, *exports, "--html", html)
     assert "changed values / element.hinge_thickness: 0.15 -> 0.17" in out
-    assert "element-a9 / contours" in out
+    assert "element-a9mm / contours" in out
     assert "spacer" not in out
     text = html.read_text()
     assert_offline(text)
     # the two elements look different, and the array's pictures may; the spacer does not
     shown = set(re.findall(r"<h3>(pictures/[^<]+)</h3>", text))
-    assert {"pictures/soft-tissue-element-a5.svg", "pictures/soft-tissue-element-a9.svg"} <= shown
+    assert {"pictures/soft-tissue-element-a5mm.svg", "pictures/soft-tissue-element-a9mm.svg"} <= shown
     assert "pictures/soft-tissue-spacer.svg" not in shown
     assert text.count("<img ") == 2 * len(shown)
 

@@ -216,7 +216,7 @@ def test_hinge_and_area_measured_in_the_cut_files(two_exports):
     folder, design = two_exports[0] / "out-1", variant()
     volumes = {p.part_no: p.volume_mm3 for p in read_manifest(folder).parts}
     for place in Layout(design).elements:
-        number = f"macro-array-element-a{place.arm:g}"
+        number = f"macro-array-element-a{place.arm:g}mm"
         segments = dxf_segments(folder / "dxf" / f"{number}_A.dxf")
         face, floor = heights_at(segments, place.hinge_x)[:2]
         assert floor - face == pytest.approx(design.element.hinge_thickness, abs=1e-6)
@@ -258,14 +258,14 @@ def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
     done, notes = exported(variant({"array.row_arms": [[4.5, 6.0]]}), mine)
     assert done.reasons == ("design.array.row_arms[0][0] changed 4.0 -> 4.5",)
     assert any("4.0 -> 4.5" in line for line in notes.lines)
-    assert done.built == ("macro-array-element-a4.5",)
+    assert done.built == ("macro-array-element-a4.5mm",)
     assert set(done.made) == {
-        "step/macro-array-element-a4.5_A.step", "dxf/macro-array-element-a4.5_A.dxf", "pictures/macro-array-element-a4.5.svg",
+        "step/macro-array-element-a4.5mm_A.step", "dxf/macro-array-element-a4.5mm_A.dxf", "pictures/macro-array-element-a4.5mm.svg",
         "step/macro-array-array_A.step", "pictures/macro-array-array-above.svg", "pictures/macro-array-array-below.svg",
         "pictures/macro-array-array-open.svg",
     }  # fmt: skip
     after = contents(mine)
-    assert not [name for name in after if "-a4." in name and "-a4.5" not in name], "the old element is gone"
+    assert not [name for name in after if "-a4mm" in name], "the old element is gone"
     same = set(before) & set(after) - set(done.made) - {"bom.csv", "bom.json", "manifest.json"}
     assert len(same) > 20 and all(before[name] == after[name] for name in same)
 
@@ -345,7 +345,7 @@ def test_a_comment_in_the_source_rebuilds_in_a_fresh_process(mine, tmp_path):
 @pytest.mark.parametrize("damage", ["changed", "cut", "removed", "added", "manifest", "manifest emptied"])
 def test_a_damaged_export_is_noticed_and_made_whole(damage, mine):
     good = contents(mine)
-    target = mine / "dxf" / "macro-array-element-a4_A.dxf"
+    target = mine / "dxf" / "macro-array-element-a4mm_A.dxf"
     if damage == "changed":
         target.write_bytes(target.read_bytes().replace(b"0.25", b"0.26", 1))
     elif damage == "cut":

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import product
 from math import cos, pi, sin
 
 from tactcad.contour import Arc, Contour, Point
-from tactcad.parts.description import Extrusion, Part, Revolution, Vector
+from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution, Vector
 from tactcad.scenes.scene import Placement
 
 _STEPS = 96  # points on a full turn: within 0.6 permille of the radius
 
 
 def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -> tuple[float, float, float, float]:
-    """x_min, y_min, x_max, y_max (mm) of the placed parts as seen from `eye`, with `right` to the right."""
+    """x_min, y_min, x_max, y_max (mm) of the placed parts as seen from `eye`, with `right` to the right.
+
+    A model file counts with its box, which may be seen larger than the model.
+    """
     up = _unit(_cross(eye, right))
     points = [
         (_dot(q, right), _dot(q, up)) for p in placements for q in (placed(p, v) for v in _surface_points(p.part))
@@ -33,6 +37,8 @@ def _surface_points(part: Part) -> Iterator[Vector]:
         for x, y in _curve_points(body.outer):
             yield (x, y, 0.0)
             yield (x, y, body.thickness)
+    elif isinstance(body, ModelFile):
+        yield from product(*zip(*body.box))
     elif isinstance(body, Revolution):
         for r, z in _curve_points(body.profile):
             for k in range(_STEPS):
@@ -60,8 +66,10 @@ def _unit(a: Vector) -> Vector:
 
 
 def part_box(part: Part) -> tuple[Vector, Vector]:
-    """Least and largest corner of an extruded or revolved part in its own frame, mm, exact."""
+    """Least and largest corner of a part in its own frame, mm, exact."""
     body = part.body
+    if isinstance(body, ModelFile):
+        return body.box
     if isinstance(body, Extrusion):
         x0, y0, x1, y1 = body.outer.box
         return (x0, y0, 0.0), (x1, y1, body.thickness)

@@ -21,7 +21,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Vector
+from tactcad.parts.description import ModelFile, Vector
 from tactcad.scenes.scene import Placement
 
 from .extent import projected_box
@@ -144,17 +144,27 @@ def svg(drawn: Drawing, title: str, description: str) -> bytes:
 
 
 def check_picture(data: bytes, placements: Sequence[Placement], view: View) -> None:
-    """Raise CheckFailure unless the written picture spans what the placements' descriptions project to."""
+    """Raise CheckFailure unless the written picture spans what the placements' descriptions project to.
+
+    Where models from files stand among them it spans the others at least, and all boxes at most.
+    """
     text = data.decode()
     points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]
     if not points:
         raise CheckFailure(f"picture {view.name}: nothing is drawn")
     xs, ys = zip(*points)
     drawn = (max(xs) - min(xs), max(ys) - min(ys))
+    described = [p for p in placements if not isinstance(p.part.body, ModelFile)]
+    least, most = (_span(some, view) if some else (0.0, 0.0) for some in (described, placements))
+    for got, low, high, name in zip(drawn, least, most, ("width", "height")):
+        if not low - SAME_EXTENT <= got <= high + SAME_EXTENT:
+            meant = f"{low:.3f}" if low == high else f"{low:.3f} to {high:.3f}"
+            raise CheckFailure(f"picture {view.name}: {name} {got:.3f} mm drawn, {meant} mm expected")
+
+
+def _span(placements: Sequence[Placement], view: View) -> tuple[float, float]:
     x0, y0, x1, y1 = projected_box(placements, view.right, view.eye)
-    for got, meant, name in ((drawn[0], x1 - x0, "width"), (drawn[1], y1 - y0, "height")):
-        if abs(got - meant) > SAME_EXTENT:
-            raise CheckFailure(f"picture {view.name}: {name} {got:.3f} mm drawn, {meant:.3f} mm expected")
+    return (x1 - x0, y1 - y0)
 
 
 def _polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
