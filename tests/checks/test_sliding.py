@@ -33,7 +33,7 @@ def test_zones_by_hand():
     assert y[0] == (0, 0) and y[-1] == (8, 8)
     _, _, along = zones(SHAFT)
     assert along == ((0, 0), (30, 30), (50, 50))
-    assert zones(made("FILE", ModelFile("x.step", "", 1.0))) is None
+    assert zones(made("FILE", ModelFile("x.step", "", 1.0, ((0, 0, 0), (1, 1, 1))))) is None
 
 
 def test_a_slope_and_an_arc_change_all_along():
