@@ -38,13 +38,18 @@ class Meeting:
     anchor: int
 
 
-def check_interference(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Finding]:
-    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame."""
+def check_interference(
+    scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Meeting] | None = None
+) -> list[Finding]:
+    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame.
+
+    `known` keeps verdicts from scene to scene of one design: an array in a rig is not looked at again.
+    """
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
-    boxes = np.array([_placed_box(p, local[p.part.part_no]) for p in scene.placements])
+    boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
     changing = {part.part_no: zones(part) for part in scene.parts}
-    known: dict[tuple, Meeting] = {}
+    known = {} if known is None else known
     found = []
     met: set[frozenset[str]] = set()
     for i, j in near_pairs(boxes):
@@ -139,7 +144,8 @@ def _finding(check: str, first: Placement, second: Placement, m: Meeting, value:
     return Finding(check, "fail", first.designator, tuple(map(float, place)), value, 0.0, message)
 
 
-def _placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
+def placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
+    """Box (2, 3) in the scene of a placed part, from its own (least, largest corner)."""
     return _boxed(box, np.array(p.rotation), np.array(p.origin))
 
 
