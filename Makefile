@@ -41,8 +41,9 @@ review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, co
 	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
 	exit $$status
 
-bench: environment ## export times against a plain script, in one run
+bench: environment ## export times against a plain script, interference against all pairs by the kernel
 	$(BIN)/python benchmarks/export.py
+	$(BIN)/python benchmarks/checks.py
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

@@ -210,6 +210,15 @@ def test_equal_elements_share_a_number_and_different_ones_never_do():
     assert len(parts_by_number(OVERRIDDEN)) == 8  # a4, a5, a7 and a8 as designed, and four of their own
 
 
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("hinge_thickness", 0.3), ("hinge_length", 1.0), ("fillet_radius", 0.2), ("arm_height", 2.5)],
+)
+def test_whatever_an_override_changes_is_in_the_number(field, value):
+    found = parts_by_number(variant({"array.row_arms": [[6, 6]], f"element.override.2.{field}": value}))
+    assert len(found) == 2 and all(f"{value:g}" in number for number in set(found) - {"macro-array-element-a6mm"})
+
+
 def test_numbers_do_not_depend_on_the_order_of_the_list():
     arms = [4, 5.5, 6]
     reference = parts_by_number(variant({"array.row_arms": [arms]}))

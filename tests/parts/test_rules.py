@@ -14,6 +14,7 @@ from variants import table, variant
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
+from tactcad.parts.description import Part
 from tactcad.parts.designs import load
 from tactcad.parts.rules import RULES, broken_rules, refuse_broken
 from tactcad.scenes import make_scene
@@ -168,8 +169,59 @@ def test_several_broken_rules_are_all_named():
 @given(sound_designs())
 def test_a_design_made_to_keep_all_rules_is_not_refused(design):
     assert broken_rules(design) == []
-    scene = make_scene(design, "array")
-    assert all(part.volume > 0 for part in scene.parts)
+    for part in make_scene(design, "array").parts:
+        assert part.volume > 0
+        if part.process in ("milled", "ground"):
+            assert holes_outside(part) == []
+
+
+def holes_outside(part: Part) -> list[str]:
+    """Holes that reach over the edge of the plate they are in, counterbores included."""
+    x0, y0, x1, y1 = part.body.outer.box
+    low, high = (x0, y0, 0.0), (x1, y1, part.body.thickness)
+    outside = []
+    for f in part.features:
+        r = max(f.diameter, f.counterbore[0] if f.counterbore else 0.0) / 2
+        across = [k for k in range(3) if not f.axis[k]]
+        if any(f.at[k] - r < low[k] + 0.1 or f.at[k] + r > high[k] - 0.1 for k in across):
+            outside.append(f.name)
+    return outside
+
+
+def checked(design: Design) -> list[str]:
+    from tactcad.checks.run import run_checks
+
+    # whether its hinges bear the overload is another question than whether it is a good solid
+    return [str(f) for f in run_checks(design, ["array"]).failures if f.check != "overload"]
+
+
+@pytest.mark.cad
+@settings(max_examples=3, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+@given(sound_designs(row_lengths=(1, 2, 3)))
+def test_such_designs_build_and_pass_every_check(design):
+    assert checked(design) == []
+
+
+@pytest.mark.nightly
+@pytest.mark.cad
+@settings(max_examples=150, deadline=None, suppress_health_check=list(HealthCheck))
+@given(sound_designs(row_lengths=(1, 2, 3, 5)))
+def test_many_such_designs_build_and_pass_every_check(design):
+    assert checked(design) == []
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"element.rear_height": 16.0},  # carrier over high rear bodies
+        {"array.row_arms": [[4] * 4], "clamp.end_plate_thickness": 5.0, "clamp.mount_pitch_y": 5.0},  # counterbores
+        {"array.row_arms": [[50.0, 4.0]]},  # beyond the estimator's fit
+        {**TWO_SIDED, "clamp.screw": "M2.5", "clamp.stop_plate_thickness": 5.0},
+    ],
+)
+def test_designs_that_once_were_let_pass_and_did_not_build(changes):
+    assert checked(variant({**ONE, **changes})) == []
 
 
 @pytest.mark.parametrize("rows", [[1], [3], [5, 5], [1, 7], [7, 1], [20, 20], [50, 50], [500, 500], [500]])

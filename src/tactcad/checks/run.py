@@ -15,6 +15,7 @@ from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
 from .brep import check_brep
+from .clearance import check_clearance
 from .finding import Finding
 from .interference import check_interference
 from .machining import MACHINED, check_machining
@@ -40,6 +41,7 @@ def run_checks(
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)
     report.run("strength", check_strength, design)
+    report.run("clearance", check_clearance, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)

@@ -183,7 +183,7 @@ def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cac
         part_no=part.part_no,
         name=part.name,
         process=part.process,
-        qty=sum(scene.count(part) for scene in scenes),
+        qty=max(scene.count(part) for scene in scenes),
         volume_mm3=facts["volume"],
         area_mm2=facts["area"],
         mass_g=part.mass,

@@ -50,10 +50,7 @@ def canonical(text: str, header: Header) -> str:
                 continue
             numbers[n] = len(order) + 1
             order.append(n)
-            refs = references[n]
-            if bodies[n].startswith(_STYLES):
-                refs = sorted(refs, key=lambda r: digests[r])
-            stack.extend(reversed(refs))
+            stack.extend(reversed(references[n]))
     lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
     return "\n".join([_header(header), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
 

@@ -36,11 +36,16 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
         design.stop.yield_fraction, design.rating.overload_force,
     )
     most = land_room(layout, place.hinge)
-    if bearable > 2 * design.stop.tolerance:
-        most = min(most, bearable - design.stop.tolerance)
-    step = STEP_MM if min(wanted, most) >= 10 * STEP_MM else STEP_MM / 10
+    spared = bearable - design.stop.tolerance
+    if spared - _step(spared) >= design.stop.tolerance:  # rounded down it is still more than its tolerance
+        most = min(most, spared)
+    step = _step(min(wanted, most))
     steps = min(round(wanted / step), floor(most / step + 1e-9))
     return round(steps * step, 6)
+
+
+def _step(gap: float) -> float:
+    return STEP_MM if gap >= 10 * STEP_MM else STEP_MM / 10
 
 
 def land_room(layout: Layout, hinge: HingeShape) -> float:
