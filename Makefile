@@ -18,7 +18,7 @@ environment:
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
 	@status=0; \
-	for design in $(DESIGNS); do $(BIN)/tactcad export $$design || status=1; done; \
+	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide || status=1; done; \
 	exit $$status
 
 test: environment ## every test but the long ones
@@ -41,8 +41,9 @@ review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, co
 	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
 	exit $$status
 
-bench: environment ## export times against a plain script, in one run
+bench: environment ## export times against a plain script, interference against all pairs by the kernel
 	$(BIN)/python benchmarks/export.py
+	$(BIN)/python benchmarks/checks.py
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

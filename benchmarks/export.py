@@ -9,7 +9,8 @@ the shortest of each kind counts: what else the machine does only ever adds time
     baseline    baseline_export.py: every distinct shape once through the kernel, each file written and read back once
     numpy       python -c "import numpy": the yardstick for a command that does nothing
 
-usage: export.py [--smoke] [--json FILE]     --smoke: 10 elements only, each command once
+usage: export.py [--smoke] [--scenes] [--json FILE]     --smoke: 10 elements only, each command once;
+                                                        --scenes: each rig's scene alone, full and as envelopes
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import argparse
 import json
 import os
 import platform
+import resource
 import subprocess
 import sys
 import tempfile
@@ -28,6 +30,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 DESIGN = ROOT / "hardware" / "macro-array.toml"
 BASELINE = Path(__file__).with_name("baseline_export.py")
+SCENES = ("array", "calibration", "sample-stiffness", "grasping")
 SIZES = (10, 100, 1000)
 GOALS = {"cold / baseline": 1.5, "unchanged / numpy": 3.0, "STEP size / that of 10": 5.0}
 RUNS = {10: 5, 100: 3, 1000: 1}  # of what takes seconds to minutes
@@ -83,6 +86,39 @@ def measure(elements: int, runs: int, quick_runs: int) -> dict[str, float]:
     return {"elements": elements, "runs": runs, "step_bytes": size, **{name: min(t) for name, t in times.items()}}
 
 
+def measure_scenes() -> list[dict[str, float | str]]:
+    """Cold and unchanged export (s) of each rig's scene alone, in fresh processes, full and as envelopes, with the
+    parts it built, the largest memory (MB) and the size of its STEP assembly (bytes)."""
+    rows: list[dict[str, float | str]] = []
+    for scene in SCENES:
+        for detail in ("full", "envelope"):
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                export = [
+                    sys.executable, "-m", "tactcad", "export", str(DESIGN), "--scene", scene, "--detail", detail,
+                    "--out", str(folder / "out"),
+                ]
+                cold = seconds(export, folder / "cache")
+                unchanged = min(seconds(export, folder / "cache") for _ in range(3))
+                parts = json.loads((folder / "out" / "manifest.json").read_text())["parts"]
+                rows.append({
+                    "scene": scene, "detail": detail, "parts": len(parts), "cold": cold, "unchanged": unchanged,
+                    "memory": resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024,
+                    "step_bytes": assembly_bytes(folder / "out"),
+                })
+    return rows
+
+
+def scene_table(rows: list[dict[str, float | str]]) -> str:
+    """Markdown. Memory is the largest of this and every process before it."""
+    lines = ["| scene | detail | parts | cold, s | unchanged, s | STEP, kB |", "|---|---|---|---|---|---|"]
+    lines += [
+        f"| {r['scene']} | {r['detail']} | {r['parts']} | {r['cold']:.1f} | {r['unchanged']:.2f} | {r['step_bytes'] / 1e3:.0f} |"
+        for r in rows
+    ]
+    return "\n".join([*lines, "", f"Most memory of any: {max(r['memory'] for r in rows):.0f} MB."])
+
+
 def with_ratios(rows: list[dict[str, float]]) -> list[dict[str, float]]:
     return [
         {
@@ -114,8 +150,12 @@ def table(rows: list[dict[str, float]]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--smoke", action="store_true", help="10 elements only, each command once")
+    parser.add_argument("--scenes", action="store_true", help="the rigs' scenes instead of the array's sizes")
     parser.add_argument("--json", metavar="FILE", help="write all figures to FILE")
     args = parser.parse_args()
+    if args.scenes:
+        print(scene_table(measure_scenes()))
+        return
     rows = []
     for elements in SIZES[:1] if args.smoke else SIZES:
         print(f"{elements} elements ...", file=sys.stderr)

@@ -20,6 +20,7 @@ NEED_SOLIDS = {
     "tactcad.checks.brep",
     "tactcad.checks.interference",
     "tactcad.checks.mesh",
+    "tactcad.checks.motion",
     "tactcad.checks.run",
     "tactcad.export.picture",
     "tactcad.export.step",

@@ -12,7 +12,7 @@ from tactcad.checks import mesh as mesh_check
 from tactcad.checks.brep import check_brep
 from tactcad.checks.mesh import check_mesh, check_triangles
 from tactcad.checks.run import run_checks
-from tactcad.contour import circle, rectangle
+from tactcad.contour import chain, circle, rectangle
 from tactcad.parts.description import Extrusion, Material, Part
 from tactcad.solids import build as builder
 from tactcad.solids.mesh import triangles
@@ -59,6 +59,35 @@ def _solid_of(shell):
     make.MakeSolid(solid)
     make.Add(solid, shell)
     return solid
+
+
+@pytest.mark.parametrize(
+    ("step", "expected"),
+    [(5e-4, {"tiny-edge"}), (2e-3, set())],
+)
+def test_tiny_edges_are_seen_where_they_are(step, expected):
+    contour = chain([(0, 0), (10, 0), (10, 4), (10 + step, 4), (10 + step, 8), (0, 8)])
+    part = replace(BLOCK, body=Extrusion(contour, 5.0))
+    found = check_brep(part, builder.build(part).wrapped)
+    assert {f.check for f in found} == expected
+    assert all(f.place[:2] == pytest.approx((10, 4), abs=1e-3) for f in found)
+
+
+def test_a_tiny_face_is_seen():
+    contour = chain([(0, 0), (10, 0), (10, 4), (10.0009, 4), (10.0009, 8), (0, 8)])
+    part = replace(BLOCK, body=Extrusion(contour, 0.001))
+    assert "tiny-face" in {f.check for f in check_brep(part, builder.build(part).wrapped)}
+
+
+def test_a_solid_that_passes_through_itself_is_seen():
+    """A tube bent so tightly that its ends cross: each face is good, and two of them meet."""
+    from build123d import Plane, Rectangle, Solid, Spline
+
+    path = Spline((0, 0, 0), (20, 0, 0), (20, 20, 0.2), (10, 20, 0), (10, -10, 0))
+    profile = Plane(path @ 0, z_dir=path % 0) * Rectangle(2, 2)
+    solid = Solid.sweep(profile.face(), path)
+    found = check_brep(replace(BLOCK, body=Extrusion(rectangle(0, 0, 1, 1), solid.volume)), solid.wrapped)
+    assert "self-intersection" in {f.check for f in found}
 
 
 def test_another_volume_is_seen(shape):

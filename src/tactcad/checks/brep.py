@@ -1,11 +1,18 @@
-"""Is the kernel's solid a good one: valid, one solid, one closed shell, the description's volume."""
+"""Is the kernel's solid a good one: valid, one solid, one closed shell, the description's volume, no slivers, no
+surface through another one."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from math import inf
+
+from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
 from OCP.BRep import BRep_Tool
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS_Shape
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from tactcad.parts.description import Part
 from tactcad.solids.explore import subshapes
@@ -14,6 +21,9 @@ from tactcad.solids.measure import measure
 from .finding import Finding
 
 VOLUME_AGREES = 1e-6
+# A tenth of the finest step that any shop here works to (0.01 mm), and its square; smaller is a modelling slip.
+LEAST_EDGE = 1e-3
+LEAST_FACE = 1e-6
 
 
 def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
@@ -31,7 +41,42 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
         fail("brep-valid", 0, 1, "the kernel calls the solid invalid")
     if not BRep_Tool.IsClosed_s(shells[0]):
         fail("shell-closed", 0, 1, "the solid's shell is open")
+    found += [*_tiny(part, shape, TopAbs_EDGE, LEAST_EDGE), *_tiny(part, shape, TopAbs_FACE, LEAST_FACE)]
+    if _meets_itself(shape):
+        fail("self-intersection", 1, 0, "faces or edges of the solid pass through each other")
     volume = measure(shape)["volume"]
     if abs(volume - part.volume) > VOLUME_AGREES * part.volume:
         fail("volume", volume, part.volume, f"the solid has {volume:.9g} mm3, its description {part.volume:.9g} mm3")
     return found
+
+
+def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum, limit: float) -> Iterator[Finding]:
+    name, unit = ("edge", "mm") if kind == TopAbs_EDGE else ("face", "mm2")
+    for sub in subshapes(shape, kind):
+        size, place = _size(sub, kind)
+        if size < limit:
+            message = f"{name} of only {size:.3g} {unit}, under {limit:g}"
+            yield Finding(f"tiny-{name}", "fail", part.part_no, place, size, limit, message)
+
+
+def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float, float, float]]:
+    """Length (mm) of an edge or area (mm2) of a face, and its centre; a cone's tip has an edge without extent."""
+    sums = GProp_GProps()
+    if kind == TopAbs_FACE:
+        BRepGProp.SurfaceProperties_s(sub, sums)
+    elif BRep_Tool.Degenerated_s(TopoDS.Edge_s(sub)):
+        return inf, (0.0, 0.0, 0.0)
+    else:
+        BRepGProp.LinearProperties_s(sub, sums)
+    centre = sums.CentreOfMass()
+    return sums.Mass(), (centre.X(), centre.Y(), centre.Z())
+
+
+def _meets_itself(shape: TopoDS_Shape) -> bool:
+    analyzer = BOPAlgo_ArgumentAnalyzer()
+    analyzer.SetShape1(shape)
+    analyzer.ArgumentTypeMode = False
+    analyzer.SelfInterMode = True
+    analyzer.SmallEdgeMode = False
+    analyzer.Perform()
+    return analyzer.HasFaulty()

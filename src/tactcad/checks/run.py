@@ -9,13 +9,20 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
-from tactcad.scenes import make_scene
+from tactcad.parts.detail import envelope
+from tactcad.scenes import left_out, make_scene
+from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
 from .brep import check_brep
+from .clearance import check_clearance
 from .finding import Finding
 from .interference import check_interference
+from .machining import MACHINED, check_machining
 from .mesh import check_mesh
+from .motion import check_motions
+from .moving_weight import check_moving_weight
+from .overload import check_stops
 from .report import Report
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
@@ -34,6 +41,7 @@ def run_checks(
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)
     report.run("strength", check_strength, design)
+    report.run("clearance", check_clearance, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
@@ -47,10 +55,30 @@ def run_checks(
         report.run("mesh", check_mesh, part, shapes[part.part_no])
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
+        if part.process in MACHINED:
+            report.run("machining", check_machining, part)
+    report.run("overload stop", check_stops, design)
+    for line in left_out(design):
+        name = line.split()[1]
+        report.findings.append(Finding("scene", "flag", f"{design.name}-{name}", (), 0, 0, line))
+    known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
-        if all(part.part_no in shapes for part in scene.parts):
-            report.run("interference", check_interference, scene, shapes)
+        if not all(part.part_no in shapes for part in scene.parts):
+            continue
+        report.run("interference", check_interference, scene, shapes, known)
+        if scene.motions:
+            envelopes = {part.part_no: build(envelope(part)).wrapped for part in scene.parts}
+            report.run("motion", check_motions, scene, shapes, envelopes)
+        if scene.name == "grasping":
+            report.run("moving weight", check_moving_weight, design, scene)
+        for pose in poses(design, scene.name):
+            posed = make_scene(design, scene.name, pose)
+            for part in posed.parts:
+                if part.part_no not in shapes:
+                    report.run("build", _built, part, shapes)
+            if all(part.part_no in shapes for part in posed.parts):
+                report.run("configurations", check_interference, posed, shapes, known)
     say(total, total, "done")
     return report
 

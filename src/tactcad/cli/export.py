@@ -11,6 +11,9 @@ EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
   tactcad export soft-tissue --out soft       another design, to a folder of your choice
   tactcad export my/design.toml --scene array one scene only
+  tactcad export --scene calibration --pose element=4 --out element-4
+                                              a rig in a chosen configuration
+  tactcad export --guide                      with the assembly guides, to open in a browser
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing."""
 
@@ -25,6 +28,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
+    parser.add_argument(
+        "--pose", action="append", metavar="KEY=VALUE", default=[],
+        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
+    )
+    parser.add_argument(
+        "--detail", choices=("full", "envelope"), default="full",
+        help="envelope: parts without holes and pockets, for layout; no cut files (default full)",
+    )
+    parser.add_argument("--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures")
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
@@ -32,12 +44,17 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import read
     from tactcad.export.pipeline import export
-    from tactcad.scenes import chosen_scenes
+    from tactcad.scenes import chosen_scenes, left_out
+    from tactcad.scenes.poses import pose_of
 
     from .progress import progress
 
     design = read(args.design)
-    done = export(design, chosen_scenes(design, args.scene), args.out or f"exports/{design.name}", progress(sys.stderr))
+    scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
+    out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
+    done = export(design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail)
+    for line in () if args.scene else left_out(design):
+        say.line(line)
     if args.json:
         print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
     return 0

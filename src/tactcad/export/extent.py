@@ -7,7 +7,7 @@ from itertools import product
 from math import cos, pi, sin
 
 from tactcad.contour import Arc, Contour, Point
-from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution, Vector
+from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector
 from tactcad.scenes.scene import Placement
 
 _STEPS = 96  # points on a full turn: within 0.6 permille of the radius
@@ -34,15 +34,26 @@ def placed(p: Placement, point: Vector) -> Vector:
 def _surface_points(part: Part) -> Iterator[Vector]:
     body = part.body
     if isinstance(body, Extrusion):
+        foot = _turned_down(part, body)
         for x, y in _curve_points(body.outer):
-            yield (x, y, 0.0)
+            yield (x, y, foot.depth if foot else 0.0)
             yield (x, y, body.thickness)
+        for island in foot.island if foot else ():
+            yield from ((x, y, 0.0) for x, y in _curve_points(island))
     elif isinstance(body, ModelFile):
         yield from product(*zip(*body.box))
     elif isinstance(body, Revolution):
         for r, z in _curve_points(body.profile):
             for k in range(_STEPS):
                 yield (r * cos(2 * pi * k / _STEPS), r * sin(2 * pi * k / _STEPS), z)
+
+
+def _turned_down(part: Part, body: Extrusion) -> Pocket | None:
+    """The pocket that takes the whole section off the foot (z = 0) but for its islands: a land or a shaft."""
+    for feature in part.features:
+        if isinstance(feature, Pocket) and feature.contour == body.outer and feature.at == (0, 0, 0):
+            return feature
+    return None
 
 
 def _curve_points(contour: Contour) -> Iterator[Point]:

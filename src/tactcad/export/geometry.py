@@ -36,7 +36,7 @@ def geometry(design: Design) -> Record:
     scenes = [make_scene(design, name) for name in scene_names(design)]
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
-        "parts": {no: part_record(part, sum(s.count(part) for s in scenes)) for no, part in sorted(parts.items())},
+        "parts": {no: part_record(part, max(s.count(part) for s in scenes)) for no, part in sorted(parts.items())},
         "scenes": {s.name: {"placed": _placed(s), "bom": bill(s)} for s in scenes},
         "elements": _elements(design),
     }

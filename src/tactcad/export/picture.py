@@ -118,8 +118,8 @@ def _compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
     return whole
 
 
-def svg(drawn: Drawing, title: str, description: str) -> bytes:
-    """The drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white."""
+def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = None) -> bytes:
+    """The drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white; `marked` over it in blue."""
     x0, y0, x1, y1 = drawn.box
     left, top = x0 - MARGIN, y1 + MARGIN
     width, height = x1 - x0 + 2 * MARGIN, y1 - y0 + 2 * MARGIN
@@ -136,6 +136,10 @@ def svg(drawn: Drawing, title: str, description: str) -> bytes:
         '<g fill="none" stroke-linecap="round" stroke-linejoin="round">',
         f'<path class="smooth" stroke="#8a929b" stroke-width="{pen * 0.4:.4f}" d="{_path(drawn.smooth, left, top)}"/>',
         f'<path class="sharp" stroke="#10161d" stroke-width="{pen:.4f}" d="{_path(drawn.sharp, left, top)}"/>',
+        *(
+            [f'<path class="marked" stroke="#0b62c4" stroke-width="{1.6 * pen:.4f}" d="{_path(marked.sharp, left, top)}"/>']
+            if marked else []
+        ),
         "</g>",
         "</svg>",
         "",

@@ -19,7 +19,7 @@ from .publish import Published, locked, new_build, published
 
 if TYPE_CHECKING:
     from tactcad.parts.description import Part
-    from tactcad.scenes.scene import Scene
+    from tactcad.scenes.scene import Pose, Scene
 
     from .products import Product, Shapes
 
@@ -50,15 +50,21 @@ class Exported:
     reasons: tuple[str, ...]
 
 
-def export(design: Design, scene_names: Sequence[str], out: str | os.PathLike[str], progress: Progress) -> Exported:
-    """Write the scenes of a design to the folder `out`, all or nothing.
+def export(
+    design: Design, scene_names: Sequence[str], out: str | os.PathLike[str], progress: Progress,
+    pose: Pose | None = None, guides: bool = False, detail: str = "full",
+) -> Exported:
+    """Write the scenes of a design to the folder `out`, all or nothing; in another pose than the rest's where
+    given, with the assembly guides where asked for, and at the detail level `full` or `envelope`.
 
     Nothing is written where the folder already holds just this; the rules between fields, which the
     earlier export kept, are tried only where something has to be made. Raises InputError where the
     design breaks a rule, or `out` is not ours to replace or cannot be written, CheckFailure where a
     file does not read back as it should.
     """
-    inputs = inputs_of({"design": design, "scenes": tuple(scene_names)}, ROOMS, LIBRARIES)
+    wanted = {"design": design, "scenes": tuple(scene_names)} | ({"pose": pose} if pose else {}) | ({"guides": True} if guides else {})
+    wanted |= {"detail": detail} if detail != "full" else {}
+    inputs = inputs_of(wanted, ROOMS, LIBRARIES)
     if published(out).current is None:
         _refuse_broken(design)  # before a lock, or a folder for it, appears on the disk
     with locked(out, say=progress.line) as place:
@@ -69,7 +75,7 @@ def export(design: Design, scene_names: Sequence[str], out: str | os.PathLike[st
         _refuse_broken(design)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress)
+        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail)
 
 
 def _refuse_broken(design: Design) -> None:
@@ -91,18 +97,20 @@ def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
 
 def _rebuild(
     design: Design, scene_names: Sequence[str], out: Path, place: Published, inputs: Inputs,
-    why: tuple[str, ...], progress: Progress,
+    why: tuple[str, ...], progress: Progress, pose: Pose | None, guides: bool, detail: str,
 ) -> Exported:
     from tactcad.scenes import make_scene
+    from tactcad.scenes.detail import at_detail
 
-    from .products import Shapes, part_products, scene_products
+    from .products import Shapes, guide_products, part_products, scene_products
 
     cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
-    scenes = [make_scene(design, name) for name in scene_names]
+    scenes = [at_detail(make_scene(design, name, pose), detail) for name in scene_names]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
+    products += [p for s in scenes if guides for p in guide_products(design, s, shapes)]
     with new_build(place) as folder:
         made = _write_products(folder, products, cache, progress)
         records = [_record(folder, p, design) for p in products]
@@ -175,7 +183,7 @@ def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cac
         part_no=part.part_no,
         name=part.name,
         process=part.process,
-        qty=sum(scene.count(part) for scene in scenes),
+        qty=max(scene.count(part) for scene in scenes),
         volume_mm3=facts["volume"],
         area_mm2=facts["area"],
         mass_g=part.mass,

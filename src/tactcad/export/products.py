@@ -120,6 +120,30 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     return products
 
 
+def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+    """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
+    from . import guide
+
+    if not scene.steps:
+        return []
+    name, revision = f"{design.name}-{scene.name}", design.design.revision
+    description = f"{name} revision {revision}"
+
+    def picture(label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]) -> Product:
+        key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
+        make = partial(_picture, placements, "above", shapes, title, description, marked)
+        return Product(guide.picture_path(scene, label), "picture", "", key, make)
+
+    products = [picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())]
+    for n, step in enumerate(scene.steps, start=1):
+        if step.designators:
+            standing, coming = guide.at_step(scene, n)
+            products.append(picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming))
+    page = guide.page(design, scene)
+    products.append(Product(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
+    return products
+
+
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
     """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
@@ -172,13 +196,19 @@ def _part_dxf(part: Part) -> bytes:
     return data
 
 
-def _picture(placements: Sequence[Placement], view: str, shapes: Shapes, title: str, description: str) -> bytes:
+def _picture(
+    placements: Sequence[Placement], view: str, shapes: Shapes, title: str, description: str,
+    marked: Sequence[Placement] = (),
+) -> bytes:
     from tactcad.solids.place import placed_shape
 
     from . import picture
 
     eye: View = picture.VIEWS[view]
-    placed = [placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in placements]
-    data = picture.svg(picture.drawing(placed, eye), title, description)
+
+    def drawn(some: Sequence[Placement]) -> picture.Drawing:
+        return picture.drawing([placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+
+    data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     picture.check_picture(data, placements, eye)
     return data

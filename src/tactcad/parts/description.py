@@ -14,7 +14,7 @@ from typing import Literal
 from tactcad.contour import Contour
 
 Vector = tuple[float, float, float]
-Process = Literal["wire-cut", "milled", "turned", "ground", "bought"]
+Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought"]
 
 
 @dataclass(frozen=True)

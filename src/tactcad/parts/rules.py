@@ -6,13 +6,13 @@ A field's own range is tried when the file is read; these are tried after, all o
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from itertools import combinations, product
 from math import cos, hypot, pi
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 
+from .broken import Broken
 from .fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
 from .layout import (
     BESIDE_SET_SCREW,
@@ -26,6 +26,7 @@ from .layout import (
 )
 from .library.dowels import largest_dowel
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement
+from .rigs.rules import RIG_RULES
 from .stop_gap import land_room, stop_gap
 
 # Below this, two lengths written in decimals are the same length (mm).
@@ -34,26 +35,15 @@ SAME = 1e-9
 LONGEST_ROD = 3000.0
 
 
-@dataclass(frozen=True)
-class Broken:
-    """A rule that a design breaks: the field to look at, what is wrong, its value, what is legal."""
-
-    rule: str
-    path: str
-    what: str
-    value: object
-    legal: str
-
-
 Finding = tuple[str, str, object, str]
 Rule = Callable[[Layout], Iterator[Finding]]
 
 
 def broken_rules(design: Design) -> list[Broken]:
-    """Every rule that the design breaks, the first finding of each, in the order of RULES."""
+    """Every rule that the design breaks, the first finding of each, in the order of RULES, then the rigs' own."""
     layout = Layout(design)
     found = []
-    for name, rule in RULES.items():
+    for name, rule in (RULES | RIG_RULES).items():
         if name in ASK_THE_GAP and any(b.rule in NO_GAP for b in found):
             continue
         for path, what, value, legal in rule(layout):

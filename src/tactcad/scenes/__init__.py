@@ -11,17 +11,40 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
+from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.rules import misfit
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from .scene import Pose, Scene
 
-# Scene name -> the design's table that it needs, "" for none.
-NEEDS = {"array": ""}
+# Scene name -> the design's tables that it needs.
+NEEDS: dict[str, tuple[str, ...]] = {
+    "array": (),
+    "calibration": ("calibration",),
+    "sample-stiffness": ("calibration", "sample", "cart", "holder"),
+    "grasping": ("grasping", "sample", "cart", "holder"),
+}
 
 
 def scene_names(design: Design) -> tuple[str, ...]:
-    """Names of the scenes that this design has."""
-    return tuple(name for name, table in NEEDS.items() if not table or getattr(design, table) is not None)
+    """Names of the scenes that this design has: the tables are there, and the rig takes the array."""
+    return tuple(name for name in _with_tables(design) if misfit(Layout(design), name) is None)
+
+
+def left_out(design: Design) -> list[str]:
+    """Why scenes whose tables the design has are not among its scenes, a line each."""
+    lines = []
+    for name in _with_tables(design):
+        why = misfit(Layout(design), name)
+        if why:
+            lines.append(
+                f"scene {name} left out: rule {why.rule}: {why.what} ({why.path} = {why.value}; legal: {why.legal})"
+            )
+    return lines
+
+
+def _with_tables(design: Design) -> list[str]:
+    return [name for name, tables in NEEDS.items() if all(getattr(design, t) is not None for t in tables)]
 
 
 def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
@@ -29,10 +52,18 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
     names = scene_names(design)
     for name in wanted or ():
         if name not in names:
-            raise InputError("--scene", "no such scene in this design", value=name, legal=", ".join(names))
+            why = [line for line in left_out(design) if line.startswith(f"scene {name} ")]
+            raise InputError(
+                "--scene", why[0] if why else "no such scene in this design", value=name, legal=", ".join(names)
+            )
     return tuple(name for name in names if not wanted or name in wanted)
 
 
-def make_scene(design: Design, name: str) -> Scene:
-    """The scene of that name (one of scene_names) of a design that keeps every rule."""
-    return getattr(importlib.import_module(f"tactcad.scenes.{name}"), name)(design)
+def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
+    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or another.
+
+    The array has no other pose. Raises InputError where the pose is impossible.
+    """
+    own = name.replace("-", "_")
+    make = getattr(importlib.import_module(f"tactcad.scenes.{own}"), own)
+    return make(design) if pose is None or name == "array" else make(design, pose)

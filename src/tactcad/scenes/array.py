@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from tactcad.design.tree import Design
 from tactcad.parts import plates
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.fasteners import carrier_screw, clamping
-from tactcad.parts.layout import Layout
+from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.library import dowels, screws
 
+from .array_steps import array_steps
 from .scene import Contact, Placement, Rotation, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
@@ -24,24 +28,28 @@ AGAINST_Y: Rotation = ROW[1]  # local z runs along -y
 DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
 
 
-def array(design: Design) -> Scene:
-    """Scene `array` of a design; elements are E1, E2, ... by number."""
+def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({})) -> Scene:
+    """Scene `array` of a design; elements are E1, E2, ... by number.
+
+    `instead` gives other parts by element number, such as one that a rig has pressed.
+    """
     layout = Layout(design)
-    build = _Builder(layout)
+    build = _Builder(layout, instead)
     build.stack()
     build.plates()
     build.clamping()
     build.hold_down()
     return Scene(
-        "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover)
+        "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover),
+        steps=array_steps(layout, tuple(p.designator for p in build.placements)),
     )
 
 
 class _Builder:
     """Collects placements and contacts in assembly order."""
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    def __init__(self, layout: Layout, instead: Mapping[int, Part]) -> None:
+        self.layout, self.instead = layout, instead
         self.placements: list[Placement] = []
         self.contacts: list[Contact] = []
         self.on_ledge: list[str] = []
@@ -56,6 +64,9 @@ class _Builder:
     def touch(self, first: str, second: str) -> None:
         self.contacts.append(Contact(first, second, "touch"))
 
+    def _element(self, place: ElementPlace) -> Part:
+        return self.instead.get(place.number) or element(self.layout, place)
+
     def stack(self) -> None:
         """Elements and blanks, a spacer before, between and after them, row by row."""
         layout = self.layout
@@ -64,7 +75,7 @@ class _Builder:
         blank = plates.blank(layout)
         standing: dict[tuple[int, int], tuple[str, Part]] = {}
         for place in layout.elements:
-            standing[place.row, place.index] = (place.designator, element(layout, place))
+            standing[place.row, place.index] = (place.designator, self._element(place))
         for number, (row, i) in enumerate(layout.blanks(), start=1):
             standing[row, i] = (f"BL{number}", blank)
         self.ends: dict[int, tuple[str, str]] = {}

@@ -41,10 +41,54 @@ class Contact:
 
 
 @dataclass(frozen=True)
+class Motion:
+    """A straight way of some groups, all at the same time: (group, from, to), offsets from the placed pose in mm."""
+
+    name: str
+    ways: tuple[tuple[str, Vector, Vector], ...]
+
+
+@dataclass(frozen=True)
+class Step:
+    """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
+
+    `fan` spreads the step's parts over the outer half of that way, in their order.
+    """
+
+    title: str
+    designators: tuple[str, ...]
+    explode: Vector
+    text: str
+    fan: bool = False
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A configuration of a scene.
+
+    element     the one under the force sensor (its number; calibration)
+    deflection  mm: of that element's pad (calibration), or of the tip or the pads into the sample
+    weights     how many lie on the platform; None: the design's (grasping)
+    height      mm that the vertical axis is lifted from touching
+    cart        mm that the cart has rolled along x
+    """
+
+    element: int = 1
+    deflection: float = 0.0
+    weights: int | None = None
+    height: float = 0.0
+    cart: float = 0.0
+
+
+REST = Pose()
+
+
+@dataclass(frozen=True)
 class Scene:
     """Placements with designators that are unique, meant contacts, and what has no solid.
 
-    `cover` names what is taken off to look inside.
+    `cover` names what is taken off to look inside. `groups` are what moves as one, each with its
+    designators; what is in none stands still. `steps` place every designator once.
     """
 
     name: str
@@ -52,11 +96,17 @@ class Scene:
     contacts: tuple[Contact, ...] = ()
     supplies: tuple[Supply, ...] = ()
     cover: frozenset[str] = frozenset()
+    groups: tuple[tuple[str, frozenset[str]], ...] = ()
+    motions: tuple[Motion, ...] = ()
+    steps: tuple[Step, ...] = ()
 
     def __post_init__(self) -> None:
         names = [p.designator for p in self.placements]
         if len(set(names)) != len(names):
             raise ValueError(f"scene {self.name}: designators are not unique")
+        stepped = [d for step in self.steps for d in step.designators]
+        if self.steps and sorted(stepped) != sorted(names):
+            raise ValueError(f"scene {self.name}: the assembly's steps do not place every part once")
         known = {}
         for p in self.placements:
             if known.setdefault(p.part.part_no, p.part) != p.part:

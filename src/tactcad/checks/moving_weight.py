@@ -1,0 +1,21 @@
+"""The weight that moves with the array in the grasping set-up, from the parts, against the design's (the paper's 3.235 N)."""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.scenes.grasping import moving_weight
+from tactcad.scenes.scene import Scene
+
+from .finding import Finding
+
+# Share by which the parts' weight may miss the design's: the ballast is turned to a balance's reading anyway.
+AGREES = 0.005
+
+
+def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
+    """A finding where what moves is heavier than asked for (no ballast can mend that), or lighter."""
+    weight, wanted = moving_weight(scene), design.grasping.moving_weight
+    if abs(weight - wanted) <= AGREES * wanted:
+        return []
+    message = f"what moves weighs {weight:.4g} N by its parts, grasping.moving_weight asks for {wanted:.4g} N"
+    return [Finding("moving-weight", "fail", scene.name, (), weight, wanted, message)]

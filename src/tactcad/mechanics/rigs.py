@@ -1,0 +1,77 @@
+"""Statics of the rigs: does the cart tip, does the vacuum hold, does the overload stop hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot, inf
+
+Point = tuple[float, float]
+
+
+def inside_by(polygon: Sequence[Point], point: Point) -> float:
+    """Distance (mm) of a point from the nearest side of a convex counter-clockwise polygon; negative outside."""
+    distances = []
+    for (x0, y0), (x1, y1) in zip(polygon, [*polygon[1:], polygon[0]]):
+        length = hypot(x1 - x0, y1 - y0)
+        distances.append(((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / length)
+    return min(distances)
+
+
+def tipping_margin(contacts: Sequence[Point], half: float) -> float:
+    """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the contacts, mm.
+
+    `contacts` is the convex polygon of the wheels, counter-clockwise. A vertical load inside it leaves every wheel
+    pressed, however large it is; the cart's own weight only helps. The square's corners are its worst places.
+    """
+    return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
+
+
+def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
+    """Horizontal force (N) at `height` (mm) over the wheels that would lift one, with `load` (N) down at `at` and
+    the cart's own weight (N) in its middle; inf where height is 0."""
+    if height == 0:
+        return inf
+    moments = []
+    for side, p in enumerate(contacts):
+        pair = [p, contacts[(side + 1) % len(contacts)]]
+        moments.append(_side(pair, at) * load + _side(pair, (0.0, 0.0)) * weight)
+    return min(moments) / height
+
+
+def _side(pair: Sequence[Point], point: Point) -> float:
+    (x0, y0), (x1, y1) = pair
+    return ((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / hypot(x1 - x0, y1 - y0)
+
+
+def holding_force(vacuum: float, area: float) -> float:
+    """Force (N) with which a vacuum (kPa below air) holds on an area (mm2): F = p A."""
+    return vacuum * 1e-3 * area
+
+
+@dataclass(frozen=True)
+class Stopped:
+    """An element under a load on its pad: what the hinge carries by bending (N), what the stop pushes back (N),
+    and the nominal stresses in the hinge (MPa): by its deflection, and by the shear that the stopped arm leaves it."""
+
+    hinge: float
+    stop: float
+    bending: float
+    shear: float
+
+
+def stopped(
+    stiffness: float, load: float, gap: float, load_arm: float, arm: float, width: float, thickness: float, length: float
+) -> Stopped:
+    """What happens when `load` comes down on one pad (N, mm, N/mm).
+
+    The tip closes its gap at a pad deflection of g L/a, where the hinge carries F_h = K g L/a. The rest F - F_h
+    bears on two supports, hinge and tip: the stop takes (F - F_h) L/a, and the hinge the shear
+    V = (F - F_h)(1 - L/a), which bends a leaf of length l between two stiff ends by V l/2.
+    Stresses are nominal, 6 M/(b t^2), without the fillet's factor.
+    """
+    hinge = min(load, stiffness * gap * load_arm / arm)
+    rest = load - hinge
+    modulus = width * thickness**2 / 6
+    shear = rest * (1 - load_arm / arm)
+    return Stopped(hinge, rest * load_arm / arm, hinge * load_arm / modulus, shear * length / 2 / modulus)

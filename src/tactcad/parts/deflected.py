@@ -1,0 +1,92 @@
+"""An element as it stands while its pad is pushed: the arm turned rigidly about the hinge's centre.
+
+A reference shape for collision checks and pictures, never for manufacture. The hinge bends over its
+length; here it kinks at its centre, which moves the arm alike to first order in the angle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import asin, atan2, cos, hypot, pi, sin, tan
+
+from tactcad.contour import Arc, Contour, Line, Point, Segment
+
+from .description import Extrusion, Part
+from .element import element
+from .layout import ElementPlace, Layout
+
+
+def deflected_element(layout: Layout, place: ElementPlace, deflection: float, roller: float) -> Part:
+    """The element while a roller (radius in mm, its axis under the pad's middle) has come up by `deflection` mm.
+
+    The arm turns until the pad's face touches the roller: seen from the turned arm, the roller's centre
+    (u, v) from the hinge has come to the height -(pad height + radius) that touching means, which is
+    A sin(phi + atan2(v, u)) = w with A = hypot(u, v).
+    """
+    part = element(layout, place)
+    t, h = place.hinge.t, place.hinge.h
+    z = t / 2 if layout.design.element.sides == "one" else h / 2
+    u = -place.load_arm
+    w = -layout.design.element.pad_height - roller - z
+    v = w + deflection
+    # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
+    angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
+    outer = _bent(part.body.outer, (place.hinge_x, z), angle)
+    return replace(
+        part,
+        part_no=f"{part.part_no}-at-{deflection:g}mm",
+        name=f"{part.name}, deflected {deflection:g}",
+        process="reference",
+        body=Extrusion(outer, part.body.thickness, part.body.openings),
+        notes=("deflected state, for collision checks only",),
+        characteristics=(),
+        finish="",
+    )
+
+
+def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:
+    """The contour with everything left of the hinge's centre turned about it.
+
+    Where the contour passes the hinge, a stretch just longer than what the turn closes up becomes a chord.
+    """
+    pieces: list[Segment] = []
+    for s in contour:
+        left_first, left_last = s.start[0] < hinge[0], s.end[0] < hinge[0]
+        if left_first == left_last:
+            pieces.append(_turned(s, hinge, angle) if left_first else s)
+            continue
+        half = 2 * abs(s.at(_where(s, hinge[0]))[1] - hinge[1]) * tan(abs(angle))
+        sign = -1.0 if left_first else 1.0
+        first = replace(s, end=s.at(_where(s, hinge[0] + sign * half)))
+        last = replace(s, start=s.at(_where(s, hinge[0] - sign * half)))
+        if left_first:
+            first = _turned(first, hinge, angle)
+        else:
+            last = _turned(last, hinge, angle)
+        pieces += [first, Line(first.end, last.start, s.name), last]
+    return Contour(tuple(pieces))
+
+
+def _where(s: Segment, x: float) -> float:
+    """Parameter at which a segment that runs from one side of x to the other passes it."""
+    low, high = 0.0, 1.0
+    rising = s.end[0] > s.start[0]
+    for _ in range(60):
+        middle = (low + high) / 2
+        if (s.at(middle)[0] < x) == rising:
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+def _turned(s: Segment, centre: Point, angle: float) -> Segment:
+    ends = {"start": _rotated(s.start, centre, angle), "end": _rotated(s.end, centre, angle)}
+    if isinstance(s, Arc):
+        return replace(s, centre=_rotated(s.centre, centre, angle), **ends)
+    return replace(s, **ends)
+
+
+def _rotated(p: Point, centre: Point, angle: float) -> Point:
+    x, y = p[0] - centre[0], p[1] - centre[1]
+    return (centre[0] + x * cos(angle) - y * sin(angle), centre[1] + x * sin(angle) + y * cos(angle))

@@ -1,0 +1,22 @@
+"""Detail levels: `full` for review, `envelope` for collision and layout."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from .description import Extrusion, ModelFile, Part
+
+DETAILS = ("full", "envelope")
+
+
+def envelope(part: Part) -> Part:
+    """The part without what is cut into it: nothing of the part lies outside it. Its mass stays the part's.
+
+    It is a reference shape: no cut file or drawing is made of it.
+    """
+    if isinstance(part.body, ModelFile):
+        return part
+    body = replace(part.body, openings=()) if isinstance(part.body, Extrusion) else part.body
+    return replace(
+        part, body=body, features=(), mass_override=part.mass, process=part.process if part.bought else "reference"
+    )

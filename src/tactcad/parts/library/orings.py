@@ -1,0 +1,55 @@
+"""O-rings of ISO 3601-1, cross section 1.78 mm, and the groove of a static face seal against vacuum (mm)."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+from tactcad.contour import chain
+
+from ..description import Material, Part, Purchase, Revolution
+
+NITRILE = Material("NBR 70", 1200)
+SECTION = 1.78
+# Inside diameter by size code, ISO 3601-1:2012 table 2.
+INSIDE = {
+    "010": 6.07, "011": 7.65, "012": 9.25, "013": 10.82, "014": 12.42, "015": 14.00, "016": 15.60, "017": 17.17,
+    "018": 18.77, "019": 20.35, "020": 21.95, "021": 23.52, "022": 25.12, "023": 26.70, "024": 28.30, "025": 29.87,
+    "026": 31.47, "027": 33.05, "028": 34.65, "029": 37.82, "030": 41.00, "031": 44.17, "032": 47.35, "033": 50.52,
+    "034": 53.70, "035": 56.87, "036": 60.05, "037": 63.22, "038": 66.40, "039": 69.57, "040": 72.75,
+}
+# Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse 0.4.0).
+GROOVE_DEPTH = 1.32
+GROOVE_WIDTH = 2.4
+
+
+def size_around(diameter: float) -> str | None:
+    """The smallest ring whose inside clears a circle of that diameter; None where the table ends."""
+    return next((code for code, inside in INSIDE.items() if inside >= diameter), None)
+
+
+def groove(code: str) -> tuple[float, float]:
+    """Inner and outer diameter of the groove. Air presses from outside: the ring lies on the inner wall."""
+    return INSIDE[code], round(INSIDE[code] + 2 * GROOVE_WIDTH, 6)
+
+
+def squeeze() -> float:
+    """Share of the cross section's height that the closed joint takes off; 0.15 to 0.30 is usual for a face seal."""
+    return 1 - GROOVE_DEPTH / SECTION
+
+
+def o_ring(code: str) -> Part:
+    """The ring as it lies squeezed in its groove: groove's height, the free ring's volume; z from 0 up."""
+    inner = INSIDE[code] / 2 + 0.05
+    rubber = pi * SECTION**2 / 4 * pi * (INSIDE[code] + SECTION)
+    outer = sqrt(inner**2 + rubber / (pi * GROOVE_DEPTH))
+    return Part(
+        part_no=f"ISO3601-{code}-{INSIDE[code]:.2f}x{SECTION:g}-NBR70-ring",
+        name=f"O-ring {INSIDE[code]:.2f}x{SECTION:g}",
+        process="bought",
+        material=NITRILE,
+        body=Revolution(chain([(inner, 0), (outer, 0), (outer, GROOVE_DEPTH), (inner, GROOVE_DEPTH)])),
+        colour="#2b2b2e",
+        notes=("modelled as squeezed",),
+        purchase=Purchase(f"ISO 3601-1 {code}A {INSIDE[code]:.2f}x{SECTION:g} NBR 70", alternates="FKM 75, same size"),
+        spares=1,
+    )

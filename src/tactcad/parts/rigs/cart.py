@@ -1,0 +1,78 @@
+"""The wheeled cart: plate, axles and shims. Its wheels are ball bearings, its axles cap screws.
+
+The inner rings are clamped between shims, the outer rings stand a shim free of plate and head: nothing can
+bind. The shanks' play in the bores (up to 0.14 mm) lets all four wheels be set on a flat plate before
+the axles are tightened.
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import circle, rectangle
+from tactcad.design.materials import ALLOYS
+
+from ..description import Characteristic, Extrusion, Hole, Material, Part
+from ..library.screws import METRIC
+from .holes import tapped_through
+from .layout import RigLayout
+
+STEEL = Material("1.4301 stainless steel", 7900)
+COLOUR = "#8d99a6"
+
+
+def plate_alloy(rig: RigLayout) -> Material:
+    """The rigs' plates: the alloy of the array's."""
+    return Material(rig.design.clamp.plate_alloy, ALLOYS[rig.design.clamp.plate_alloy].density)
+
+
+def cart_plate(rig: RigLayout) -> Part:
+    """Plate with the axles' threads in its sides and the holder's in its face; z = 0 is the underside."""
+    c, t = rig.cart, rig.cart.thickness
+    m = METRIC[rig.axle_thread]
+    x, y = c.length / 2, c.width / 2
+    entry = round(rig.axle_in_plate - 2 * m.d, 9)  # the last 2 d of the axle are engaged
+    axles = tuple(
+        Hole(
+            "axle", (sx * c.wheel_base / 2, sy * y, rig.axle_z - c.clearance), (0, -sy, 0), m.tap_drill,
+            round(rig.axle_in_plate + 1.0 + 2 * m.pitch, 9), False, counterbore=(m.clearance, entry),
+            thread=rig.axle_thread, thread_depth=2 * m.d + 1.0, drill_point=True,
+        )
+        for sx in (-1.0, 1.0) for sy in (-1.0, 1.0)
+    )
+    h = rig.holder_screw
+    holder = tuple(
+        tapped_through("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t) for sx in (-1, 1) for sy in (-1, 1)
+    )
+    return Part(
+        part_no=f"{rig.design.name}-cart-plate",
+        name="Cart plate",
+        process="milled",
+        material=plate_alloy(rig),
+        body=Extrusion(rectangle(-x, -y, x, y), t),
+        features=axles + holder,
+        colour=COLOUR,
+        finish="Ra 1.6, clear anodised after machining",
+        notes=("break edges 0.2", "axle threads of one side in one setting"),
+        characteristics=(
+            Characteristic(
+                "axles over the underside", rig.axle_z - c.clearance, rig.axle_z - c.clearance + 0.05,
+                rig.axle_z - c.clearance - 0.05,
+            ),
+        ),
+    )
+
+
+def axle_shim(rig: RigLayout) -> Part:
+    """Ring beside an inner ring, narrower than the shield: the outer ring stays free."""
+    b, t = rig.bearing, rig.cart.shim
+    bore = round(b.d + 0.1, 6)
+    outside = round(b.inner - 0.1, 6)
+    return Part(
+        part_no=f"SHIM-{bore:g}x{outside:g}x{t:g}-ring",
+        name=f"Shim ring {bore:g}x{outside:g}x{t:g}",
+        process="turned",
+        material=STEEL,
+        body=Extrusion(circle((0, 0), outside), t, (circle((0, 0), bore),)),
+        colour="#5c6066",
+        finish="faces parallel within 0.01, burr-free",
+        spares=2,
+    )

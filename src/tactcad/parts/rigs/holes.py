@@ -1,0 +1,33 @@
+"""Screw holes of the rigs' plates."""
+
+from __future__ import annotations
+
+from ..description import Hole, Vector
+from ..library.screws import METRIC, blind_thread, counterbore_diameter
+
+# Full thread deeper than this many diameters only breaks taps; chosen: usual advice is 2 to 3.
+DEEPEST_THREAD = 2.5
+
+
+def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, under_head: float) -> Hole:
+    """Clearance hole through a plate, counterbored from `at` until `under_head` is left under the head."""
+    deep = round(thickness - under_head, 9)
+    counterbore = (counterbore_diameter(thread), deep) if deep > 0 else None
+    return Hole(name, at, axis, METRIC[thread].clearance, thickness, True, counterbore=counterbore)
+
+
+def tapped_through(name: str, thread: str, at: Vector, axis: Vector, thickness: float) -> Hole:
+    """Drilled through; threaded from `at` as deep as is of use."""
+    m = METRIC[thread]
+    full = min(thickness, DEEPEST_THREAD * m.d)
+    return Hole(name, at, axis, m.tap_drill, thickness, True, thread=thread, thread_depth=full)
+
+
+def tapped_blind(name: str, thread: str, at: Vector, axis: Vector, full: float | None = None) -> Hole:
+    """Blind thread of 1.5 d and 1 mm, or of `full`, with two pitches of run-out and the drill's cone."""
+    m = METRIC[thread]
+    full = blind_thread(thread) if full is None else full
+    return Hole(
+        name, at, axis, m.tap_drill, round(full + 2 * m.pitch, 9), False,
+        thread=thread, thread_depth=full, drill_point=True,
+    )

@@ -1,0 +1,84 @@
+"""Collects placements, contacts, groups and assembly steps of a rig's scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tactcad.parts.consumables import Supply
+from tactcad.parts.description import Part, Vector
+from tactcad.parts.library import screws
+
+from .array import AGAINST_Y, ALONG_Y, DOWN
+from .scene import UPRIGHT, Contact, ContactKind, Motion, Placement, Rotation, Scene, Step
+
+POINTING: dict[Vector, Rotation] = {(0, 0, 1): UPRIGHT, (0, 0, -1): DOWN, (0, 1, 0): ALONG_Y, (0, -1, 0): AGAINST_Y}
+
+
+class Builder:
+    """Placements in assembly order. A group or a step takes what is placed while it is open."""
+
+    def __init__(self) -> None:
+        self.placements: list[Placement] = []
+        self.contacts: list[Contact] = []
+        self.supplies: list[Supply] = []
+        self.groups: dict[str, list[str]] = {}
+        self.steps: list[Step] = []
+        self._numbers: dict[str, int] = {}
+        self._group: str | None = None
+        self._stepped = 0
+
+    def group(self, name: str | None) -> None:
+        """What is placed from here on moves with the group `name` (None: stands still)."""
+        self._group = name
+
+    def name(self, prefix: str) -> str:
+        """The next designator with that prefix."""
+        self._numbers[prefix] = self._numbers.get(prefix, 0) + 1
+        return f"{prefix}{self._numbers[prefix]}"
+
+    def place(self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT) -> str:
+        return self._add(Placement(self.name(prefix), part, _rounded(origin), rotation))
+
+    def _add(self, placement: Placement) -> str:
+        self.placements.append(placement)
+        if self._group is not None:
+            self.groups.setdefault(self._group, []).append(placement.designator)
+        return placement.designator
+
+    def meet(self, first: str, second: str, kind: ContactKind = "touch") -> None:
+        self.contacts.append(Contact(first, second, kind))
+
+    def screw(self, thread: str, length: float, under_head: Vector, direction: Vector, head_on: str, into: str) -> str:
+        """A cap screw with its head's bearing face at `under_head`, pointing in `direction`."""
+        name = self.place("RS", screws.cap_screw(thread, length), under_head, POINTING[direction])
+        self.meet(name, head_on)
+        self.meet(name, into, "thread")
+        return name
+
+    def subassembly(self, scene: Scene, rotation: Rotation, shift: Vector) -> None:
+        """Everything of another scene, turned and moved; its designators stay."""
+        for p in scene.placements:
+            turned = tuple(
+                tuple(sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
+            )
+            at = tuple(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
+            self._add(Placement(p.designator, p.part, _rounded(at), turned))
+        self.contacts += scene.contacts
+        self.supplies += scene.supplies
+
+    def step(self, title: str, explode: Vector, text: str, fan: bool = False) -> None:
+        """Close a step: it takes what was placed since the one before."""
+        names = tuple(p.designator for p in self.placements[self._stepped:])
+        self._stepped = len(self.placements)
+        self.steps.append(Step(title, names, explode, text, fan))
+
+    def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:
+        groups = tuple((group, frozenset(names)) for group, names in self.groups.items())
+        return Scene(
+            name, tuple(self.placements), tuple(self.contacts), tuple(self.supplies), frozenset(cover), groups,
+            tuple(motions), tuple(self.steps),
+        )
+
+
+def _rounded(point: Vector) -> Vector:
+    return tuple(round(float(v), 9) + 0.0 for v in point)

@@ -1,0 +1,129 @@
+"""Calibration: the array on its back on two micro-stages, the force gauge's roller on one element's pad."""
+
+from __future__ import annotations
+
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.parts.deflected import deflected_element
+from tactcad.parts.library.dowels import dowel_diameter
+from tactcad.parts.rigs import bought, carried
+from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
+
+from .array import DOWN, array
+from .builder import Builder
+from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
+from .scene import REST, Motion, Pose, Rotation, Scene
+
+BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
+OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
+OUT_OF_Y: Rotation = ((1, 0, 0), (0, 0, -1), (0, 1, 0))  # local z runs along -y
+
+
+def calibration(design: Design, pose: Pose = REST) -> Scene:
+    """Scene `calibration`: the roller on the pad of pose.element, which it has pushed pose.deflection mm down.
+
+    pose.height lifts the roller. Raises InputError where the array has no such element.
+    """
+    rig = RigLayout(design)
+    pads = pad_middles(rig.array)
+    if not 1 <= pose.element <= len(pads):
+        raise InputError("element", "the array has none of that number", value=pose.element, legal=f"1 to {len(pads)}")
+    px, py = pads[pose.element - 1]
+    dx, dy = -px, py  # the array lies on its back: its y runs against the scene's
+    b = Builder()
+    post = place_stand(b, rig, stages=True)
+    under = _stages(b, rig, dx, dy)
+    _mounted_array(b, rig, under, dx, dy, pose)
+    contact = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
+    c = design.calibration
+    b.meet(contact, "TI1", "press")
+    b.step(
+        "Roller tip", (0, -130, AXIS_LIFT - 40),
+        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, roller along y: "
+        f"lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, set x by the edge of "
+        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
+    )
+    if pose.height == 0:
+        b.meet(contact, f"E{pose.element}")
+    return b.scene("calibration", _motions(design, pads, px, py), cover=b.groups["axis"])
+
+
+def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
+    """The x stage on the base plate, the y stage on it; returns the moving half on top."""
+    c = rig.design.calibration
+    fixed, moving = bought.stage_fixed(c.stage_travel), bought.stage_moving(c.stage_travel)
+    head = bought.micrometer(c.stage_travel, 0.01)
+    t, half = STAGE_PLATE, STAGE / 2
+    below, at = STAND, (0.0, 0.0)
+    for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", OUT_OF_Y, (0, -1)))):
+        z = 2 * t * level
+        b.group(None if axis == "x" else "stage-x")
+        low = b.place("SF", fixed, (*at, z))
+        b.meet(below, low)
+        for sx, sy in CORNERS:
+            b.screw(THREAD, LENGTH, (at[0] + sx * STAGE_HOLE, at[1] + sy * STAGE_HOLE, z + UNDER), (0, 0, -1), low, below)
+        micrometer = b.place("MM", head, (at[0] + side[0] * half, at[1] + side[1] * half, z + t / 2), out)
+        b.meet(low, micrometer)
+        at = (dx, 0.0) if axis == "x" else (dx, dy)
+        b.group("stage-x" if axis == "x" else "stage-y")
+        high = b.place("SM", moving, (*at, z + t))
+        b.meet(low, high)
+        b.step(
+            f"Stage along {axis}", (0, 0, 30 + 25 * level),
+            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other end and fix the "
+            "other two. Then drive it to the middle of its travel."
+            + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
+        )
+        below = high
+    return below
+
+
+def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float, pose: Pose) -> None:
+    """The array on its mount, pads up, on the upper stage."""
+    z = 4 * STAGE_PLATE
+    b.group("stage-y")
+    mount = b.place("AM", carried.array_mount(rig), (dx, dy, z))
+    b.meet(under, mount)
+    carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
+    roller = dowel_diameter(rig.design.calibration.roller) / 2
+    pressed = rig.array.elements[pose.element - 1]
+    deflected = (
+        {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)} if pose.deflection else {}
+    )
+    b.subassembly(array(rig.design, deflected), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
+    b.meet(mount, "CA1")
+    for x, y in carried.carrier_pattern(rig):
+        at = (dx + x, dy + y, z + PLATE - carried.under_carrier_screw(rig))
+        b.screw(rig.design.clamp.mount_thread, carried.CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
+    b.step(
+        "Array on its mount", (0, 0, 120),
+        "On the bench: lay the finished array (its own guide) on the mount with its carrier down, and fix it by four screws "
+        "from below. Leads leave along x, loose.",
+    )
+    for sx, sy in CORNERS:
+        at = (dx + sx * STAGE_HOLE, dy + sy * STAGE_HOLE, z + UNDER)
+        b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under)
+    b.step(
+        "Mount on the stages", (0, 0, 145),
+        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller within 0.02 mm over the "
+        "whole y travel.",
+    )
+    b.group(None)
+
+
+def _motions(design: Design, pads, px: float, py: float) -> tuple[Motion, ...]:
+    """Roller down, and with the roller lifted once around all pads, edges and corners of their rectangle."""
+    lifted = (0.0, 0.0, design.calibration.retract)
+    xs, ys = sorted(-(x - px) for x, _ in pads), sorted(y - py for _, y in pads)
+    corners = [(xs[0], ys[0]), (xs[-1], ys[0]), (xs[-1], ys[-1]), (xs[0], ys[-1])]
+    ways = [Motion("roller down to the pad", (("axis", lifted, (0.0, 0.0, 0.0)),))]
+    for n, (start, end) in enumerate(zip(corners, corners[1:] + corners[:1]), start=1):
+        ways.append(
+            Motion(f"stages along side {n} of the pads' rectangle, roller lifted", (
+                ("axis", lifted, lifted),
+                ("stage-x", (start[0], 0.0, 0.0), (end[0], 0.0, 0.0)),
+                ("stage-y", (*start, 0.0), (*end, 0.0)),
+            ))
+        )
+    return tuple(ways)
+

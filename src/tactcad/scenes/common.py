@@ -1,0 +1,185 @@
+"""What several rigs share: stand, cart with holder and sample, and the vertical axis with the force gauge."""
+
+from __future__ import annotations
+
+from tactcad.parts.consumables import Supply
+from tactcad.parts.library import dowels, orings
+from tactcad.parts.library.bearings import bearing
+from tactcad.parts.library.screws import METRIC
+from tactcad.parts.rigs import bought, cart, holder, stand
+from tactcad.parts.rigs.layout import (
+    BASE,
+    GAUGE_SHAFT,
+    PLATE,
+    PLATE_SCREW,
+    POST,
+    STAGE_HOLE,
+    STAGE_PLATE,
+    RigLayout,
+)
+
+from .array import AGAINST_Y, ALONG_Y
+from .builder import Builder
+
+CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
+STAND = "BP1"  # the base plate
+AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
+THREAD, LENGTH, UNDER = PLATE_SCREW
+
+
+def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
+    """Base plate (STAND) and post; returns the post's designator."""
+    base = b.place("BP", stand.base_plate(rig, stages), (0, 0, -BASE[1]))
+    post = b.place("PO", stand.post(rig), (0, rig.post_y, 0), ALONG_Y)
+    b.meet(base, post)
+    head = METRIC["M5"].head_height
+    for x, y in stand.POST_SCREWS:
+        at = (x, rig.post_y + POST[1] / 2 + y, -BASE[1] + head)
+        b.screw("M5", 16.0, at, (0, 0, 1), base, post)
+    b.step(
+        "Stand", (0, 0, 0) if stages else (0, 0, -60),
+        "Screw the post on the base plate from below. Before the last turn, check with a square on the upper face "
+        "that the post's front stands square within 0.02 mm on 100 mm, both ways."
+        + ("" if stages else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."),
+    )
+    return post
+
+
+def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float = 0.0) -> str:
+    """Cart for the base plate, with holder and sample; returns the sample's designator."""
+    b.group("cart")
+    c, bear = rig.cart, rig.bearing
+    plate = b.place("CT", cart.cart_plate(rig), (roll, 0, c.clearance))
+    shim, wheel = cart.axle_shim(rig), bearing(c.bearing)
+    side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
+    b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.")
+    for sy, which in ((-1, "front"), (1, "back")):
+        xs, z = [roll + sx * c.wheel_base / 2 for sx in (-1, 1)], rig.axle_z
+
+        def y(start: float, thick: float, sy: int = sy) -> float:
+            return start if sy > 0 else -start - thick
+
+        inner = [b.place("SH", shim, (x, y(side, c.shim), z), ALONG_Y) for x in xs]
+        balls = [b.place("BB", wheel, (x, y(side + c.shim, bear.B), z), ALONG_Y) for x in xs]
+        far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
+        for x, near, ball, beyond in zip(xs, inner, balls, far):
+            at = (x, y(outer + c.shim, 0), z)
+            axle = b.screw(rig.axle_thread, rig.axle_length, at, (0, -sy, 0), beyond, plate)
+            b.meet(plate, near)
+            b.meet(near, ball)
+            b.meet(ball, beyond)
+            b.meet(axle, ball, "press")
+            b.meet(ball, STAND)
+        b.step(
+            f"Wheels, {which}", (0, sy * 70, 25),
+            "Put shim, bearing, shim on each axle and start its thread."
+            + (
+                " Then stand the cart on a surface plate, press lightly on its middle so that all four wheels touch, and "
+                "tighten the axles in that state, crosswise: the axles' play in the bores takes up the threads' error. No "
+                "wheel may be loose over a 0.02 mm feeler gauge. Every outer ring must turn at a breath: it has "
+                f"{c.shim:g} mm of air to plate and head."
+                if sy > 0 else ""
+            ),
+            fan=True,
+        )
+    h, under = rig.holder_screw, rig.holder_fixing[1]
+    body = b.place("HB", holder.holder_body(rig), (roll, 0, rig.cart_top))
+    top = rig.cart_top + rig.holder_body
+    ring = b.place("OR", orings.o_ring(rig.o_ring), (roll, 0, top - orings.GROOVE_DEPTH))
+    b.meet(plate, body)
+    b.meet(body, ring)
+    b.step(
+        "Holder's body and seal", (0, 0, 60),
+        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.", fan=True,
+    )
+    fitting = b.place("HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y)
+    b.meet(fitting, body, "thread")
+    b.step("Hose fitting", (0, -40, 45), "Screw the hose fitting in by hand and a quarter turn more; its washer seals.")
+    lid = b.place("HL", holder.holder_lid(rig), (roll, 0, top))
+    b.meet(body, lid)
+    b.meet(ring, lid)
+    for sx, sy in CORNERS:
+        at = (roll + sx * h, sy * h, top + under)
+        b.screw("M3", rig.holder_fixing[0], at, (0, 0, -1), lid, plate)
+    b.step(
+        "Holder's lid", (0, 0, 95),
+        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with the pump shut off, the "
+        "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may not pull the cart.",
+        fan=True,
+    )
+    object_ = b.place("SA", holder.sample(rig, dents, depth), (roll, 0, rig.lid_top))
+    b.meet(lid, object_)
+    b.step("Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.")
+    b.supplies += [
+        Supply("HOSE-4", "silicone hose 4 x 1 mm, soft", 1, "m", "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A"),
+        Supply("VACUUM-PUMP", f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve", 1, "pcs",
+               f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air", consumable=False),
+    ]
+    b.group(None)
+    return object_
+
+
+def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height: float, roller: bool) -> str:
+    """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's) designator."""
+    travel = rig.design.calibration.axis_travel
+    resolution = rig.design.calibration.micrometer_resolution
+    zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
+    y = rig.post_y
+    fixed = b.place("SF", bought.stage_fixed(travel), (0, y, zs), AGAINST_Y)
+    b.meet(post, fixed)
+    for sx, sy in CORNERS:
+        at = (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE)
+        b.screw(THREAD, LENGTH, at, (0, 1, 0), fixed, post)
+    head = b.place("MM", bought.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
+    b.meet(fixed, head)
+    b.group("axis")
+    moving = b.place("SM", bought.stage_moving(travel), (0, y - STAGE_PLATE, z), AGAINST_Y)
+    b.meet(fixed, moving)
+    b.group(None)
+    b.step(
+        "Vertical stage", (0, -40, AXIS_LIFT),
+        f"Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the post's rows at "
+        f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to the base plate: "
+        "0.01 mm on the whole travel against a square.",
+    )
+    b.group("axis")
+    back = y - 2 * STAGE_PLATE
+    plate = b.place("AP", stand.axis_plate(rig), (0, back - PLATE, z), ALONG_Y)
+    b.meet(moving, plate)
+    for sx, sy in CORNERS:
+        b.screw(THREAD, LENGTH, (sx * STAGE_HOLE, back - UNDER, z + sy * STAGE_HOLE), (0, 1, 0), plate, moving)
+    b.step("Axis plate", (0, -80, AXIS_LIFT), "Screw the axis plate on the stage's moving half.")
+    front = back - 2 * PLATE
+    gauge_plate = b.place("GP", stand.gauge_plate(rig), (0, front, z), ALONG_Y)
+    gauge_end = rig.gauge_bottom(touch) + height - GAUGE_SHAFT
+    gauge = b.place("FG", bought.force_gauge(rig), (0, 0, gauge_end))
+    b.meet(gauge_plate, gauge)
+    for dz in bought.GAUGE_THREADS:
+        b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
+    b.step("Force gauge", (0, -130, AXIS_LIFT), "On the bench: screw the force gauge on its plate from behind, heads sunk.")
+    b.meet(plate, gauge_plate)
+    for sx, sy in CORNERS:
+        at = (sx * stand.GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * stand.GAUGE_SCREW_Z)
+        b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
+    b.step(
+        "Gauge on its axis", (0, -150, AXIS_LIFT),
+        "Screw the gauge plate on the axis plate, beside the gauge. Zero the gauge only after its cable is strapped to the post.",
+    )
+    tip_z = touch + height
+    if roller:
+        r = dowels.dowel_diameter(rig.design.calibration.roller) / 2
+        tip = b.place("TI", stand.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
+        length = roller_length(rig)
+        contact = b.place("RO", dowels.dowel(rig.design.calibration.roller, length), (0, length / 2, tip_z + r), AGAINST_Y)
+    else:
+        tip = contact = b.place("TI", stand.flat_tip(rig), (0, 0, tip_z))
+    b.meet(gauge, tip, "thread")
+    b.group(None)
+    return contact
+
+
+def roller_length(rig: RigLayout) -> float:
+    """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
+    wide = rig.design.sheet.thickness
+    lengths = dowels.dowel_lengths(rig.design.calibration.roller)
+    return next((n for n in lengths if n >= wide), lengths[-1])

@@ -1,0 +1,74 @@
+"""Configurations of the scenes that are checked besides their rest pose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import floor
+
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import stop_gap
+
+from .scene import Pose
+
+
+def poses(design: Design, name: str) -> tuple[Pose, ...]:
+    """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
+    the way into the sample; the array lifted, without weights, and pressed in."""
+    if name == "calibration":
+        return tuple(
+            Pose(element=n, deflection=d) for n, d in enumerate(calibration_deflections(design), start=1)
+        )
+    if name == "sample-stiffness":
+        travel = design.sample.travel
+        return (Pose(deflection=travel / 2), Pose(deflection=travel), Pose(cart=design.cart.roll / 2, height=1.0))
+    if name == "grasping":
+        return (
+            Pose(weights=0),
+            Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
+            Pose(deflection=design.sample.travel),
+        )
+    return ()
+
+
+def pose_of(given: Sequence[str], design: Design) -> Pose | None:
+    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError for what is no pose."""
+    limits = {
+        "element": (1, sum(len(row) for row in design.array.row_arms)),
+        "deflection": (0.0, 5.0),
+        "weights": (0, round(design.grasping.weights) if design.grasping else 0),
+        "height": (0.0, max(design.grasping.lift if design.grasping else 0.0, 5.0)),
+        "cart": (-design.cart.roll, design.cart.roll) if design.cart else (0.0, 0.0),
+    }
+    values: dict[str, float | int] = {}
+    for text in given:
+        key, _, value = text.partition("=")
+        if key not in limits:
+            raise InputError("--pose", "unknown key", value=text, legal=", ".join(limits))
+        low, high = limits[key]
+        legal = f"{key} from {low:g} to {high:g}"
+        try:
+            number = int(value) if isinstance(low, int) else float(value)
+        except ValueError:
+            raise InputError("--pose", "not a number", value=text, legal=legal) from None
+        if not low <= number <= high:
+            raise InputError("--pose", "out of range", value=text, legal=legal)
+        values[key] = number
+    return Pose(**values) if values else None
+
+
+def calibration_deflections(design: Design) -> tuple[float, ...]:
+    """Each element's deflection (mm, to a micrometre) at the calibration's whole travel.
+
+    Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K), as far as the
+    overload stop lets it: a micrometre short of gap L/a.
+    """
+    from tactcad.mechanics import ladder  # numpy: only the checks ask for this
+    from tactcad.parts.hinge_section import hinge_section
+
+    c, layout = design.calibration, Layout(design)
+    stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
+    free = [float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)) for k in stiffness]
+    stops = [stop_gap(layout, p) * p.load_arm / p.arm - 0.001 for p in layout.elements]
+    return tuple(floor(min(a, b) * 1e3 + 1e-6) / 1e3 for a, b in zip(free, stops))

@@ -1,0 +1,37 @@
+"""Sample stiffness: the force gauge's flat tip presses the sample on the cart."""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.parts.rigs.layout import RigLayout
+
+from .builder import Builder
+from .common import AXIS_LIFT, place_cart, place_force_axis, place_stand
+from .scene import REST, Motion, Pose, Scene
+
+
+def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
+    """Scene `sample-stiffness`: tip on the middle of the sample, pose.deflection mm into it or pose.height over it."""
+    rig = RigLayout(design)
+    b = Builder()
+    dents = ((-pose.cart, 0.0),) if pose.deflection else ()
+    sample = place_cart(b, rig, pose.cart, dents, pose.deflection)
+    post = place_stand(b, rig, stages=False)
+    contact = place_force_axis(b, rig, post, rig.sample_top, pose.height - pose.deflection, roller=False)
+    b.step(
+        "Tip", (0, -130, AXIS_LIFT - 40),
+        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a trace of thread lacquer. "
+        f"Lower it until the gauge reads 0.01 N: that is zero. Then {design.sample.step * 1e3:g} um steps to "
+        f"{design.sample.travel * 1e3:g} um, three times; subtract the gauge's own {design.calibration.load_cell_stiffness:g} N/mm.",
+    )
+    if pose.height == 0:
+        b.meet(contact, sample)
+    c = design.cart
+    lifted = (0.0, 0.0, design.calibration.retract)
+    motions = (
+        Motion("tip down to the sample", (("axis", lifted, (0.0, 0.0, 0.0)),)),
+        Motion("cart rolls under the lifted tip", (
+            ("axis", lifted, lifted), ("cart", (-c.roll, 0.0, 0.0), (c.roll, 0.0, 0.0)),
+        )),
+    )
+    return b.scene("sample-stiffness", motions, cover=b.groups["axis"])

@@ -1,0 +1,51 @@
+"""Pressed arms against closed forms, and designs in which they meet something."""
+
+from __future__ import annotations
+
+from math import asin, cos, sin
+
+import pytest
+from variants import variant
+
+from tactcad.checks.clearance import _Arms, _mirrored, _nearest, check_clearance
+from tactcad.design.load import names
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+
+
+@pytest.mark.parametrize("name", names())
+def test_what_ships_is_clear(name):
+    assert check_clearance(load(name)) == []
+
+
+def test_opposite_pads_come_nearer_by_what_their_height_turns():
+    """The pad's lower inner corner, 2 mm below the flat face: x = -a cos w - (2 + t/2) sin w from the hinge."""
+    design = variant({"stop.gaps": {"4": 0.12}, "array.row_arms": [[4], [4]]})
+    layout = Layout(design)
+    arms, (first, second) = _Arms(layout), layout.elements
+    w = asin(0.135 / 4)
+    towards = (2 + 0.125) * sin(w) - 4 * (1 - cos(w))
+    one = _nearest(arms.of(first, True), map(_mirrored, arms.of(second, False)))
+    both = _nearest(arms.of(first, True), map(_mirrored, arms.of(second, True)))
+    assert one == pytest.approx(2 - towards, abs=1e-9)
+    assert both == pytest.approx(2 - 2 * towards, abs=1e-9)
+    assert _nearest(arms.of(first, False), map(_mirrored, arms.of(second, False))) == pytest.approx(2.0)
+
+
+def test_high_pads_that_meet_when_pressed_are_seen():
+    changes = {"array.row_pitch": 2.2, "array.row_arms": [[4, 6], [4, 6]]}
+    found = check_clearance(variant(changes))
+    assert {f.part for f in found} == {"E1", "E2"}
+    assert all("opposite arm" in f.message and f.value < f.limit for f in found)
+    # arms that do not face each other cannot meet
+    assert check_clearance(variant({**changes, "array.row_arms": [[4]]})) == []
+
+
+def test_a_slot_that_closes_before_its_stop_is_seen():
+    """A slot as narrow as wire cutting makes it, and a gap that turns the arm by 0.15: 2.5 mm over the hinge it closes by 0.38."""
+    design = variant({
+        "array.row_arms": [[4]], "element.hinge_length": 0.25, "element.fillet_radius": 0.1,
+        "stop.gaps": {"4": 0.6}, "element.body_height": 3.6, "gauge.grid_length": 0.2,
+    })  # fmt: skip
+    (finding,) = check_clearance(design)
+    assert finding.part == "E1" and "own body" in finding.message

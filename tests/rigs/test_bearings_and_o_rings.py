@@ -1,0 +1,92 @@
+"""Bearings and O-rings against bd_warehouse's tables, and against their own closed forms."""
+
+from __future__ import annotations
+
+import csv
+from importlib.util import find_spec
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from tactcad.parts.library import orings
+from tactcad.parts.library.bearings import BEARINGS, bearing
+from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
+from tactcad.solids.build import build
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    folder = Path(find_spec("bd_warehouse").origin).parent / "data"
+    with (folder / name).open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.mark.parametrize("size", ["623-2Z", "624-2Z"])
+def test_bearings_are_those_of_the_makers_list(size):
+    (row,) = (r for r in rows("single_row_capped_deep_groove_ball_bearing_parameters.csv")
+              if r["SKT:Designation"].strip("* ") == size)
+    ours = BEARINGS[size]
+    assert (ours.d, ours.D, ours.B) == tuple(float(row[f"SKT:{k}"]) for k in ("d", "D", "B"))
+    assert ours.inner == float(row["SKT:d1"])
+    assert ours.mass == pytest.approx(1e3 * float(row["SKT:mass"]))
+
+
+@pytest.mark.parametrize("size", BEARINGS)
+def test_a_bearing_is_a_ring_of_its_dimensions(size):
+    b, part = BEARINGS[size], bearing(size)
+    assert build(part).volume == pytest.approx(pi / 4 * (b.D**2 - b.d**2) * b.B, rel=1e-9)
+    assert b.d < b.inner < b.D
+    assert f"M{b.d:g}" in METRIC  # its axle is a standard screw
+
+
+def test_the_estimate_of_the_inner_shoulder_keeps_to_the_known_ones():
+    for b in (BEARINGS["623-2Z"], BEARINGS["624-2Z"]):
+        assert b.d + 0.3 * (b.D - b.d) == pytest.approx(b.inner, abs=0.11)
+
+
+def test_o_rings_are_those_of_the_standard():
+    known = {r["Size"]: r for r in rows("o-ring_parameters.csv")}
+    for code, inside in orings.INSIDE.items():
+        assert (inside, orings.SECTION) == (float(known[code]["iso3601:id"]), float(known[code]["iso3601:w"])), code
+
+
+def test_the_groove_is_that_of_a_static_face_seal():
+    (gland,) = (r for r in rows("o-ring_static_gland_parameters.csv") if float(r["w"]) == orings.SECTION)
+    assert float(gland["d_a_min"]) <= orings.GROOVE_DEPTH <= float(gland["d_a_max"])
+    assert orings.GROOVE_WIDTH == pytest.approx(float(gland["g_w_0"]), abs=0.02)
+    low, high = float(gland["sq_a_p_min"]) / 100, float(gland["sq_a_p_max"]) / 100
+    assert low <= orings.squeeze() <= high
+
+
+@pytest.mark.parametrize("code", ["010", "025", "040"])
+def test_a_squeezed_ring_keeps_its_rubber_and_fits_its_groove(code):
+    inside, w = orings.INSIDE[code], orings.SECTION
+    torus = pi * w**2 / 4 * pi * (inside + w)
+    solid = build(orings.o_ring(code))
+    assert solid.volume == pytest.approx(torus, rel=1e-9)
+    box = solid.bounding_box()
+    inner, outer = orings.groove(code)
+    assert box.size.Z == pytest.approx(orings.GROOVE_DEPTH)
+    assert box.max.X < outer / 2
+    assert inner == inside
+
+
+def test_the_smallest_ring_that_reaches_around_is_taken():
+    assert orings.size_around(29.7) == "025"
+    assert orings.size_around(29.87) == "025"
+    assert orings.size_around(29.88) == "026"
+    assert orings.size_around(100.0) is None
+
+
+def test_axles_have_a_plain_shank_under_the_bearing():
+    """ISO 4762: a screw has 2 d + 12 of thread; shorter ones are threaded to the head."""
+    from variants import variant
+
+    from tactcad.parts.rigs.layout import RigLayout
+
+    for size, b in BEARINGS.items():
+        rig = RigLayout(variant({"cart.bearing": size, "cart.shim": 0.3}))
+        shank = rig.axle_length - (2 * b.d + 12)
+        assert shank >= 0.3 + b.B
+        shorter = [n for n in CAP_SCREW_LENGTHS[rig.axle_thread] if n < rig.axle_length]
+        assert all(n - (2 * b.d + 12) < 0.3 + b.B for n in shorter)

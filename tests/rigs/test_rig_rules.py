@@ -1,0 +1,86 @@
+"""Every rule of the rigs has a design that breaks it; an array that a rig cannot take costs only that scene."""
+
+from __future__ import annotations
+
+import pytest
+from variants import variant
+
+from tactcad.design.load import names
+from tactcad.design.messages import InputError
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.rules import FITS, RIG_RULES
+from tactcad.parts.rules import broken_rules
+from tactcad.scenes import chosen_scenes, left_out, scene_names
+
+WITNESSES = {
+    "axles_carry_wheels": {"cart.bearing": "682-2Z", "cart.shim": 2.0},
+    "axles_fit_plate": {"cart.clearance": 3.0},
+    "cart_cannot_tip": {"cart.wheel_base": 35.0},
+    "holder_on_cart": {"cart.width": 47.0},
+    "cart_clears_post": {"cart.width": 102.0},
+    "holes_under_sample": {"holder.rings": 2.5},
+    "vacuum_holds": {"holder.vacuum": 20.0},
+    "plenum_takes_port": {"holder.plenum_depth": 6.0},
+    "seal_fits_holder": {"holder.vacuum_diameter": 29.9, "sample.side": 32.0, "holder.margin": 3.6},
+    "holder_can_be_screwed": {"holder.lid_thickness": 4.0},
+    "screws_clear_sample": {"holder.margin": 6.0},
+    "axis_reaches_contact": {"calibration.axis_travel": 0.9},
+    "weights_clear_guide": {"grasping.weight_diameter": 60.0},
+}
+
+MISFITS = {
+    "stages_reach_pads": ("calibration", {"calibration.stage_travel": 7.5}),
+    "mount_clears_carrier": ("calibration", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
+    "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 9.0}),
+    "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
+    "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
+    "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
+    "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
+}
+
+
+def test_there_is_a_witness_for_every_rule():
+    assert set(WITNESSES) == set(RIG_RULES)
+    assert set(MISFITS) == {rule.__name__ for rules in FITS.values() for rule in rules}
+
+
+@pytest.mark.parametrize("rule", WITNESSES)
+def test_a_design_that_breaks_it_is_refused(rule):
+    design = variant(WITNESSES[rule])
+    assert rule in [b.rule for b in broken_rules(design)]
+    found = next(iter(RIG_RULES[rule](Layout(design))))
+    assert found[0].split(".")[0] in {"cart", "holder", "grasping", "calibration"}
+    assert found[3]  # says what is legal
+
+
+@pytest.mark.parametrize("rule", MISFITS)
+def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
+    scene, changes = MISFITS[rule]
+    design = variant(changes)
+    (checked,) = (r for r in FITS[scene] if r.__name__ == rule)
+    assert list(checked(Layout(design)))
+    assert scene not in scene_names(design)
+    assert any(line.startswith(f"scene {scene} left out: rule ") for line in left_out(design))
+    with pytest.raises(InputError, match="left out"):
+        chosen_scenes(design, [scene])
+    assert "array" in chosen_scenes(design, None)
+
+
+@pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
+def test_the_shipped_rigs_keep_all(name):
+    design = load(name)
+    assert scene_names(design) == ("array", "calibration", "sample-stiffness", "grasping")
+    assert left_out(design) == []
+
+
+@pytest.mark.parametrize("rows", [[1], [3], [1, 7], [50, 50], [500, 500]])
+def test_arrays_of_any_length_are_still_built(rows):
+    design = variant({"array.row_arms": [[6.0] * n for n in rows]})
+    assert not [b for b in broken_rules(design) if b.rule in RIG_RULES]
+    assert "array" in scene_names(design)
+
+
+def test_a_design_without_the_tables_has_no_rigs():
+    assert scene_names(load("soft-tissue")) == ("array",)
+    assert set(names()) >= {"macro-array", "double-sample", "smallest-bearing", "soft-tissue"}

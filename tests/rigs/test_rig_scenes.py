@@ -1,0 +1,227 @@
+"""Scenes: what they place, that they build only that, their configurations and guides."""
+
+from __future__ import annotations
+
+import json
+import re
+from io import StringIO
+from math import cos, sin
+
+import pytest
+
+from tactcad.cli.main import main
+from tactcad.cli.progress import progress
+from tactcad.design.messages import InputError
+from tactcad.export import guide
+from tactcad.export.pipeline import export
+from tactcad.export.products import _compare_box
+from tactcad.parts.deflected import deflected_element
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.layout import RigLayout, pad_middles
+from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.poses import calibration_deflections, pose_of, poses
+from tactcad.scenes.scene import Pose, Scene
+from tactcad.solids.build import build
+from tactcad.solids.measure import measure
+
+RIGS = ("calibration", "sample-stiffness", "grasping")
+DESIGNS = ("macro-array", "double-sample", "smallest-bearing")
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_every_rig_part_is_the_solid_that_its_description_says(name):
+    design = load(name)
+    parts = {p.part_no: p for scene in RIGS for p in make_scene(design, scene).parts}
+    for part in parts.values():
+        facts = measure(build(part).wrapped)  # build has compared the volume
+        assert facts["centre"] == pytest.approx(part.centre, abs=1e-6), part.part_no
+        _compare_box(part, facts["box"])
+
+
+@pytest.mark.parametrize("scene", RIGS)
+def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, tmp_path, monkeypatch):
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
+    design = load("smallest-bearing")
+    done = export(design, [scene], tmp_path / "out", progress(StringIO()))
+    assert sorted(done.built) == sorted(p.part_no for p in make_scene(design, scene).parts)
+    bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
+    assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
+    assert all(not row["source_verified"] for row in bill if row["make_buy"] == "buy")
+    cut = {p.part_no for p in make_scene(design, scene).parts if p.process == "wire-cut"}
+    assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
+    again = export(design, [scene], tmp_path / "out", progress(StringIO()))
+    assert (again.made, again.built) == ((), ())
+
+
+@pytest.mark.parametrize("number", range(1, 11))
+def test_each_element_comes_under_the_force_gauge(number):
+    """Its pad's middle, placed, lies on the gauge's axis at the roller's lowest line."""
+    design = load("macro-array")
+    scene = make_scene(design, "calibration", Pose(element=number))
+    layout = Layout(design)
+    (p,) = (p for p in scene.placements if p.designator == f"E{number}")
+    local = ((layout.pad_inner + layout.pad_outer) / 2, -design.element.pad_height, design.sheet.thickness / 2)
+    at = [sum(r * c for r, c in zip(row, local)) + o for row, o in zip(p.rotation, p.origin)]
+    assert at == pytest.approx([0.0, 0.0, RigLayout(design).pads_up], abs=1e-9)
+    (gauge,) = (p for p in scene.placements if p.designator == "FG1")
+    assert gauge.origin[:2] == (0.0, 0.0)
+
+
+def test_an_element_that_is_not_there_is_refused():
+    with pytest.raises(InputError, match="element"):
+        make_scene(load("smallest-bearing"), "calibration", Pose(element=5))
+
+
+def test_pads_face_each_other_across_the_middle():
+    pads = pad_middles(Layout(load("macro-array")))
+    assert [x for x, _ in pads] == [2.0] * 5 + [-2.0] * 5
+    assert [y for _, y in pads[:5]] == [y for _, y in pads[5:]] == [-8, -4, 0, 4, 8]
+
+
+def test_the_axis_hangs_over_the_sample_at_every_height():
+    design = load("macro-array")
+    rest, lifted = (make_scene(design, "grasping", Pose(height=h, weights=0)) for h in (0.0, 20.0))
+    axis = dict(rest.groups)["axis"]
+    for a, b in zip(rest.placements, lifted.placements):
+        moved = b.origin[2] - a.origin[2]
+        assert moved == pytest.approx(20.0 if a.designator in axis else 0.0), a.designator
+
+
+@pytest.mark.parametrize("weights", [0, 1, 7])
+def test_weights_lie_on_each_other(weights):
+    scene = make_scene(load("macro-array"), "grasping", Pose(weights=weights))
+    discs = [p for p in scene.placements if p.designator.startswith("WT")]
+    assert len(discs) == weights
+    for p in discs:  # as high as its mass asks for
+        assert build(p.part).volume * p.part.material.density * 1e-6 == pytest.approx(100.0, rel=1e-3)
+    heights = [p.origin[2] for p in discs]
+    assert all(b - a == pytest.approx(discs[0].part.body.thickness) for a, b in zip(heights, heights[1:]))
+
+
+def test_a_rolled_cart_moves_alone():
+    design = load("macro-array")
+    rest, rolled = (make_scene(design, "sample-stiffness", Pose(cart=x)) for x in (0.0, 4.0))
+    cart = dict(rest.groups)["cart"]
+    for a, b in zip(rest.placements, rolled.placements):
+        assert b.origin[0] - a.origin[0] == pytest.approx(4.0 if a.designator in cart else 0.0)
+
+
+@pytest.mark.parametrize("number", [1, 4])
+@pytest.mark.parametrize("deflection", [0.02, 0.08])
+def test_a_pressed_pad_touches_the_roller(number, deflection):
+    """The roller's axis has come up by the deflection; the pad's face is its radius away, by the turned face itself."""
+    layout = Layout(load("macro-array"))
+    place, r = layout.elements[number - 1], 1.0025
+    part = deflected_element(layout, place, deflection, r)
+    (face,) = (s for s in part.body.outer if s.name == "pad_face")
+    axis = ((layout.pad_inner + layout.pad_outer) / 2, -layout.design.element.pad_height - r + deflection)
+    (x0, y0), (x1, y1) = face.start, face.end
+    away = abs((x1 - x0) * (axis[1] - y0) - (y1 - y0) * (axis[0] - x0)) / face.length
+    assert away == pytest.approx(r, abs=1e-9)
+    assert build(part).is_valid
+    assert part.process == "reference"
+    angle = deflection / place.load_arm
+    (tip,) = (s for s in part.body.outer if s.name == "tip")
+    lever = layout.ledge - place.hinge.t / 2
+    rise = tip.start[1] - (layout.ledge - _gap(layout, place))
+    assert rise == pytest.approx(place.arm * sin(angle) - lever * (1 - cos(angle)), rel=0.02)
+
+
+def _gap(layout, place):
+    from tactcad.parts.stop_gap import stop_gap
+
+    return stop_gap(layout, place)
+
+
+def test_calibration_shares_its_travel_between_gauge_and_element():
+    design = load("macro-array")
+    for d, place in zip(calibration_deflections(design), Layout(design).elements):
+        assert 0 < d < design.calibration.travel
+        assert d < _gap(Layout(design), place) * place.load_arm / place.arm  # the stop stays open
+
+
+def test_there_is_a_pose_for_every_element():
+    design = load("macro-array")
+    assert [p.element for p in poses(design, "calibration")] == list(range(1, 11))
+
+
+@pytest.mark.parametrize(
+    ("text", "pose"),
+    [("element=3", Pose(element=3)), ("deflection=0.1", Pose(deflection=0.1)), ("weights=0", Pose(weights=0)),
+     ("height=5", Pose(height=5.0)), ("cart=-2.5", Pose(cart=-2.5))],
+)
+def test_poses_on_the_command_line(text, pose):
+    assert pose_of([text], load("macro-array")) == pose
+
+
+@pytest.mark.parametrize("text", ["element=11", "element=0", "element=1.5", "height=nan", "cart=6", "weights=11", "tilt=1", "element"])
+def test_impossible_poses_are_refused(text, capsys):
+    assert main(["export", "macro-array", "--scene", "calibration", "--pose", text, "--out", "nowhere"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["macro-array", "soft-tissue", "smallest-bearing"])
+def test_a_guide_places_every_part_once_and_shows_its_torques(name):
+    design = load(name)
+    for scene_name in scene_names(design):
+        scene = make_scene(design, scene_name)
+        placed = [d for step in scene.steps for d in step.designators]
+        assert sorted(placed) == sorted(p.designator for p in scene.placements)
+        page = guide.page(design, scene).decode()
+        assert page.count("<h2>") == len(scene.steps) + bool(scene.supplies)
+        for p in scene.placements:
+            assert re.search(rf"[> ]{p.designator}[< ]", page), p.designator
+            if p.part.part_no.startswith("ISO4762-M3"):
+                assert guide.torque(p.part) == 0.55
+        assert "http" not in page  # opens offline
+
+
+def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():
+    (step,) = (s for s in make_scene(load("macro-array"), "array").steps if s.title == "Coplanar pads")
+    for word in ("surface plate", "gauge block of 2 mm", "lever indicator", "10 um"):
+        assert word in step.text
+
+
+def test_an_exploded_view_pulls_every_part_out_along_its_step():
+    scene = make_scene(load("macro-array"), "grasping")
+    out = {p.designator: p.origin for p in guide.exploded(scene)}
+    rest = {p.designator: p.origin for p in scene.placements}
+    for step in scene.steps:
+        for d in step.designators:
+            way = [b - a for a, b in zip(rest[d], out[d])]
+            shares = [w / e for w, e in zip(way, step.explode) if e]
+            assert all(0.5 < s <= 1 + 1e-9 for s in shares)
+    standing, coming = guide.at_step(scene, 3)
+    assert {p.designator for p in coming} == set(scene.steps[2].designators)
+    assert {p.designator for p in standing} == {d for s in scene.steps[:2] for d in s.designators}
+
+
+def test_steps_that_forget_a_part_are_refused():
+    scene = make_scene(load("macro-array"), "array")
+    with pytest.raises(ValueError, match="steps"):
+        Scene("bad", scene.placements, scene.contacts, steps=scene.steps[:-1])
+
+
+def test_wheels_touch_the_base_and_only_they():
+    scene = make_scene(load("macro-array"), "sample-stiffness")
+    low = {p.designator: p.origin[2] for p in scene.placements if p.designator.startswith("BB")}
+    assert set(low.values()) == {5.0}  # 623: 10 mm outside
+    assert sum(c.second == "BP1" and c.first.startswith("BB") for c in scene.contacts) == 4
+    assert all(p.rotation[1] == (0, 0, 1) for p in scene.placements if p.designator.startswith("BB"))
+
+
+def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
+    design = load("smallest-bearing")
+    sizes, masses = {}, {}
+    for detail in ("full", "envelope"):
+        out = tmp_path / detail
+        export(design, ["sample-stiffness"], out, progress(StringIO()), detail=detail)
+        (step,) = out.glob("step/smallest-bearing-sample-stiffness_*.step")
+        sizes[detail] = step.stat().st_size
+        rows = json.loads((out / "bom-sample-stiffness.json").read_text())["rows"]
+        masses[detail] = {r["part_no"]: r["mass_g"] for r in rows}
+        assert (detail == "full") or not list(out.glob("dxf/*"))
+    assert masses["full"] == masses["envelope"]
+    assert sizes["envelope"] < sizes["full"] / 2
