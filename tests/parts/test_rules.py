@@ -216,6 +216,8 @@ def test_many_such_designs_build_and_pass_every_check(design):
     [
         {"element.rear_height": 16.0},  # carrier over high rear bodies
         {"array.row_arms": [[4] * 4], "clamp.end_plate_thickness": 5.0, "clamp.mount_pitch_y": 5.0},  # counterbores
+        # set screws over the outermost of thin elements would stand in the end plates
+        {"array.row_arms": [[4] * 8], "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0},
         {"array.row_arms": [[50.0, 4.0]]},  # beyond the estimator's fit
         {**TWO_SIDED, "clamp.screw": "M2.5", "clamp.stop_plate_thickness": 5.0},
     ],
