@@ -52,10 +52,11 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
     """Largest gap that leaves a stop land over the arm: ledge less arm and the ramp's least height, mm.
 
     The ramp rises at 45 degrees from a foot rounded by corner_radius, whose tangent length is
-    r tan(22.5 deg); along the ramp's height that is r (sqrt 2 - 1)/sqrt 2.
+    r tan(22.5 deg); along the ramp's height that is r (sqrt 2 - 1)/sqrt 2. A step more keeps it from ending in
+    a sliver of an edge.
     """
     ramp = layout.design.element.corner_radius * (sqrt(2.0) - 1.0) / sqrt(2.0)
-    return layout.ledge_of(hinge) - hinge.h - ramp
+    return layout.ledge_of(hinge) - hinge.h - ramp - STEP_MM
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap

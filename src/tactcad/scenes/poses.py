@@ -8,7 +8,6 @@ from math import floor
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
-from tactcad.parts.stop_gap import stop_gap
 
 from .scene import Pose
 
@@ -66,6 +65,7 @@ def calibration_deflections(design: Design) -> tuple[float, ...]:
     """
     from tactcad.mechanics import ladder  # numpy: only the checks ask for this
     from tactcad.parts.hinge_section import hinge_section
+    from tactcad.parts.stop_gap import stop_gap
 
     c, layout = design.calibration, Layout(design)
     stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
