@@ -124,6 +124,9 @@ def test_the_export_is_what_the_contract_says(two_exports):
     instances = [(folder / path).read_text().count("=NEXT_ASSEMBLY_USAGE_OCCURRENCE(") for path in assemblies]
     assert sorted(solids.values()) == sorted(instances)
     assert solids["bom.json"] == 40
+    rows = [row for bill in folder.glob("bom*.json") for row in json.loads(bill.read_text())["rows"]]
+    for p in record["parts"]:  # scenes are built one after the other from the same parts
+        assert p["qty"] == max(r["qty"] for r in rows if r["part_no"] == p["part_no"])
 
 
 def test_nothing_in_the_export_names_the_machine(two_exports):

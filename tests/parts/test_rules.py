@@ -208,6 +208,7 @@ def checked(design: Design) -> list[str]:
 
 
 @pytest.mark.cad
+# no shrinking: each example is a whole check, and a failing one says itself what is wrong
 @settings(
     max_examples=3, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate]
 )

@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 from xml.etree import ElementTree
 
+from tactcad.design.messages import CheckFailure
+
 from .finding import Finding
 
 
@@ -55,11 +57,17 @@ class Report:
         return grouped
 
     def run(self, name: str, check: Callable[..., list[Finding]], *args: Any) -> None:
-        """Run one check on its first argument (something with a part number or a name); keep what it says."""
-        start = time.perf_counter()
-        found = check(*args)
-        seconds = time.perf_counter() - start
+        """Run one check on its first argument (something with a part number or a name); keep what it says.
+
+        Where the estimator does not reach a design, what rests on it is flagged as not checked.
+        """
         subject = getattr(args[0], "part_no", None) or args[0].name
+        start = time.perf_counter()
+        try:
+            found = check(*args)
+        except CheckFailure as error:
+            found = [Finding(name, "flag", subject, (), 0, 0, f"not checked: {error}")]
+        seconds = time.perf_counter() - start
         self.cases.append(Case(name, subject, seconds, tuple(found)))
 
 

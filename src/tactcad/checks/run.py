@@ -58,9 +58,7 @@ def run_checks(
         if part.process in MACHINED:
             report.run("machining", check_machining, part)
     report.run("overload stop", check_stops, design)
-    for line in left_out(design):
-        name = line.split()[1]
-        report.findings.append(Finding("scene", "flag", f"{design.name}-{name}", (), 0, 0, line))
+    report.run("scenes left out", _left_out, design)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
@@ -81,6 +79,11 @@ def run_checks(
                 report.run("configurations", check_interference, posed, shapes, known)
     say(total, total, "done")
     return report
+
+
+def _left_out(design: Design) -> list[Finding]:
+    """A rig that cannot take this array is flagged with the reason."""
+    return [Finding("scene", "flag", design.name, (), 0, 0, line) for line in left_out(design)]
 
 
 def _built(part: Part, shapes: dict[str, TopoDS_Shape]) -> list[Finding]:

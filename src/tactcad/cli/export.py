@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
     done = export(design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail)
-    for line in () if args.scene else left_out(design):
+    for line in left_out(design) if done.reasons and not args.scene else ():
         say.line(line)
     if args.json:
         print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))

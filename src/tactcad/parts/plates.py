@@ -165,7 +165,9 @@ def _screw_hole(name: str, d: Design, c: Clamping, head: bool, at: Vector, depth
         deep = round(depth - c.head_plate_web, 9)
         counterbore = (counterbore_diameter(d.clamp.screw), deep) if deep > 0 else None
         return Hole(name, at, (0, 0, 1), m.clearance, depth, True, counterbore=counterbore)
-    return _tapped(name, d.clamp.screw, at, (0, 0, 1), depth)
+    # from the inner face, where the screw comes in; three diameters are what a tap is given
+    inner, full = (at[0], at[1], depth), min(depth, 3 * m.d)
+    return Hole(name, inner, (0, 0, -1), m.tap_drill, depth, True, thread=d.clamp.screw, thread_depth=full)
 
 
 def _tapped(name: str, thread: str, at: Vector, axis: Vector, depth: float) -> Hole:

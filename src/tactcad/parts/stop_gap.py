@@ -13,6 +13,8 @@ from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut to a hundredth: finer steps are below the tolerance that any stop can hold.
 STEP_MM = 0.01
+# The ramp keeps this height of straight edge: none shorter than a wire or the kernel tells from a point.
+STRAIGHT_RAMP = 0.005
 
 
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
@@ -52,11 +54,10 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
     """Largest gap that leaves a stop land over the arm: ledge less arm and the ramp's least height, mm.
 
     The ramp rises at 45 degrees from a foot rounded by corner_radius, whose tangent length is
-    r tan(22.5 deg); along the ramp's height that is r (sqrt 2 - 1)/sqrt 2. A step more keeps it from ending in
-    a sliver of an edge.
+    r tan(22.5 deg); along the ramp's height that is r (sqrt 2 - 1)/sqrt 2.
     """
     ramp = layout.design.element.corner_radius * (sqrt(2.0) - 1.0) / sqrt(2.0)
-    return layout.ledge_of(hinge) - hinge.h - ramp - STEP_MM
+    return layout.ledge_of(hinge) - hinge.h - ramp - STRAIGHT_RAMP
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
