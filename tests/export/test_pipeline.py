@@ -119,6 +119,11 @@ def test_the_export_is_what_the_contract_says(two_exports):
     assert {f["part_no"] for f in record["files"] if f["kind"] == "step-part"} == parts
     cut = {p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"}
     assert {f["part_no"] for f in record["files"] if f["kind"] == "dxf"} == cut
+    solids = {p.name: sum(r["qty"] for r in json.loads(p.read_text())["rows"] if r["has_solid"]) for p in folder.glob("bom*.json")}
+    assemblies = [f["path"] for f in record["files"] if f["kind"] == "step-assembly"]
+    instances = [(folder / path).read_text().count("=NEXT_ASSEMBLY_USAGE_OCCURRENCE(") for path in assemblies]
+    assert sorted(solids.values()) == sorted(instances)
+    assert solids["bom.json"] == 40
     rows = [row for bill in folder.glob("bom*.json") for row in json.loads(bill.read_text())["rows"]]
     for p in record["parts"]:  # scenes are built one after the other from the same parts
         assert p["qty"] == max(r["qty"] for r in rows if r["part_no"] == p["part_no"])
@@ -414,7 +419,7 @@ def test_killed_at_any_moment_the_earlier_or_the_new_export_stands_whole(mine, t
     for revision in "BA":
         text = TWO_ARMS_TEXT.replace('revision = "A"', f'revision = "{revision}"')
         (tmp_path / f"{revision}.toml").write_text(text)
-        run("export", f"{revision}.toml", "--out", str(mine), **environment)
+        run("export", f"{revision}.toml", "--scene", "array", "--out", str(mine), **environment)
         designs[revision] = contents(mine)
     assert designs["A"] != designs["B"]
     chance = random.Random(7)
@@ -423,7 +428,7 @@ def test_killed_at_any_moment_the_earlier_or_the_new_export_stands_whole(mine, t
         wanted = "B" if revision == "A" else "A"
         cold = turn < 2
         child = subprocess.Popen(
-            [sys.executable, "-m", "tactcad", "export", f"{wanted}.toml", "--out", str(mine)], cwd=tmp_path,
+            [sys.executable, "-m", "tactcad", "export", f"{wanted}.toml", "--scene", "array", "--out", str(mine)], cwd=tmp_path,
             env={**os.environ, "PYTHONPATH": str(Path(tactcad.__file__).parents[1]),
                  **({"TACTCAD_CACHE": str(tmp_path / f"cold{turn}")} if cold else {})},
             stderr=subprocess.DEVNULL,
@@ -435,7 +440,7 @@ def test_killed_at_any_moment_the_earlier_or_the_new_export_stands_whole(mine, t
         assert contents(mine) == designs[revision]
         outcomes.add(revision == wanted)
     assert False in outcomes, "no kill came before the end"
-    run("export", f"{wanted}.toml", "--out", str(mine), **environment)
+    run("export", f"{wanted}.toml", "--scene", "array", "--out", str(mine), **environment)
     assert contents(mine) == designs[wanted]
     left = {p.name for p in (mine.parent / ".out.builds").iterdir()}
     assert len(left) <= 2 and not [name for name in left if name.endswith(".part")]
