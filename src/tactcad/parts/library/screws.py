@@ -11,7 +11,7 @@ from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
 
-from ..description import Extrusion, Material, Part, Pocket, Purchase, Revolution
+from ..description import Extrusion, Material, Part, Pocket, Purchase, Revolution, drill_point_height
 
 STAINLESS = Material("stainless steel A2-70", 7900)
 STAINLESS_SET = Material("stainless steel A2-21H", 7900)
@@ -77,7 +77,7 @@ def tapped_depth(thread: str) -> float:
     Two pitches of run-out below the full thread are left for the tap's lead.
     """
     m = METRIC[thread]
-    return blind_thread(thread) + 2 * m.pitch + m.tap_drill / 2 * 0.6008606190275604
+    return blind_thread(thread) + 2 * m.pitch + drill_point_height(m.tap_drill)
 
 
 def blind_thread(thread: str) -> float:
