@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
 
 LARGEST_FILE = 50_000_000  # bytes; a calibration of 10 000 elements is 15 MB
@@ -132,17 +133,7 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
 
 
 def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
-    try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise InputError(
-                shown, "file too large", value=path.stat().st_size, legal=f"up to {LARGEST_FILE} bytes"
-            )
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{shown}:{line}:1", "not UTF-8 text") from None
-    except OSError as error:
-        raise InputError(shown, f"cannot be read: {error.strerror}") from None
+    text = read_text(path, LARGEST_FILE, "readings (CSV)")
     found = []
     for number, line in enumerate(text.splitlines(), 1):
         if "\x00" in line:
