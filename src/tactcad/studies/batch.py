@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import math
 import os
 import tempfile
@@ -14,6 +13,8 @@ import numpy as np
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
+
+from .csv_table import records, text_of
 
 REQUIRED = (
     "hinge_thickness",
@@ -64,7 +65,7 @@ def estimate_rows(section: HingeSection, rung: str) -> tuple[list[float], list[s
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     """Header, rows as text, and the section of arrays. Raises InputError where the table is malformed."""
-    lines = _lines(path)
+    lines = records(str(path), text_of(path, math.inf))
     if not lines:
         raise InputError(f"{path}:1:1", "the file is empty", legal="a header line of column names")
     header = [name.strip() for name in lines[0][1]]
@@ -80,26 +81,6 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
             )
         rows.append((number, row))
     return header, [row for _, row in rows], _section(path, header, rows)
-
-
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """(line number, fields) of every record."""
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise InputError(str(path), f"cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{path}:{line}:1", "is not UTF-8 text") from None
-    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    records, before = [], 0
-    try:
-        for record in reader:
-            records.append((before + 1, record))
-            before = reader.line_num
-    except csv.Error as error:
-        raise InputError(f"{path}:{before + 1}:1", f"is not CSV ({error})") from None
-    return records
 
 
 def _check_header(path: Path, header: list[str]) -> None:
