@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import json
 import os
 import sys
+from collections.abc import Callable
 
 from tactcad import __version__
+from tactcad.account import account, text
 from tactcad.design.messages import CheckFailure, InputError, one_of
 
 from .parser import Parser
@@ -52,6 +55,17 @@ def main(argv: list[str] | None = None) -> int:
         return 130
 
 
+def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
+    """Run the command and print its account, whether it succeeds or not."""
+    with account() as made:
+        try:
+            return run(args)
+        finally:
+            record = made.record()
+            as_json = getattr(args, "json", False)
+            print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
+
+
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         module = importlib.import_module(f"tactcad.cli.{argv[0]}")
@@ -62,7 +76,13 @@ def _dispatch(argv: list[str]) -> int:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         module.configure(parser)
-        return module.run(parser.parse_args(argv[1:]))
+        parser.add_argument(
+            "--profile", action="store_true",
+            help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
+            "made, how often, how long, and how much memory it took (with --json as JSON)",
+        )
+        args = parser.parse_args(argv[1:])
+        return _profiled(module.run, args) if args.profile else module.run(args)
     parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",

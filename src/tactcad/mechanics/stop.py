@@ -26,7 +26,7 @@ def largest_closing_force(s: HingeSection, stiffness: Array, arm: Array, overloa
     """Force (N) with which the stop may close at most, so that `overload` (N) on it just does not yield the fillet.
 
     F + e (overload - F) = force at yield, with e the equivalent of one newton; not positive where the shear
-    alone is too much.
+    alone is too much. Beyond the range of the fit the fillet's factor is extrapolated.
     """
     share = equivalent_force(s, stiffness, arm, 1.0)
-    return (yield_strength / strain.peak_stress(s, 1.0) - share * overload) / (1.0 - share)
+    return (yield_strength / strain.stress_beyond_the_fit(s, 1.0) - share * overload) / (1.0 - share)

@@ -41,12 +41,17 @@ def overloads(layout: Layout) -> list[Overload]:
     # the rigid arm's lever carries the gap at the tip to the load line
     closing = np.minimum(known.stiffness * gap * s.load_arm / arm, design.rating.overload_force)
     beyond = design.rating.overload_force - closing
-    stress = strain.peak_stress(s, closing + equivalent_force(s, known.stiffness, arm, beyond))
-    rated = strength.rated_force(s, alloy, design.rating.force)
+    stress, rated = (np.full(s.shape, np.nan) for _ in range(2))
+    ok = known.valid
+    if ok.any():
+        reached = s.rows(ok)
+        bent_by = closing[ok] + equivalent_force(reached, known.stiffness[ok], arm[ok], beyond[ok])
+        stress[ok] = strain.peak_stress(reached, bent_by)
+        rated[ok] = strength.rated_force(reached, alloy, design.rating.force)
     return [
         Overload(
             p, float(gap[i]), float(closing[i]), float(stress[i]), float(alloy.yield_strength / stress[i]),
-            float(np.broadcast_to(rated, s.shape)[i]), str(known.reason[i]),
+            float(rated[i]), str(known.reason[i]),
         )
         for i, p in enumerate(places)
     ]  # fmt: skip
