@@ -242,7 +242,7 @@ BAD = {
     "column left out": (BLANK.replace("measured", "meas", 1), ":1:"),
     "column twice": (BLANK.replace("where", "measured", 1), f":1:{COLUMN['where']}: "),
     "empty": ("", ":1:1: "), "blank lines": ("\n\n\n", ":1:1: "),
-    "UTF-16": (BLANK.encode("utf-16"), ":1:1: "), "latin-1": (t5("0.25\xb5").encode("latin-1"), f":{E5}:1: "),
+    "UTF-16": (BLANK.encode("utf-16"), ":1:1: "), "latin-1": (t5("0.25\xb5").encode("latin-1"), f":{E5}:"),
     "NUL": (t5("0.2\0"), f":{E5}:1: "), "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ":1:1: "),
     "open quote": (replaced(E5, ",mm,", ',"mm,'), ":"),
 }  # fmt: skip

@@ -122,6 +122,7 @@ def _rebuild(
         wrong = manifests.check_manifest(folder)
         if wrong:
             raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
+    cache.trim()
     count = len(records) + 1
     progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
     return Exported(out, count, made, tuple(shapes.built), why)

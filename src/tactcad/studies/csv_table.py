@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
 
 LARGEST_FILE = 50_000_000  # bytes; a calibration of 10 000 elements is 15 MB
@@ -132,25 +133,6 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
         seen[key] = i
 
 
-def text_of(path: Path, most: float = LARGEST_FILE) -> str:
-    """A file's text, without a byte order mark. Raises InputError where it cannot be read, has more than `most` bytes,
-    or is no text."""
-    shown = str(path)
-    try:
-        if path.is_file() and path.stat().st_size > most:
-            raise InputError(shown, "file too large", value=path.stat().st_size, legal=f"up to {most} bytes")
-        text = path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{shown}:{line}:1", "not UTF-8 text") from None
-    except OSError as error:
-        raise InputError(shown, f"cannot be read: {error.strerror}") from None
-    if "\x00" in text:
-        line = text[: text.index("\x00")].count("\n") + 1
-        raise InputError(f"{shown}:{line}:1", "a NUL character: not a text file")
-    return text
-
-
 def records(shown: str, text: str, delimiter: str = ",") -> list[tuple[int, list[str]]]:
     """Every record of CSV text (line ends within quotes belong to it) with the line it begins on.
 
@@ -169,7 +151,7 @@ def records(shown: str, text: str, delimiter: str = ",") -> list[tuple[int, list
 
 def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
     found = []
-    for number, line in enumerate(text_of(path).splitlines(), 1):
+    for number, line in enumerate(read_text(path, LARGEST_FILE, "readings (CSV)").splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
             found.append((number, [field.strip() for field in _split(line, f"{shown}:{number}:1")]))
     return found

@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from math import isclose
 from pathlib import Path
 
+from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
 from tactcad.export.inspection import COLUMNS, UNIT
 from tactcad.parts.layout import Layout
 from tactcad.parts.measurements import Measurement, measurements
 
-from .csv_table import records, text_of
+from .csv_table import LARGEST_FILE, records
 
 NEEDED = tuple(c for c in COLUMNS if c not in ("key", "where", "how"))
 LIMITS = ("nominal", "lower", "upper")
@@ -60,7 +61,7 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
 
     Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled in.
     """
-    shown, text = str(path), text_of(Path(path))
+    shown, text = str(path), read_text(path, LARGEST_FILE, "an inspection sheet (CSV)")
     first, text = _without_hint(text)
     delimiter = _delimiter(text)
     lines = [(n + first, [cell.strip() for cell in row]) for n, row in records(shown, text, delimiter)]
