@@ -8,6 +8,7 @@ import numpy as np
 
 from tactcad.design.materials import Alloy
 from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Rating
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.element import element
@@ -38,7 +39,8 @@ class ElementEstimate:
     goodman_factor: float | None  # at 5e8 cycles between 0 and the force
     yield_force: float  # N
     yield_deflection: float  # mm
-    rated_force: float  # N
+    rated_force: float  # N, in use
+    rated_deflection: float  # mm, never passed: overload and calibration stay below
 
 
 def estimate(layout: Layout, rung: str, force: float | None = None) -> list[ElementEstimate]:
@@ -55,7 +57,7 @@ def estimate(layout: Layout, rung: str, force: float | None = None) -> list[Elem
     else:
         K = ladder.stiffness(section, rung)
         per_newton = _closed_form_strains(section, rung, design.gauge.grid_length)
-    return _estimates(places, section, alloy, np.asarray(K), per_newton, force, design.rating.yield_factor)
+    return _estimates(places, section, alloy, np.asarray(K), per_newton, force, design.rating)
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ def _estimates(
     K: Array,
     per_newton: _PerNewton,
     force: float,
-    safety: float,
+    rating: Rating,
 ) -> list[ElementEstimate]:
     rows = []
     for i, place in enumerate(places):
@@ -144,7 +146,8 @@ def _estimates(
                 goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
                 yield_force=yield_force,
                 yield_deflection=yield_force / float(K[i]),
-                rated_force=min(force, yield_force / safety),
+                rated_force=min(force, yield_force / rating.yield_factor),
+                rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
             )
         )
     return rows
