@@ -154,6 +154,11 @@ def _table(contents: Contents) -> list[str]:
     )
 
 
+def _short(contents: Contents, numbers: Sequence[str]) -> str:
+    """Part numbers in a sentence, without the design's name, which most of them begin with."""
+    return ", ".join(number.removeprefix(f"{contents.design.name}-") for number in numbers)
+
+
 def _size(part: Part) -> str:
     low, high = part_box(part)
     return " x ".join(f"{round(b - a, 3):g}" for a, b in zip(low, high))
@@ -169,9 +174,9 @@ def _keys(contents: Contents) -> list[str]:
     lines = []
     for c, numbers in groups.items():
         lines.append(f"  {c.name}: {c.nominal:g} mm, {round(c.lower, 6):g} to {round(c.upper, 6):g}")
-        lines += _paragraph(", ".join(numbers), "      ")[:-1]
+        lines += _paragraph(_short(contents, numbers), "      ")[:-1]
     return [*lines, ""] + _paragraph(
-        f"Measure these on every element and record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
+        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
         "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO 2768-2:1989-K."
     )
 
@@ -184,7 +189,7 @@ def _how(contents: Contents) -> list[str]:
             groups.setdefault(note, []).append(part.part_no)
     notes = []
     for note, numbers in groups.items():
-        which = "" if len(numbers) == len(contents.made) else f" ({', '.join(numbers)})"
+        which = "" if len(numbers) == len(contents.made) else f" ({_short(contents, numbers)})"
         notes.append(f"{note[:1].upper()}{note[1:]}{which}.")
     return _listed(notes)
 
