@@ -6,9 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.design.materials import Alloy
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Rating
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.element import element
@@ -50,14 +48,18 @@ def estimate(layout: Layout, rung: str, force: float | None = None) -> list[Elem
     """
     design = layout.design
     force = design.rating.force if force is None else force
-    places = layout.elements
-    section, alloy = hinge_section(layout, places), design_alloy(design)
-    if rung in ladder.FINITE_ELEMENTS:
-        K, per_newton = _by_elements(layout, places, section, rung, design.gauge.grid_length)
-    else:
-        K = ladder.stiffness(section, rung)
-        per_newton = _closed_form_strains(section, rung, design.gauge.grid_length)
-    return _estimates(places, section, alloy, np.asarray(K), per_newton, force, design.rating)
+    section = hinge_section(layout, layout.elements)
+    if rung not in ladder.FINITE_ELEMENTS:
+        return estimate_sections(layout, section, rung, force)
+    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length)
+    return _estimates(layout, section, K, per_newton, force)
+
+
+def estimate_sections(layout: Layout, section: HingeSection, rung: str, force: float) -> list[ElementEstimate]:
+    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the elements)
+    instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
+    K = np.asarray(ladder.stiffness(section, rung))
+    return _estimates(layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force)
 
 
 @dataclass(frozen=True)
@@ -113,16 +115,11 @@ def _by_elements(
 
 
 def _estimates(
-    places: tuple[ElementPlace, ...],
-    section: HingeSection,
-    alloy: Alloy,
-    K: Array,
-    per_newton: _PerNewton,
-    force: float,
-    rating: Rating,
+    layout: Layout, section: HingeSection, K: Array, per_newton: _PerNewton, force: float
 ) -> list[ElementEstimate]:
+    alloy, rating = design_alloy(layout.design), layout.design.rating
     rows = []
-    for i, place in enumerate(places):
+    for i, place in enumerate(layout.elements):
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
@@ -132,7 +129,7 @@ def _estimates(
             ElementEstimate(
                 number=place.number,
                 arm=place.arm,
-                load_arm=place.load_arm,
+                load_arm=float(section.load_arm[i]),
                 stiffness=float(K[i]),
                 stiffness_ratio=float(K.max() / K[i]),
                 force=force,
