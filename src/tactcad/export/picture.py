@@ -83,12 +83,12 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
     Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles.
     """
     axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right))
-    result = (_exact if len(shapes) <= EXACT_UP_TO else _on_triangles)(shapes, HLRAlgo_Projector(axes))
+    result = (exact if len(shapes) <= EXACT_UP_TO else _on_triangles)(shapes, HLRAlgo_Projector(axes))
     sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
     return Drawing(tuple(sorted(sharp)), tuple(sorted(_polylines(result.Rg1LineVCompound()))))
 
 
-def _exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
+def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
     algorithm = HLRBRep_Algo()
     algorithm.Add(_compound(shapes))
     algorithm.Projector(projector)
