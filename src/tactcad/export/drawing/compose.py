@@ -20,6 +20,7 @@ from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
 Curve = Stroke | Arc
 MARGIN = 4.0  # from the frame to anything
 APART = 12.0  # between views, their dimensions included
+NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
 LARGEST = 160.0  # mm of paper: a view is not enlarged beyond
 
@@ -49,8 +50,10 @@ def compose(
     for scale in SERIES:
         if max(width_, height_) * factor(scale) > LARGEST:
             continue
-        for paper in papers:
-            sheet, faults = _attempt(plan, curves, block, paper, scale)
+        for paper, beside in ((p, b) for p in papers for b in (True, False)):
+            if beside and paper.area[2] - paper.area[0] - WIDTH < NARROWEST:
+                continue
+            sheet, faults = _attempt(plan, curves, block, paper, scale, beside)
             if sheet and not faults:
                 return sheet
             said = faults or said
@@ -66,14 +69,15 @@ def _main_size(plan: Plan) -> tuple[float, float]:
 
 
 def _attempt(
-    plan: Plan, curves: Mapping[str, Sequence[Curve]], block: TitleBlock, paper: Paper, scale: tuple[int, int]
+    plan: Plan, curves: Mapping[str, Sequence[Curve]], block: TitleBlock, paper: Paper, scale: tuple[int, int],
+    beside: bool,
 ) -> tuple[Sheet | None, list[str]]:
     board = Board(paper.area)
     board.add(frame(paper))
     board.add(title_block(paper, replace(block, scale=shown(scale))))
     x0, y0, x1, y1 = paper.area
     board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
-    _place_notes(board, plan.notes, paper)
+    _place_notes(board, plan.notes, paper, beside)
     drawn = [_drawn(v, curves[v.name], scale if not v.window else _detail_scale(v), plan.values) for v in plan.views]
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
@@ -92,26 +96,27 @@ def _attempt(
         if d.view.window and not _mark_window(board, d.view, factor(scale), places[plan.views[0].name]):
             return None, [f"the letter {d.view.label} finds no place"]
     for d in drawn:
-        for callout in d.view.callouts:
-            if not board.callout(callout, factor(d.scale), places[d.view.name]):
-                return None, [f"callout {callout.lines[0]!r} finds no place"]
         for edge in d.view.datums:
             if not board.datum(edge, factor(d.scale), places[d.view.name]):
                 return None, [f"datum {edge.letter} finds no place"]
+    for d in drawn:
+        for callout in d.view.callouts:
+            if not board.callout(callout, factor(d.scale), places[d.view.name]):
+                return None, [f"callout {callout.lines[0]!r} finds no place"]
     keys = tuple(d.text(plan.values) for d in plan.dimensions if d.key)
     sheet = Sheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
     return sheet, layout_faults(sheet)
 
 
-def _place_notes(board: Board, lines: Sequence[str], paper: Paper) -> None:
-    """Left of the title block where the paper is wide enough, above it otherwise."""
+def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool) -> None:
+    """Left of the title block, or above it."""
     x0, y0, x1, _ = paper.area
-    beside = x1 - x0 - WIDTH > 100
-    room = x1 - x0 - WIDTH - 2 * MARGIN if beside else x1 - x0 - 2 * MARGIN
+    room = (x1 - x0 - WIDTH if beside else WIDTH) - 2 * MARGIN
+    left = x0 if beside else x1 - WIDTH
     items, height = notes((0, 0), lines, room)
     top = y0 + height + MARGIN + (0.0 if beside else HEIGHT)
-    board.add(moved(item, x0 + MARGIN, top) for item in items)
-    board.keep_out((x0, y0, x0 + room + 2 * MARGIN, top + MARGIN))
+    board.add(moved(item, left + MARGIN, top) for item in items)
+    board.keep_out((left, y0, left + room + 2 * MARGIN, top + MARGIN))
 
 
 def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: dict[str, float]) -> _Drawn:

@@ -6,6 +6,7 @@ the rear body count from; lengths of the arm count from its tip, as the arm leng
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -17,8 +18,7 @@ from .holes import groups, rounds
 from .ink import Point
 from .measure import Level, Slope, Span, conventions, halfway, level
 from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View, characteristic
-from .prism import ALIKE, FRONT, Sketch, _closed, hole_callout, key_number, radius_callout, view_box
-from .prism import _side_view as side_view
+from .prism import ALIKE, FRONT, Sketch, closed, hole_callout, key_number, radius_callout, side_view, view_box
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
@@ -81,7 +81,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
     edge = replace(side_view(sketch, part, front, [], {"thickness": thickness}, True), hidden=False, datums=())
     if limits:
         raise ValueError(f"{part.part_no}: no dimension states {', '.join(limits)}")
-    _closed(sketch)
+    closed(sketch)
     return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
 
 
@@ -204,6 +204,8 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
             linears.append(Linear(step, "left", (window[0], flat), (xb, face)))
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
     callouts += _radii(sketch, view, o, fillets)
+    if rough := re.search(r"Ra [\d.]+", part.finish):
+        callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
     return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
 
 

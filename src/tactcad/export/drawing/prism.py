@@ -100,7 +100,7 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
         for row in conventions(name, contour):
             sketch.convention(row)
     found = rounds(part, design)
-    eye, up = _front([r.axis for r in found] + [f.axis for f in part.features if isinstance(f, Pocket)] * len(found))
+    eye, up = _front([r.axis for r in found] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(found) + 1))
     right = View("", eye, up, (0, 0, 0, 0)).right
     below = _below_eye(found, up)
     eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
@@ -112,14 +112,14 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
         views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits))
     aside = [g for g in called if g.axis[0]]
     if aside or not below:
-        views.append(_side_view(sketch, part, front, called if aside else [], limits, thickness=not below))
+        views.append(side_view(sketch, part, front, called if aside else [], limits, thickness=not below))
     if limits:
         raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
-    _closed(sketch)
+    closed(sketch)
     return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes))
 
 
-def _closed(sketch: Sketch) -> None:
+def closed(sketch: Sketch) -> None:
     """Raise CheckFailure unless everything but the place on the paper is determined."""
     missing = len(sketch.values) - 2 - sketch.account.rank
     if missing:
@@ -500,7 +500,7 @@ def _depth_running(
     return Running(side, tuple(stops))
 
 
-def _side_view(
+def side_view(
     sketch: Sketch, part: Part, front: View, called: Sequence[Group], limits: dict[str, Characteristic], thickness: bool
 ) -> View:
     """The view from the left, beside the front view: thickness, and holes of the x faces."""
