@@ -55,7 +55,7 @@ def run_checks(
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:
-            report.run("machining", check_machining, part)
+            report.run("machining", check_machining, part, shop.machining)
     report.run("scenes left out", _left_out, design)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
