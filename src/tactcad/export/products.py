@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.section import cut_section
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
@@ -70,7 +71,7 @@ def header(design: Design, name: str, description: str) -> Header:
 
 
 def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
-    """STEP, DXF where a wire cuts the part, and a picture where it is made here."""
+    """STEP, DXF where the part is cut from sheet or plate, and a picture where it is made here."""
     head = header(design, part.part_no, part.name)
     revision = design.design.revision
     made = []
@@ -80,7 +81,7 @@ def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
         made.append(Product(path, kind, part.part_no, key, make))
 
     product(f"step/{part.part_no}_{revision}.step", "step-part", lambda: _part_step(part, shapes, head))
-    if part.process == "wire-cut":
+    if cut_section(part) is not None:
         product(f"dxf/{part.part_no}_{revision}.dxf", "dxf", lambda: _part_dxf(part))
     if not part.bought:
         placement = (Placement(part.part_no, part),)
