@@ -18,7 +18,7 @@ environment:
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
 	@status=0; \
-	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide || status=1; done; \
+	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide --drawings || status=1; done; \
 	exit $$status
 
 test: environment ## every test but the long ones

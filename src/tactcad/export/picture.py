@@ -88,7 +88,7 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
     """
     projector = HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right)))
     if len(shapes) <= EXACT_UP_TO:
-        sharp, smooth = _exact(shapes, projector)
+        sharp, smooth = _lines(exact(shapes, projector))
     else:
         # meshed once a prototype: placed copies share it
         BRepMesh_IncrementalMesh(_compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
@@ -112,13 +112,14 @@ def _boxes(shapes: Sequence[TopoDS_Shape], view: View) -> np.ndarray:
     return found
 
 
-def _exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
+def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
+    """The kernel's exact hidden-line removal, seen and hidden edges."""
     algorithm = HLRBRep_Algo()
     algorithm.Add(_compound(shapes))
     algorithm.Projector(projector)
     algorithm.Update()
     algorithm.Hide()
-    return _lines(HLRBRep_HLRToShape(algorithm))
+    return HLRBRep_HLRToShape(algorithm)
 
 
 def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
