@@ -104,6 +104,11 @@ def sound_designs(draw, row_lengths=(1, 2, 3, 5, 8, 13)) -> Design:
     lowest = max(height + max(counterbore, float(dowel)) / 2 + 1 + blind, rear_height + 0.1)
     longest = SET_SCREW_LENGTHS[screw][-1]
     thickness = min(thickness, max(longest - 1, 1.5 * m.d + 1, 1.5 * mounted.d, fixing - 1.5 * m.d - 0.8 + m.head_height))
+    # an overload of at most three times the nominal yield force of 505 MPa, and so that what passes the closed stop by its
+    # lever 1 - L/a and the hinge's half length stays a tenth of it
+    overload = min(
+        505 * sheet * t**2 / (6 * L) * min(3, 0.1 * L / ((1 - L / a) * l / 2)) for row in arms for a in row for L in [a - pad / 2]
+    )
     stop_plate = mm(max(2, lowest - ledge - (longest - thickness + 1)), 20)
 
     return variant(
@@ -155,5 +160,6 @@ def sound_designs(draw, row_lengths=(1, 2, 3, 5, 8, 13)) -> Design:
             "gauge.carrier_body_side": mm(0.1, seat + l / 2 + recess_offset),
             "stop.land_length": land,
             "stop.tolerance": 0.001,
+            "rating.overload_force": overload,
         }
     )

@@ -92,9 +92,11 @@ WITNESSES = {
         ({"stop.gaps": {"6": 0.5}}, "stop.gaps.6"),
     ],
     "stop_gap_above_tolerance": [
-        ({"stop.tolerance": 0.1, "stop.yield_fraction": 0.4}, "stop.tolerance"),
-        ({"stop.gaps": {"4": 0.015}}, "stop.tolerance"),
+        ({"stop.tolerance": 0.1}, "stop.tolerance"),
+        ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
+        ({"rating.overload_force": 250.0}, "rating.overload_force"),
     ],
+    "stop_keeps_rated_deflection": [({"stop.gaps": {"4": 0.115}}, "stop.gaps.4")],
     "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],
     "holes_inside_body": [
         ({"holes.screw_offsets": [4.1, 15.0], "clamp.end_plate_margin": 1.0}, "holes.screw_offsets"),

@@ -22,6 +22,7 @@ from .parser import Parser
 COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
+    "release": "run every check, and write one zip that a shop can quote from",
     "golden": "run every check, show what changed, and write a design's golden geometry",
     "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",

@@ -60,13 +60,17 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
     """
     data = read_bytes(path, most_bytes, kind)
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         # error.object is what stands behind the mark
         before = error.object[: error.start]
         line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
         found = error.object[error.start : error.end]
         raise InputError(f"{path}:{line}:{column}", "is not UTF-8 text", value=found, legal=f"{kind} in UTF-8") from None
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        raise InputError(f"{path}:{line}:1", "a NUL character: not a text file", legal=kind)
+    return text
 
 
 def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:

@@ -14,6 +14,8 @@ from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
 
+from .csv_table import records
+
 REQUIRED = (
     "hinge_thickness",
     "hinge_length",
@@ -64,7 +66,7 @@ def estimate_rows(section: HingeSection, rung: str) -> tuple[list[float], list[s
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     """Header, rows as text, and the section of arrays. Raises InputError where the table is malformed."""
-    lines = _lines(path)
+    lines = records(str(path), read_text(path, MOST_BYTES, "a table of designs (CSV)"))
     if not lines:
         raise InputError(f"{path}:1:1", "the file is empty", legal="a header line of column names")
     header = [name.strip() for name in lines[0][1]]
@@ -80,20 +82,6 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
             )
         rows.append((number, row))
     return header, [row for _, row in rows], _section(path, header, rows)
-
-
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """(line number, fields) of every record."""
-    text = read_text(path, MOST_BYTES, "a table of designs (CSV)")
-    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    records, before = [], 0
-    try:
-        for record in reader:
-            records.append((before + 1, record))
-            before = reader.line_num
-    except csv.Error as error:
-        raise InputError(f"{path}:{before + 1}:1", f"is not CSV ({error})") from None
-    return records
 
 
 def _check_header(path: Path, header: list[str]) -> None:

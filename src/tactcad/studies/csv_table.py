@@ -7,6 +7,7 @@ order and unknown ones are left alone.
 from __future__ import annotations
 
 import csv
+import io
 from dataclasses import dataclass
 from math import inf, isfinite
 from pathlib import Path
@@ -132,12 +133,25 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
         seen[key] = i
 
 
+def records(shown: str, text: str, delimiter: str = ",") -> list[tuple[int, list[str]]]:
+    """Every record of CSV text (line ends within quotes belong to it) with the line it begins on.
+
+    Raises InputError where it is no CSV.
+    """
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    found, before = [], 0
+    try:
+        for record in reader:
+            found.append((before + 1, record))
+            before = reader.line_num
+    except csv.Error as error:
+        raise InputError(f"{shown}:{before + 1}:1", f"not CSV: {error}") from None
+    return found
+
+
 def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
-    text = read_text(path, LARGEST_FILE, "readings (CSV)")
     found = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if "\x00" in line:
-            raise InputError(f"{shown}:{number}:1", "a NUL character: not a text file")
+    for number, line in enumerate(read_text(path, LARGEST_FILE, "readings (CSV)").splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
             found.append((number, [field.strip() for field in _split(line, f"{shown}:{number}:1")]))
     return found
