@@ -50,20 +50,34 @@ class Shapes:
 
     def of(self, part: Part) -> TopoDS_Shape:
         """The part's shape in its own frame."""
+        return self._shape(part, partial(self._built, part))
+
+    def drawn(self, part: Part) -> TopoDS_Shape:
+        """The part's shape for pictures of several parts."""
+        from tactcad.parts.library.screws import for_pictures
+
+        shown = for_pictures(part)
+        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
+
+    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
             from tactcad.solids.bytes import from_bytes
 
             key = f"shape {self.made_by} {digest(part)}"
             # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, partial(self._built, part)))
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
         return self._known[part.part_no]
 
     def _built(self, part: Part) -> bytes:
-        from tactcad.solids.build import build
-        from tactcad.solids.bytes import to_bytes
-
         self.built.append(part.part_no)
-        return to_bytes(build(part).wrapped)
+        return _shape_bytes(part)
+
+
+def _shape_bytes(part: Part) -> bytes:
+    from tactcad.solids.build import build
+    from tactcad.solids.bytes import to_bytes
+
+    return to_bytes(build(part).wrapped)
 
 
 def header(design: Design, name: str, description: str) -> Header:
@@ -254,7 +268,7 @@ def _picture(
     eye: View = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing([placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+        return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     picture.check_picture(data, placements, eye)
