@@ -17,7 +17,7 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
     the way into the sample; the array lifted, without weights, and pressed in."""
     if name == "calibration":
         # to a micrometre: what a check tells apart
-        deflections = [floor(load.deflection * 1e3) / 1e3 for load in calibration_loads(design)]
+        deflections = [0.0 if load.refused else floor(load.deflection * 1e3) / 1e3 for load in calibration_loads(design)]
         return tuple(Pose(element=n, deflection=d) for n, d in enumerate(deflections, start=1))
     if name == "sample-stiffness":
         travel = design.sample.travel
