@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import random
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
 import tomllib
 from math import atan2, cos, hypot, pi, sin, sqrt, tau
 from pathlib import Path
@@ -411,40 +408,3 @@ def test_a_broken_rule_leaves_the_earlier_export(mine):
     with pytest.raises(InputError, match="fillets_fit_slot"):
         exported(variant({**TWO_ARMS, "element.fillet_radius": 0.5}), mine)
     assert contents(mine) == good
-
-
-# --- killed ---
-
-
-def test_killed_at_any_moment_the_earlier_or_the_new_export_stands_whole(mine, tmp_path):
-    """kill -9 at random moments of exports that take turns between two revisions; cold ones first."""
-    environment = {"cwd": tmp_path, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
-    designs = {}
-    for revision in "BA":
-        text = TWO_ARMS_TEXT.replace(f'revision = "{REVISION}"', f'revision = "{revision}"')
-        (tmp_path / f"{revision}.toml").write_text(text)
-        run("export", f"{revision}.toml", "--scene", "array", "--out", str(mine), **environment)
-        designs[revision] = contents(mine)
-    assert designs["A"] != designs["B"]
-    chance = random.Random(7)
-    revision, outcomes = "A", set()
-    for turn in range(14):
-        wanted = "B" if revision == "A" else "A"
-        cold = turn < 2
-        child = subprocess.Popen(
-            [sys.executable, "-m", "tactcad", "export", f"{wanted}.toml", "--scene", "array", "--out", str(mine)], cwd=tmp_path,
-            env={**os.environ, "PYTHONPATH": str(Path(tactcad.__file__).parents[1]),
-                 **({"TACTCAD_CACHE": str(tmp_path / f"cold{turn}")} if cold else {})},
-            stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-        time.sleep(chance.uniform(1, 3) if cold else chance.uniform(0.1, 0.6))
-        child.send_signal(signal.SIGKILL)
-        child.wait()
-        revision = read_manifest(mine).revision
-        assert contents(mine) == designs[revision]
-        outcomes.add(revision == wanted)
-    assert False in outcomes, "no kill came before the end"
-    run("export", f"{wanted}.toml", "--scene", "array", "--out", str(mine), **environment)
-    assert contents(mine) == designs[wanted]
-    left = {p.name for p in (mine.parent / ".out.builds").iterdir()}
-    assert len(left) <= 2 and not [name for name in left if name.endswith(".part")]

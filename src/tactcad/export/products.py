@@ -205,7 +205,48 @@ def _drawings(
         source = sources[part.part_no, "dxf" if part.process == "wire-cut" else "step-part"]
         file = MadeFrom(source.path, sha256_of(shapes.cache.get_or_make(source.key, source.make)))
         orders.append(Order(design, part, to_bytes(shapes.of(part)), file, draft))
-    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say))}
+    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
+
+
+def assembly_products(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+) -> list[Product]:
+    """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
+    keys = {s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft)) for s in scenes}
+    drawn: dict[str, Written] = {}
+
+    def drawing(name: str) -> Written:
+        if not drawn:
+            missing = [s for s in scenes if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))]
+            drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
+        return drawn[name]
+
+    return [
+        Product(
+            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}", "drawing", "", f"{keys[scene.name]} {ending}",
+            lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
+        )
+        for scene in scenes for ending in ("pdf", "svg")
+    ]  # fmt: skip
+
+
+def _assembly_drawings(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
+) -> dict[str, Written]:
+    from tactcad.solids.bytes import to_bytes
+
+    from .bom import bom_rows
+    from .drawing.assembly_file import AssemblyOrder, assembly_written
+    from .drawing.sheets import all_written
+
+    orders = [
+        AssemblyOrder(
+            design, scene, bom_rows(scene, design.design.revision, {}),
+            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}, draft,
+        )
+        for scene in scenes
+    ]  # fmt: skip
+    return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
 
 
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:

@@ -183,8 +183,7 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     low = o.start(near)[1] if near in o else flat
     floor, floor_y = _floor(o)
     web = _key(sketch, part, limits, "hinge thickness", Span(o.y(near), floor))
-    reach = 12.0 + (low - window[1]) * view.least
-    across.append(Across(web, (middle, floor_y), (middle, low), reach))
+    across.append(Across(web, (middle, floor_y), (middle, low), low - min(flat, face)))
     length = sketch.must(_within(0, (Span(arm_x, body_x),), "slot length", t.hinge_length))
     linears.append(Linear(length, "top", (xa, back), (xb, ledge)))
     height = sketch.must(_within(0, (Span(o.y("flat_face"), o.y("arm_back")),), "arm height", t.arm_height))
@@ -204,6 +203,9 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
             linears.append(Linear(step, "left", (window[0], flat), (xb, face)))
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
     callouts += _radii(sketch, view, o, fillets)
+    if "slot_floor" not in o:
+        arc = o.segment(next(n for n in fillets if n in o))
+        callouts.append(Callout(("full round",), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
     if rough := re.search(r"Ra [\d.]+", part.finish):
         callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
     return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
