@@ -25,7 +25,14 @@ from .layout import (
     Layout,
 )
 from .library.dowels import largest_dowel
-from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement
+from .library.screws import (
+    DRILL_REACH,
+    METRIC,
+    SET_SCREW_LENGTHS,
+    TAP_REACH,
+    counterbore_diameter,
+    engagement,
+)
 from .rigs.rules import RIG_RULES
 from .stop_gap import land_room, stop_gap
 
@@ -335,6 +342,9 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     first = min(x - r for x, r in spots)
     if first < LEAST_GAP:
         yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {LEAST_GAP:g} mm from the middle line")
+    reach = DRILL_REACH * min(m.clearance if rod else m.tap_drill, float(c.dowel))
+    if c.end_plate_thickness > reach + SAME:
+        yield ("clamp.end_plate_thickness", "too thick for the drills of its holes", c.end_plate_thickness, f"at most {reach:g} mm")
     if c.end_plate_thickness / 2 - m.tap_drill / 2 < END_PLATE_WEB:
         yield ("clamp.end_plate_thickness", "too thin for the carrier's threads", c.end_plate_thickness, f"at least {2 * END_PLATE_WEB + m.tap_drill:g} mm")
 
@@ -361,6 +371,9 @@ def carrier_can_be_screwed(layout: Layout) -> Iterator[Finding]:
     least = engagement(c.mount_thread)
     if c.carrier_thickness < least - SAME:
         yield ("clamp.carrier_thickness", f"too thin for the axis's {c.mount_thread} threads", c.carrier_thickness, f"at least {least:g} mm")
+    most = TAP_REACH * METRIC[c.screw].d
+    if c.carrier_thickness > most + SAME:
+        yield ("clamp.carrier_thickness", f"too thick to be tapped through for {c.screw} set screws", c.carrier_thickness, f"at most {most:g} mm")
 
 
 def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:

@@ -26,9 +26,16 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
         return (
             Pose(weights=0),
             Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
-            Pose(deflection=design.sample.travel),
+            *_pressed_in(design),
         )
     return ()
+
+
+def _pressed_in(design: Design) -> tuple[Pose, ...]:
+    """The pads in the sample: by its travel, but no deeper than they stand out of the arms' root fillets."""
+    e = design.element
+    deep = floor(min(design.sample.travel, e.pad_height - e.pad_root_radius) * 1e3 + 1e-6) / 1e3
+    return (Pose(deflection=deep),) if deep > 0 else ()
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
@@ -61,14 +68,16 @@ def calibration_deflections(design: Design) -> tuple[float, ...]:
     """Each element's deflection (mm, to a micrometre) at the calibration's whole travel.
 
     Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K), as far as the
-    overload stop lets it: a micrometre short of gap L/a.
+    overload stop lets it: a micrometre short of gap L/a. An element that the estimator does not reach is taken
+    as without stiffness: no other is deflected further.
     """
     from tactcad.mechanics import ladder  # numpy: only the checks ask for this
     from tactcad.parts.hinge_section import hinge_section
     from tactcad.parts.stop_gap import stop_gap
 
     c, layout = design.calibration, Layout(design)
-    stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
+    known = ladder.evaluate(hinge_section(layout, layout.elements), "solid")
+    stiffness = [k if valid else 0.0 for k, valid in zip(known.stiffness, known.valid)]
     free = [float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)) for k in stiffness]
     stops = [stop_gap(layout, p) * p.load_arm / p.arm - 0.001 for p in layout.elements]
     return tuple(floor(min(a, b) * 1e3 + 1e-6) / 1e3 for a, b in zip(free, stops))

@@ -16,6 +16,7 @@ from ..layout import Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
+from .bought import FITTING_RADIUS
 from .carried import CARRIER_SCREW, under_carrier_screw
 from .layout import (
     BAR,
@@ -26,13 +27,16 @@ from .layout import (
     GROOVE_WALL,
     RAIL_HEIGHT,
     STAGE_HOLE,
+    TIP_LAND,
     RigLayout,
     pad_middles,
 )
+from .moving import ballast_range
 
 SAME = 1e-9
 WALL = 0.8  # least material beside an axle's hole, mm; as for free-standing aluminium walls
 LEAST_TIPPING = 2.0  # mm that any load on the sample stays inside the wheels; chosen: a badly centred sample
+ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
 LEAST_AIR = 0.5  # between things that pass each other, mm
 
 Finding = tuple[str, str, object, str]
@@ -211,7 +215,10 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
     if length is None or length > most + SAME:
         yield ("calibration.roller", f"no standard pin covers a pad and clears its neighbours: shortest {length} mm", size, f"a pin from {d.sheet.thickness:g} to {most:g} mm long")
-    if dowel_diameter(size) / 2 > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
+    out = dowel_diameter(size) / 2
+    if d.calibration.travel > out - ROLLER_OUT + SAME:
+        yield ("calibration.travel", "the roller's holder would come down on the neighbouring pads", d.calibration.travel, f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}")
+    if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
         yield ("calibration.roller", "roller touches the facing pad", size, "a thinner one")
 
 
@@ -251,6 +258,36 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
         yield ("grasping.weights", "not a whole number", g.weights, "0, 1, 2 ...")
 
 
+def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
+    wanted = layout.design.grasping.moving_weight
+    try:
+        low, high = ballast_range(RigLayout(layout.design))
+    except (AttributeError, ValueError):
+        return  # parts that cannot be drawn: the design is refused for that
+    if low <= wanted <= high:
+        return
+    legal = f"from {low:.4g} to {high:.4g} N" if low < high else "fewer or larger weights: their stack is too high"
+    yield ("grasping.moving_weight", "no ballast under the weights brings what moves to it", wanted, legal)
+
+
+def tip_land_clears_sample(layout: Layout) -> Iterator[Finding]:
+    s = layout.design.sample
+    if s is None:
+        return
+    most = min(TIP_LAND, s.thickness / 2)
+    if s.travel > most + SAME:
+        yield ("sample.travel", "deeper than the tip's land is high, or than half the sample", s.travel, f"at most {most:g} mm")
+
+
+def port_clears_cart(layout: Layout) -> Iterator[Finding]:
+    rig, h = RigLayout(layout.design), layout.design.holder
+    if not rig.has_cart or rig.cart.width <= rig.holder_side + SAME:
+        return
+    free = rig.holder_body - rig.port_depth - FITTING_RADIUS
+    if free < LEAST_AIR - SAME:
+        yield ("holder.floor", "hose fitting meets the cart plate", h.floor, f"at least {h.floor + LEAST_AIR - free:g} mm")
+
+
 def pads_on_sample(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     far = max(max(abs(x) + d.element.pad_length / 2, abs(y) + d.sheet.thickness / 2) for x, y in pad_middles(layout))
@@ -272,6 +309,8 @@ RIG_RULES: dict[str, Rule] = {
         seal_fits_holder,
         holder_can_be_screwed,
         screws_clear_sample,
+        port_clears_cart,
+        tip_land_clears_sample,
         axis_reaches_contact,
         weights_clear_guide,
     )
@@ -279,7 +318,9 @@ RIG_RULES: dict[str, Rule] = {
 
 FITS: dict[str, tuple[Rule, ...]] = {
     "calibration": (stages_reach_pads, mount_clears_carrier, carrier_screws_fit, roller_clears_neighbours),
-    "grasping": (pads_on_sample, carrier_screws_fit, bar_clears_screws, rail_is_long_enough),
+    "grasping": (
+        pads_on_sample, carrier_screws_fit, bar_clears_screws, rail_is_long_enough, ballast_trims_moving_weight,
+    ),
 }
 
 
