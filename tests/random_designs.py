@@ -1,6 +1,6 @@
 """Designs drawn over everything that a design file may hold, and the verdict on each.
 
-Two in three are sound designs (sound_designs.py), the others have one to three of their fields drawn again over the
+Every second one is a sound design (sound_designs.py), the others have one to three of their fields drawn again over the
 field's whole legal range, whatever the rest says. A design is written as TOML, read as commands read it, and either
 refused by a rule that it breaks, or it passes every check.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+import traceback
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -30,11 +31,11 @@ CHOICES = {
 }  # fmt: skip
 
 
-def raw_table(seed: int, row_lengths: tuple[int, ...]) -> dict[str, Any]:
-    """The design file of that seed as TOML gives it; every second one has rigs."""
-    random = Random(seed)
-    values = sound_table(random.randrange(2**48), row_lengths, rigs=random.random() < 0.5)
-    if random.random() < 1 / 3:
+def raw_table(number: int, row_lengths: tuple[int, ...], rigs: float) -> dict[str, Any]:
+    """The design file of that draw as TOML gives it; `rigs` is the share of designs that have any."""
+    random = Random(number)
+    values = sound_table(random.randrange(2**48), row_lengths, rigs=random.random() < rigs)
+    if random.random() < 0.5:
         _redraw(values, random)
     tree = as_table(values)
     name = "".join(random.choice("abcdefghijklmnopqrstuvwxyz0123456789-") for _ in range(random.randint(1, 38)))
@@ -49,10 +50,12 @@ def raw_table(seed: int, row_lengths: tuple[int, ...]) -> dict[str, Any]:
 
 def _redraw(values: dict[str, Any], random: Random) -> None:
     """One to three fields anywhere in their ranges."""
-    again = Draw(random.randrange(2**48))
+    again = Draw(random.randrange(2**48), ends=5)
     for path in random.sample(sorted(values), random.randint(1, 3)):
         field_path = ".".join(p for p in path.split(".") if not p.isdigit() and p != "override")
-        if field_path in LEGAL:
+        if isinstance(values[path], dict):
+            values[path] = {key: again.number(path) for key in values[path]}
+        elif field_path in LEGAL:
             values[path] = again.number(field_path)
         elif path in CHOICES:
             values[path] = again.choice(*CHOICES[path])
@@ -65,7 +68,7 @@ def _redraw(values: dict[str, Any], random: Random) -> None:
 def as_toml(tree: dict[str, Any], path: tuple[str, ...] = ()) -> str:
     """TOML text of nested tables; JSON's text of numbers, strings and lists is TOML's too."""
     lines = [f"[{'.'.join(path)}]"] if path else []
-    lines += [f"{key} = {json.dumps(v)}" for key, v in tree.items() if not isinstance(v, dict)]
+    lines += [f"{json.dumps(key)} = {json.dumps(v)}" for key, v in tree.items() if not isinstance(v, dict)]
     return "\n".join([*lines, *(as_toml(v, (*path, key)) for key, v in tree.items() if isinstance(v, dict))])
 
 
@@ -79,17 +82,21 @@ class Counts:
     scenes: Counter = field(default_factory=Counter)
     failed: list[str] = field(default_factory=list)
 
-    def judge(self, tree: dict[str, Any]) -> list[str]:
-        """What every check has against the design, where no rule refuses it."""
+    def judge(self, who: str, tree: dict[str, Any]) -> None:
+        """Count the design as accepted, as refused by its rule, or as failed, with what the checks have against it."""
         self.drawn += 1
-        rule, names, failures = verdict(tree)
+        try:
+            rule, names, failures = verdict(tree)
+        except Exception as error:  # a crash is a failure as any other, and says where it was
+            at = traceback.extract_tb(error.__traceback__)[-1]
+            rule, names, failures = "", (), [f"{type(error).__name__} in {at.name}, line {at.lineno}: {error}"]
         if rule:
             self.refused[rule] += 1
         elif not failures:
             self.accepted += 1
             self.scenes.update(names)
-        self.failed += failures[:1]
-        return failures
+        else:
+            self.failed.append(f"{who}: {'; '.join(failures[:3])}" + (f" and {len(failures) - 3} more" if failures[3:] else ""))
 
     def __str__(self) -> str:
         refused = sum(self.refused.values())

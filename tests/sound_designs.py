@@ -8,7 +8,7 @@ that spans decades. What a shop can make bounds some of them: a wire of 0.25 mm,
 from __future__ import annotations
 
 from dataclasses import fields
-from math import ceil, cos, exp, floor, log, log10, pi, tan
+from math import ceil, cos, exp, floor, log, log10, pi, sqrt, tan
 from random import Random
 from typing import Any
 
@@ -26,7 +26,7 @@ M6_UPPER = {"2": 0.008, "2.5": 0.008, "3": 0.008, "4": 0.012, "5": 0.012}  # ISO
 CORNER, CUT, WALL, DRILL_REACH, TAP_REACH = 0.15, 0.3, 0.8, 10.0, 3.0
 LEAST_SPACER = 0.1
 
-# Numbers by path: what the design file may hold.
+# Numbers by path: what the design file may hold; stop.gaps holds several.
 LEGAL: dict[str, Number] = {
     f"{section}.{f.name}": f.metadata["spec"]
     for section, kind in SECTION_TYPES.items() if section != "origin"
@@ -44,8 +44,9 @@ class Draw:
     lowest tenth of their ranges (measured), which is no way to cover them.
     """
 
-    def __init__(self, seed: int) -> None:
-        self.random = Random(seed)
+    def __init__(self, seed: int, ends: int = 20) -> None:
+        """An end of a range is drawn once in `ends` draws."""
+        self.random, self.ends = Random(seed), ends
         self.table: dict[str, Any] = {}
 
     def choose_fasteners(self) -> None:
@@ -62,15 +63,14 @@ class Draw:
         return self.random.randrange(draws) == 0
 
     def between(self, low: float, high: float) -> float:
-        """By the logarithm where that is more than a decade, an end once in twenty; in whole micrometres, or four
+        """By the logarithm where that is more than a decade, an end every now and then; in whole micrometres, or four
         digits if smaller."""
         if high <= low:
             return round(low, 6)
-        u = self.random.choice((0.0, 1.0)) if self.once_in(20) else self.random.random()
-        size = max(abs(low), abs(high))
-        steps = 1000.0 if size >= 0.1 else 10 ** (3 - floor(log10(size)))
-        first, last = ceil(low * steps - 1e-6), floor(high * steps + 1e-6)
+        u = self.random.choice((0.0, 1.0)) if self.once_in(self.ends) else self.random.random()
         value = exp(log(low) + u * log(high / low)) if 0 < 10 * low < high else low + u * (high - low)
+        steps = 1000.0 if abs(value) >= 0.1 or value == 0 else 10 ** (3 - floor(log10(abs(value))))
+        first, last = ceil(low * steps - 1e-6), floor(high * steps + 1e-6)
         return min(max(first, round(value * steps)), max(first, last)) / steps
 
     def number(self, path: str, low: float | None = None, high: float | None = None) -> float:
@@ -160,8 +160,8 @@ def _arms(d: Draw, rows: list[int]) -> None:
     over = d.rise + d.corner * tan(pi / 8) + half
     land = d.number("stop.land_length", high=98.8 - over)
     shortest = max(pad + root + half, pad + root + carrier, land + over + 0.1)
-    longest = 100.0  # of an arm
-    d.arms = [[d.between(min(shortest, longest), longest) for _ in range(n)] for n in rows]
+    shortest, longest = min(shortest + 0.002, 100.0), 100.0  # no sliver of half a micrometre beside the pad's root
+    d.arms = [[d.between(shortest, longest) for _ in range(n)] for n in rows]
     d.put("array.row_arms", d.arms)
     _overrides(d)
 
@@ -183,33 +183,36 @@ def _loads(d: Draw) -> None:
     """Material, and what its stops and loads may be: by the leaf's beam theory, with a factor of 2 for what it misses."""
     least, most = min(map(min, d.arms)), max(map(max, d.arms))
     pad, sheet = d.table["element.pad_length"], d.table["sheet.thickness"]
-    fraction = d.number("stop.yield_fraction")
+    factor = d.number("rating.deflection_factor", high=5.0)
     # deflection at the tip when a leaf of length l yields: 2 (stress/E) a l/t
-    bend = 2 * fraction * (max(d.l - 2 * d.r, 0) + sqrt_mean(d.r, d.t)) / d.t
+    bend = 2 / factor * (max(d.l - 2 * d.r, 0) + sqrt(d.r * d.t)) / d.t
     room = d.rise - 0.2929 * d.corner - 0.005
     open_slot = min(0.5 * d.l * least / d.h, room)
-    low = 2 * 0.003 / (bend * least)
+    low = 2 * 0.008 / (bend * least)
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", d.choice(*ALLOYS))
     ratio = d.between(min(max(low, 3e-4), 0.5), min(max(high, 3e-4), 0.5))
-    E = d.number("material.youngs_modulus", max(1e3, 1 / ratio), min(1e6, 5000 / ratio))
+    # N for each MPa of yield, so that what passes the closed stop by its lever 1 - L/a and half the hinge's length stays
+    # a tenth of it; no overload is smaller than a millionth of a newton
+    force = 0.7 / factor * min(
+        sheet * d.t**2 / (6 * L) * min(3, 0.1 * L / ((1 - L / a) * d.l / 2)) for a in (least, most) for L in [a - pad / 2]
+    )
+    E = d.number("material.youngs_modulus", max(1e3, 1 / ratio, 2e-6 / force / ratio), min(1e6, 5000 / ratio))
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
     d.rest("material")
     gap = min(room, bend * least * ratio)
-    tolerance = d.number("stop.tolerance", high=gap / 3)
-    force = strength * sheet * d.t**2 / 6 / (most - pad / 2 + d.l / 2)
-    d.number("rating.overload_force", high=2 * force)
+    tolerance = d.number("stop.tolerance", high=gap / 16)
+    d.number("rating.overload_force", high=force * strength)
+    if d.once_in(5):
+        arm = d.choice(*d.arms[0])
+        d.put("stop.gaps", {repr(arm): d.between(2 * tolerance, 4 * tolerance)})
     # rows that stay apart when facing pads turn towards each other
     d.number("tolerance.hinge_length", high=d.l / 10)
     off = 2 * d.number("tolerance.load_arm", high=(49 - pad) / 4)
     turn = min(room, 2 * bend * most * ratio) + tolerance
     towards = 2 * (d.table["element.pad_height"] + d.h) * turn / least
-    d.number("array.row_pitch", pad + max(0.1, off) + towards, 3 * d.widest_pad)
+    d.number("array.row_pitch", pad + max(0.1, off) + towards, 2.8 * d.widest_pad - pad)
     d.number("tolerance.sheet_thickness", high=d.table["array.spacer"] - LEAST_SPACER + 1e-4)
-
-
-def sqrt_mean(a: float, b: float) -> float:
-    return (a * b) ** 0.5
 
 
 def _clamp(d: Draw) -> None:
@@ -254,13 +257,14 @@ def _clamp(d: Draw) -> None:
     if d.once_in(5):  # given instead of derived: up to where the set screw is just engaged
         on = d.ledge + stop_plate
         lengths = SET_SCREW_LENGTHS[d.table["clamp.screw"]]
-        screw = next((n for n in lengths if on + n - thickness + 1 >= lowest and n > thickness - 1), longest)
+        screw = next((n for n in lengths if on + n - thickness + 1 >= lowest and n >= thickness - 0.9), longest)
         low = on + max(screw - thickness + 1, 0.1) - plate_bottom
         d.number("clamp.end_plate_height", low, low + thickness - 1 - 1.5 * m.d)
 
     # screws and dowels behind the clamp edge
-    step = max(widest + web, 2 * max(head, dowel / 2) + 0.1) + 0.001
-    screws, dowels = d.choice((1, 1), (2, 1), (1, 2), (2, 2), (4, 1), (8, 4))
+    step = max(widest + web, 2 * max(head, dowel / 2) + 0.5) + 0.001
+    counts = ((1, 1), (2, 1), (1, 2), (2, 2), (4, 1), (8, 4))
+    screws, dowels = d.choice(*(c for c in counts if sum(c) * step < 150))
     kinds = ["screw"] * screws + ["dowel"] * dowels
     order = d.random.sample(kinds, len(kinds))
     least = max(web + widest / 2, head)
@@ -279,7 +283,7 @@ def _clamp(d: Draw) -> None:
     drilled = DRILL_REACH * min(m.tap_drill, dowel)
     stack = max(map(len, d.arms)) * d.table["array.pitch"] + spacer
     d.number("clamp.end_plate_thickness", max(m.tap_drill + 2, 3), min(drilled, (d.across_mount - stack) / 2))
-    d.number("clamp.mount_pitch_y", max(5, mounted.d + 0.5), d.across_mount - 10 - 2 * mounted.d)
+    d.number("clamp.mount_pitch_y", max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0), d.across_mount - 10 - 2 * mounted.d)
     d.number("clamp.hold_down_pitch", 2 * m.d + 1)
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")

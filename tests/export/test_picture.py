@@ -6,12 +6,13 @@ import re
 import xml.etree.ElementTree as ET
 from math import hypot, pi
 
+import numpy as np
 import pytest
 from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.export import picture
+from tactcad.export import picture, windows
 from tactcad.export.picture import VIEWS, Drawing, check_picture, drawing, svg
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
@@ -120,3 +121,33 @@ def test_exact_and_triangle_removal_agree(monkeypatch):
     rough = drawing(placed, VIEWS["above"])
     assert rough.box == pytest.approx(exact.box, abs=0.02)
     assert length(rough.sharp) == pytest.approx(length(exact.sharp), rel=0.02)
+
+
+def test_windows_draw_what_one_window_draws(monkeypatch):
+    """A long picture is drawn strip by strip: the same lines, but for where they are cut."""
+    scene = make_scene(variant({"array.row_arms": [[4] * 12]}), "array")
+    shapes = {p.part_no: build(p).wrapped for p in scene.parts}
+    placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in scene.placements]
+    monkeypatch.setattr(picture, "EXACT_UP_TO", 0)
+    whole = drawing(placed, VIEWS["below"])
+    monkeypatch.setattr(windows, "PER_WINDOW", 15)
+    strips = drawing(placed, VIEWS["below"])
+    assert len(strips.sharp) > len(whole.sharp), "some lines are cut"
+    assert strips.box == whole.box
+    for mine, other in ((strips.sharp, whole.sharp), (strips.smooth, whole.smooth)):
+        assert length(mine) == pytest.approx(length(other), rel=1e-4)
+
+
+def test_pieces_between_borders_make_the_line_again():
+    """Random lines, cut at random borders: every piece lies inside, and no length is lost or doubled."""
+    random = np.random.default_rng(1)
+    for axis in (0, 1):
+        line = tuple(map(tuple, np.round(random.uniform(-10, 10, (60, 2)), 3)))
+        borders = [-np.inf, *(np.sort(np.round(random.uniform(-9, 9, 5), 3)) + windows.OFF_GRID), np.inf]
+        pieces = []
+        for left, right in zip(borders, borders[1:]):
+            inside = list(windows.clipped(line, axis, left, right))
+            assert all(left - 1e-3 < p[axis] < right + 1e-3 for piece in inside for p in piece)
+            pieces += inside
+        assert length(pieces) == pytest.approx(length([line]), abs=0.002 * len(pieces))
+        assert len(pieces) > 60

@@ -114,7 +114,7 @@ def test_the_export_is_what_the_contract_says(two_exports):
     assert check_manifest(folder) == []
     record = json.loads((folder / "manifest.json").read_text())
     kinds = {f["kind"] for f in record["files"]}
-    assert kinds == {"step-part", "step-assembly", "dxf", "bom", "picture"}
+    assert kinds == {"step-part", "step-assembly", "dxf", "bom", "picture", "inspection", "report"}
     parts = {p["part_no"] for p in record["parts"]}
     assert {f["part_no"] for f in record["files"] if f["kind"] == "step-part"} == parts
     cut = {p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"}
@@ -255,7 +255,7 @@ def mine(one, tmp_path, monkeypatch):
 def test_the_first_export_makes_everything_and_says_why(one):
     _, done, notes = one
     assert done.reasons == ("there is no earlier export",)
-    assert len(done.made) == done.files - 3  # the two bills and the manifest are written every time
+    assert len(done.made) == done.files - 5  # bills, tables of elements and manifest are written every time
     assert any("no earlier export" in line for line in notes.lines)
 
 
@@ -272,7 +272,8 @@ def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
     }  # fmt: skip
     after = contents(mine)
     assert not [name for name in after if "-a4mm" in name], "the old element is gone"
-    same = set(before) & set(after) - set(done.made) - {"bom.csv", "bom.json", "manifest.json"}
+    same = set(before) & set(after) - set(done.made)
+    same -= {"bom.csv", "bom.json", "inspection.csv", "strength.csv", "manifest.json"}
     assert len(same) > 20 and all(before[name] == after[name] for name in same)
 
 
@@ -313,7 +314,7 @@ def test_a_library_of_another_version_rebuilds(mine, monkeypatch):
     )
     done, _ = exported(variant(TWO_ARMS), mine)
     assert len(done.reasons) == 1 and done.reasons[0].startswith("ezdxf ") and done.reasons[0].endswith("-> 9.9.9")
-    assert len(done.made) == done.files - 3
+    assert len(done.made) == done.files - 5
 
 
 @pytest.mark.parametrize("room", pipeline.ROOMS)

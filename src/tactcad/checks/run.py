@@ -22,7 +22,6 @@ from .machining import MACHINED, check_machining
 from .mesh import check_mesh
 from .motion import check_motions
 from .moving_weight import check_moving_weight
-from .overload import check_stops
 from .report import Report
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
@@ -57,7 +56,6 @@ def run_checks(
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:
             report.run("machining", check_machining, part)
-    report.run("overload stop", check_stops, design)
     report.run("scenes left out", _left_out, design)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tactcad.design.messages import InputError
+from tactcad.design.files import read_text
+from tactcad.design.messages import InputError, one_of
+from tactcad.design.toml_text import parse_toml
 
+MOST_BYTES = 100_000  # a page of limits and their sources
 DEFAULT = Path(__file__).parent / "data" / "shop.toml"
 
 
@@ -57,12 +59,7 @@ class Shop:
 def load_shop(path: str | Path = DEFAULT) -> Shop:
     """Read a shop file. Raises InputError where it cannot be read or a field is missing, unknown or not legal."""
     where = str(path)
-    try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(where, f"cannot be read: {error.strerror}", legal="a TOML file") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(where, f"is not TOML: {error}") from error
+    table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)
     _names(where, "", table, {"name", "limits", "source"})
     if not isinstance(table["name"], str):
         raise InputError(f"{where}: name", "is no text", value=table["name"])
@@ -81,7 +78,7 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
 def _names(where: str, path: str, table: Mapping[str, Any], known: set[str]) -> None:
     for name in [*table, *known]:
         if name not in known:
-            raise InputError(f"{where}: {path}{name}", "unknown field", legal=", ".join(sorted(known)))
+            raise InputError(f"{where}: {path}{name}", "unknown field", legal=one_of(name, sorted(known)))
         if name not in table:
             raise InputError(f"{where}: {path}{name}", "missing field")
 

@@ -12,7 +12,9 @@ import os
 import sys
 
 from tactcad import __version__
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.messages import CheckFailure, InputError, one_of
+
+from .parser import Parser
 
 COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
@@ -53,7 +55,7 @@ def main(argv: list[str] | None = None) -> int:
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         module = importlib.import_module(f"tactcad.cli.{argv[0]}")
-        parser = argparse.ArgumentParser(
+        parser = Parser(
             prog=f"tactcad {argv[0]}",
             description=COMMANDS[argv[0]],
             epilog=f"examples:\n{module.EXAMPLES}",
@@ -61,7 +63,7 @@ def _dispatch(argv: list[str]) -> int:
         )
         module.configure(parser)
         return module.run(parser.parse_args(argv[1:]))
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",
         epilog="commands:\n"
@@ -71,5 +73,7 @@ def _dispatch(argv: list[str]) -> int:
     )
     parser.add_argument("--version", action="version", version=f"tactcad {__version__}")
     parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
+    if not argv:
+        parser.error(str(InputError("COMMAND", "missing", legal=one_of("", COMMANDS))))
     parser.parse_args(argv[:1])
     return BAD_INPUT

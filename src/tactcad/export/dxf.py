@@ -104,8 +104,8 @@ def _set_extents(drawing: Drawing, box: tuple[float, float, float, float]) -> No
     drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
 
 
-def read_dxf(path: str | Path) -> CutFile:
-    """Read a cut file whose entities follow its contours head to tail.
+def read_dxf(file: str | Path | bytes) -> CutFile:
+    """Read a cut file, by its path or as its bytes, whose entities follow its contours head to tail.
 
     Raises ValueError where the file is no DXF, where there is anything but LINE, ARC and CIRCLE, where a
     chain is open, or where entities do not follow each other.
@@ -113,8 +113,9 @@ def read_dxf(path: str | Path) -> CutFile:
     import ezdxf
 
     try:
-        drawing = ezdxf.readfile(path)
-    except (ezdxf.DXFError, OSError) as error:
+        as_text = io.StringIO(file.decode("cp1252")) if isinstance(file, bytes) else None
+        drawing = ezdxf.read(as_text) if as_text else ezdxf.readfile(file)
+    except (ezdxf.DXFError, OSError, UnicodeDecodeError) as error:
         raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
@@ -208,10 +209,10 @@ def _snapped(chain: list[Segment]) -> Contour:
     )
 
 
-def check_dxf(path: str | Path, part: Part) -> list[str]:
-    """What is wrong with a written cut file against the part that it was made from; empty where nothing is."""
+def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
+    """What is wrong with a written cut file (path or bytes) against its part; empty where nothing is."""
     try:
-        file = read_dxf(path)
+        file = read_dxf(written)
     except ValueError as error:
         return [str(error)]
     wrong = []

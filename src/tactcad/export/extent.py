@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import product
 from math import cos, pi, sin
 
@@ -19,10 +20,21 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
     A model file counts with its box, which may be seen larger than the model.
     """
     up = _unit(_cross(eye, right))
-    points = [
-        (_dot(q, right), _dot(q, up)) for p in placements for q in (placed(p, v) for v in _surface_points(p.part))
-    ]
-    xs, ys = zip(*points)
+    spans: dict[tuple, tuple[float, float, float, float]] = {}  # equal parts turned alike differ by their place alone
+    corners = []
+    for p in placements:
+        key = (p.part.part_no, p.rotation)
+        if key not in spans:
+            spans[key] = _span([placed(replace(p, origin=(0.0, 0.0, 0.0)), v) for v in _surface_points(p.part)], right, up)
+        x, y = _dot(p.origin, right), _dot(p.origin, up)
+        x0, y0, x1, y1 = spans[key]
+        corners += [(x + x0, y + y0), (x + x1, y + y1)]
+    xs, ys = zip(*corners)
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def _span(points: Iterable[Vector], right: Vector, up: Vector) -> tuple[float, float, float, float]:
+    xs, ys = zip(*((_dot(q, right), _dot(q, up)) for q in points))
     return (min(xs), min(ys), max(xs), max(ys))
 
 

@@ -115,12 +115,14 @@ def _rebuild(
         made = _write_products(folder, products, cache, progress)
         records = [_record(folder, p, design) for p in products]
         records += _write_bills(folder, design, scenes, records)
+        records += _write_element_tables(folder, design)
         part_records = tuple(_part_record(part, scenes, shapes, cache) for part in parts)
         record = Manifest(design.name, design.design.revision, tuple(records), part_records, inputs.as_json())
         (folder / manifests.NAME).write_bytes(manifests.manifest_bytes(record))
         wrong = manifests.check_manifest(folder)
         if wrong:
             raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
+    cache.trim()
     count = len(records) + 1
     progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
     return Exported(out, count, made, tuple(shapes.built), why)
@@ -168,6 +170,23 @@ def _write_bills(
         for path, data in ((f"{stem}.csv", as_csv), (f"{stem}.json", as_json)):
             (folder / path).write_bytes(data)
             written.append(FileRecord(path, "bom", "", revision, manifests.sha256_of(data)))
+    return written
+
+
+def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
+    """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
+    from tactcad.parts.layout import Layout
+
+    from . import inspection, strength
+
+    layout = Layout(design)
+    written = []
+    for path, kind, data in (
+        (inspection.NAME, "inspection", inspection.inspection_bytes(layout)),
+        (strength.NAME, "report", strength.strength_bytes(layout)),
+    ):
+        (folder / path).write_bytes(data)
+        written.append(FileRecord(path, kind, "", design.design.revision, manifests.sha256_of(data)))
     return written
 
 

@@ -6,11 +6,9 @@ Nothing here runs until a file is really needed: the kernel is imported inside t
 from __future__ import annotations
 
 import json
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
@@ -187,10 +185,7 @@ def _part_dxf(part: Part) -> bytes:
     from . import dxf
 
     data = dxf.dxf_bytes(part)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "written.dxf"
-        path.write_bytes(data)
-        wrong = dxf.check_dxf(path, part)
+    wrong = dxf.check_dxf(data, part)
     if wrong:
         raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
     return data

@@ -13,7 +13,6 @@ are numbered, not dated, so that a clock set back changes nothing.
 
 from __future__ import annotations
 
-import errno
 import fcntl
 import os
 import shutil
@@ -24,15 +23,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from tactcad.design.files import refusal
 from tactcad.design.messages import CheckFailure, InputError
 
 WAIT_SECONDS = 600.0  # a cold export of the largest design takes a fraction of this
 POLL_SECONDS = 0.1
-# what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
-REFUSED_BY_MACHINE = {
-    errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO,
-    errno.EEXIST, errno.ENOTDIR, errno.ENAMETOOLONG, errno.EBUSY, errno.ELOOP, errno.EMFILE, errno.ENFILE,
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -232,11 +227,4 @@ def _in_one_line(place: Published) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if error.errno not in REFUSED_BY_MACHINE:
-            raise
-        reason = f"{error.strerror} ({error.filename})" if error.filename else error.strerror
-        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO):
-            raise CheckFailure(f"{place.link}: {reason}; nothing was changed") from error
-        raise InputError(
-            str(place.link), f"cannot be written: {reason}; nothing was changed", legal="a writable place"
-        ) from error
+        raise refusal(str(place.link), error) from error

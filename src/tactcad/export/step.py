@@ -5,11 +5,10 @@ In an assembly the product of a part carries its part number, each instance its 
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from math import isclose
-from pathlib import Path
 
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
@@ -99,12 +98,10 @@ def _written(document: TDocStd_Document, header: Header) -> bytes:
     # without parameter curves: planes, cylinders and cones need none, and the file is a third smaller
     Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
     writer.Transfer(document, STEPControl_AsIs)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "kernel.step"
-        if writer.Write(str(path)) != IFSelect_RetDone:
-            raise OSError("the kernel could not write its STEP file to the temporary folder")
-        text = path.read_text("latin-1")
-    return canonical(text, header).encode("latin-1")
+    stream = BytesIO()  # no file: a killed export leaves none behind, and a full temporary folder does not matter
+    if writer.WriteStream(stream) != IFSelect_RetDone:
+        raise CheckFailure(f"{header.name}: the kernel could not write the STEP file")
+    return canonical(stream.getvalue().decode("latin-1"), header).encode("latin-1")
 
 
 def _silence() -> None:
@@ -142,11 +139,8 @@ def read_assembly(data: bytes) -> Assembly:
     document, tool = _document()
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "written.step"
-        path.write_bytes(data)
-        if reader.ReadFile(str(path)) != IFSelect_RetDone or not reader.Transfer(document):
-            raise CheckFailure("the written STEP file cannot be read back")
+    if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.Transfer(document):
+        raise CheckFailure("the written STEP file cannot be read back")
     free = TDF_LabelSequence()
     tool.GetFreeShapes(free)
     if free.Length() != 1:

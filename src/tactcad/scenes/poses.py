@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import floor
 
-from tactcad.design.messages import InputError
+from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
 
@@ -51,7 +51,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     for text in given:
         key, _, value = text.partition("=")
         if key not in limits:
-            raise InputError("--pose", "unknown key", value=text, legal=", ".join(limits))
+            raise InputError("--pose", "unknown key", value=text, legal=one_of(key, limits))
         low, high = limits[key]
         legal = f"{key} from {low:g} to {high:g}"
         try:

@@ -7,14 +7,15 @@ one step where the system can (Linux's renameat2), else moved aside first and ba
 from __future__ import annotations
 
 import ctypes
-import json
 import os
 import shutil
 import tempfile
 from pathlib import Path
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.files import read_json, refusal
+from tactcad.design.messages import InputError
 
+MOST_BYTES = 100_000_000  # a report takes two
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
 
 
@@ -22,8 +23,8 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
     """Make `out` a folder of exactly these files; their names may have one folder in them.
 
     `out` may be missing, empty, or an earlier report (a report.json of that schema beside files of these
-    kinds only). Raises InputError where it is something else, CheckFailure where the disk refuses; then
-    `out` is as before.
+    kinds only). Raises InputError where it is something else or may not be written, CheckFailure where there is no
+    room; then `out` is as before.
     """
     out = Path(os.path.abspath(out))
     _require_ours(out, files, schema)
@@ -37,9 +38,7 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
             (part / name).write_bytes(content)
         _move(part, out)
     except OSError as error:
-        raise CheckFailure(
-            f"{out}: cannot be written: {error.strerror or error}; nothing was changed"
-        ) from None
+        raise refusal(str(out), error) from error
     finally:
         if part is not None:
             shutil.rmtree(part, ignore_errors=True)
@@ -57,8 +56,8 @@ def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
     if not there:
         return
     try:
-        ours = json.loads((out / "report.json").read_text("utf-8")).get("schema") == schema
-    except (OSError, ValueError, AttributeError):
+        ours = read_json(out / "report.json", MOST_BYTES, "a report").get("schema") == schema
+    except (InputError, AttributeError):
         ours = False
     foreign = [name for name in there if Path(name).suffix not in endings]
     if not ours or foreign:

@@ -77,7 +77,7 @@ def array_mount(rig: RigLayout) -> Part:
 
 def foot(rig: RigLayout) -> Part:
     """Plate on the array's carrier, with the bar at its back edge. z = 0 is the carrier's side."""
-    x = round(rig.array.mount_x + METRIC[rig.design.clamp.mount_thread].head / 2 + 2.0, 3)
+    x = round(max(rig.array.mount_x + METRIC[rig.design.clamp.mount_thread].head / 2, BAR_WIDTH / 2) + 2.0, 3)
     y = round(rig.design.clamp.mount_pitch_y / 2 + METRIC[rig.design.clamp.mount_thread].head / 2 + 2.0, 3)
     mount = rig.design.clamp.mount_thread
     features: list[Feature] = [

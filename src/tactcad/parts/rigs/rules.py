@@ -7,17 +7,17 @@ rig takes this design's array: one that does not fit costs the design that scene
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import pi, tan
+from math import hypot, pi, tan
 
 from tactcad.mechanics.rigs import holding_force, tipping_margin
 
 from ..broken import Broken
-from ..layout import Layout
+from ..layout import HOLE_WEB, Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
 from .bought import FITTING_RADIUS
-from .carried import CARRIER_SCREW, under_carrier_screw
+from .carried import BAR_MIDDLE, BAR_SCREW_X, CARRIER_SCREW, under_carrier_screw
 from .layout import (
     BAR,
     BAR_FRONT,
@@ -204,6 +204,11 @@ def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     if not 2.0 - SAME <= under <= FOOT + SAME:
         low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
         yield ("clamp.carrier_thickness", f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads", d.clamp.carrier_thickness, f"from {low:g} to {high:g} mm")
+    least = counterbore_diameter(d.clamp.mount_thread) + HOLE_WEB
+    if d.clamp.mount_pitch_y < least - SAME:
+        yield ("clamp.mount_pitch_y", "heads of the screws into the carrier run into each other", d.clamp.mount_pitch_y, f"at least {least:g} mm")
+    if 2 * layout.mount_x < least - SAME:
+        yield ("clamp.carrier_screw_offset", "heads of the screws into the carrier run into the other row's", d.clamp.carrier_screw_offset, f"at least {d.clamp.carrier_screw_offset + 2 * least - 4 * layout.mount_x:g} mm")
 
 
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
@@ -245,6 +250,23 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
     before = BAR_FRONT - d.clamp.mount_pitch_y / 2 - head
     if max(beside, before) < 0.2 - SAME:
         yield ("clamp.mount_pitch_y", "bar stands on the carrier's screws", d.clamp.mount_pitch_y, f"at most {2 * (BAR_FRONT - head - 0.2):g} mm")
+
+
+def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
+    yield from _apart_from(layout, STAGE_HOLE, STAGE_HOLE, "the stage's screws in the array mount")
+
+
+def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
+    yield from _apart_from(layout, BAR_SCREW_X, BAR_MIDDLE, "the bar's screws in the foot")
+
+
+def _apart_from(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:
+    """The carrier's pattern of threads against M4 screws at (x, y): a web between their counterbores."""
+    c = layout.design.clamp
+    apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
+    least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB
+    if apart < least - SAME:
+        yield ("clamp.mount_pitch_y", f"screws into the carrier run into {what}: {apart:.3g} mm apart", c.mount_pitch_y, f"at least {least:g} mm apart")
 
 
 def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
@@ -317,9 +339,12 @@ RIG_RULES: dict[str, Rule] = {
 }
 
 FITS: dict[str, tuple[Rule, ...]] = {
-    "calibration": (stages_reach_pads, mount_clears_carrier, carrier_screws_fit, roller_clears_neighbours),
+    "calibration": (
+        stages_reach_pads, mount_clears_carrier, carrier_screws_fit, mount_holes_apart, roller_clears_neighbours,
+    ),
     "grasping": (
-        pads_on_sample, carrier_screws_fit, bar_clears_screws, rail_is_long_enough, ballast_trims_moving_weight,
+        pads_on_sample, carrier_screws_fit, bar_clears_screws, foot_holes_apart, rail_is_long_enough,
+        ballast_trims_moving_weight,
     ),
 }
 
