@@ -165,7 +165,7 @@ def ballast(rig: RigLayout, mass: float) -> Part:
     thickness = round(ballast_thickness(rig, mass), 2)
     return Part(
         part_no=f"{rig.design.name}-ballast",
-        name="Trim ballast",
+        name=f"Trim ballast, disc {rig.design.grasping.weight_diameter:g} x {thickness:g} mm",
         process="turned",
         material=WEIGHT_STEEL,
         body=Extrusion(outer, thickness, (bore,)),
