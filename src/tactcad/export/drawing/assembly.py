@@ -37,6 +37,7 @@ AROUND = 20.0  # left of and over the views, for overall dimensions
 RIM = 2 * balloons.RADIUS + 8.0  # around an exploded view, for its balloons
 # of repeated parts no more are drawn than keep an exploded view under this many: the kernel compares them pair by pair
 MOST_DRAWN = 150
+MOST_NUMBERED = 45  # items in one view; more would not find places around it
 
 Box = tuple[float, float, float, float]
 
@@ -69,7 +70,7 @@ def assembly_sheets(
     pages = [arranged]
     listed = False
     for n, view in enumerate(views):
-        label = f"{chr(ord('A') + n)}: {'exploded' if n == 0 else 'what the views before it hide'}"
+        label = f"{chr(ord('A') + n)}: {'exploded' if n == 0 else 'what the views before it do not number'}"
         with_list = list_ if not listed and _fits_beside(list_) else None
         page = _exploded_page(view, label, with_list, block)
         listed = listed or page[1]
@@ -180,8 +181,8 @@ def _edges(lines: Sequence[Polyline], f: float, shift: tuple[float, float]) -> l
 
 
 def _exploded_views(scene: Scene, rows: Sequence[BomRow], shapes: Mapping[str, TopoDS_Shape]) -> list[Exploded]:
-    """Views until every item that has a solid is seen in one: the first shows all, each further one what no earlier
-    one lets see."""
+    """Views until every item that has a solid has its number in one: the first shows all parts, each further one those
+    that no earlier one has numbered."""
     from tactcad.export.picture import ABOVE
 
     item = {row.part_no: row.item for row in rows if row.has_solid}
@@ -208,7 +209,8 @@ def _exploded_view(
     for p, some in zip(placements, lines):
         if some:
             own.setdefault(item[p.part.part_no], []).extend(some)
-    return Exploded(dict(sorted(own.items())), tuple(sorted({line for some in lines for line in some})))
+    numbered = dict(sorted(own.items())[:MOST_NUMBERED])
+    return Exploded(numbered, tuple(sorted({line for some in lines for line in some})))
 
 
 def _fewer(placements: Sequence[Placement]) -> tuple[Placement, ...]:
