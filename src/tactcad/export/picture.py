@@ -113,7 +113,7 @@ def _boxes(shapes: Sequence[TopoDS_Shape], view: View) -> np.ndarray:
 
 
 def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
-    """The kernel's exact hidden-line removal, seen and hidden edges."""
+    """Exact hidden-line removal of the placed shapes, as one compound."""
     algorithm = HLRBRep_Algo()
     algorithm.Add(_compound(shapes))
     algorithm.Projector(projector)
@@ -133,8 +133,8 @@ def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) 
 
 
 def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
-    sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
-    return sharp, _polylines(result.Rg1LineVCompound())
+    sharp = polylines(result.VCompound()) + polylines(result.OutLineVCompound())
+    return sharp, polylines(result.Rg1LineVCompound())
 
 
 def _compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
@@ -199,7 +199,8 @@ def _span(placements: Sequence[Placement], view: View) -> tuple[float, float]:
     return (x1 - x0, y1 - y0)
 
 
-def _polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
+def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
+    """A removal's result as chords in the picture plane, mm."""
     if compound is None or compound.IsNull():
         return []
     BRepLib.BuildCurves3d_s(compound)

@@ -106,7 +106,14 @@ def _rebuild(
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
 
-    from .products import Shapes, drawing_products, guide_products, part_products, scene_products
+    from .products import (
+        Shapes,
+        assembly_products,
+        drawing_products,
+        guide_products,
+        part_products,
+        scene_products,
+    )
 
     cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
@@ -117,6 +124,7 @@ def _rebuild(
     products += [p for s in scenes if guides for p in guide_products(design, s, shapes)]
     if sheets:
         products += drawing_products(design, parts, shapes, products, progress.step, sheets == "draft")
+        products += assembly_products(design, scenes, shapes, progress.step, sheets == "draft")
     with new_build(place) as folder:
         made = _write_products(folder, products, cache, progress)
         records = [_record(folder, p, design) for p in products]

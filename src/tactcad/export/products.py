@@ -50,20 +50,34 @@ class Shapes:
 
     def of(self, part: Part) -> TopoDS_Shape:
         """The part's shape in its own frame."""
+        return self._shape(part, partial(self._built, part))
+
+    def drawn(self, part: Part) -> TopoDS_Shape:
+        """The part's shape for pictures of several parts."""
+        from tactcad.parts.library.screws import for_pictures
+
+        shown = for_pictures(part)
+        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
+
+    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
             from tactcad.solids.bytes import from_bytes
 
             key = f"shape {self.made_by} {digest(part)}"
             # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, partial(self._built, part)))
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
         return self._known[part.part_no]
 
     def _built(self, part: Part) -> bytes:
-        from tactcad.solids.build import build
-        from tactcad.solids.bytes import to_bytes
-
         self.built.append(part.part_no)
-        return to_bytes(build(part).wrapped)
+        return _shape_bytes(part)
+
+
+def _shape_bytes(part: Part) -> bytes:
+    from tactcad.solids.build import build
+    from tactcad.solids.bytes import to_bytes
+
+    return to_bytes(build(part).wrapped)
 
 
 def header(design: Design, name: str, description: str) -> Header:
@@ -152,6 +166,9 @@ def drawing_products(
 
     The first one that is asked for makes all that the cache has not, side by side.
     """
+    from .drawing.fonts import font_file
+
+    font_file()  # a missing font is said before anything is made
     made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
     keys = {}
@@ -191,7 +208,48 @@ def _drawings(
         source = sources[part.part_no, "dxf" if part.process == "wire-cut" else "step-part"]
         file = MadeFrom(source.path, sha256_of(shapes.cache.get_or_make(source.key, source.make)))
         orders.append(Order(design, part, to_bytes(shapes.of(part)), file, draft))
-    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say))}
+    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
+
+
+def assembly_products(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+) -> list[Product]:
+    """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
+    keys = {s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft)) for s in scenes}
+    drawn: dict[str, Written] = {}
+
+    def drawing(name: str) -> Written:
+        if not drawn:
+            missing = [s for s in scenes if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))]
+            drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
+        return drawn[name]
+
+    return [
+        Product(
+            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}", "drawing", "", f"{keys[scene.name]} {ending}",
+            lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
+        )
+        for scene in scenes for ending in ("pdf", "svg")
+    ]  # fmt: skip
+
+
+def _assembly_drawings(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
+) -> dict[str, Written]:
+    from tactcad.solids.bytes import to_bytes
+
+    from .bom import bom_rows
+    from .drawing.assembly_file import AssemblyOrder, assembly_written
+    from .drawing.sheets import all_written
+
+    orders = [
+        AssemblyOrder(
+            design, scene, bom_rows(scene, design.design.revision, {}),
+            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}, draft,
+        )
+        for scene in scenes
+    ]  # fmt: skip
+    return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
 
 
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
@@ -254,7 +312,7 @@ def _picture(
     eye: View = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing([placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+        return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     picture.check_picture(data, placements, eye)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
@@ -23,7 +24,10 @@ from .plan import Plan
 from .prism import prism_plan
 from .title import TitleBlock
 
-PARALLEL_FROM = 4  # sheets: fewer are not worth processes
+if TYPE_CHECKING:
+    from .assembly_file import AssemblyOrder
+
+PARALLEL_FROM = 3  # drawings: fewer are not worth processes
 
 
 @dataclass(frozen=True)
@@ -36,10 +40,14 @@ class Order:
     file: MadeFrom
     draft: bool = False
 
+    @property
+    def name(self) -> str:
+        return self.part.part_no
+
 
 @dataclass(frozen=True)
 class Written:
-    """A part's drawing."""
+    """A drawing."""
 
     pdf: bytes
     svg: bytes
@@ -92,22 +100,24 @@ def written(order: Order) -> Written:
     return Written(pdf, svg_bytes(sheet))
 
 
-def all_written(orders: Sequence[Order], say: Callable[[int, int, str], None] = lambda *_: None) -> list[Written]:
-    """Every order's drawing, in their order; side by side on the machine's cores where it pays.
+def all_written(
+    orders: Sequence[Order | AssemblyOrder], make: Callable[..., Written] = written, say: Callable[[int, int, str], None] = lambda *_: None
+) -> list[Written]:
+    """What `make` makes of every order, in their order; side by side on the machine's cores where it pays.
 
     Raises CheckFailure for the first that cannot be drawn, or where a process was killed.
     """
     cores = min(len(os.sched_getaffinity(0)), len(orders))
     if cores < 2 or len(orders) < PARALLEL_FROM:
-        return [_said(written(order), n, orders, say) for n, order in enumerate(orders)]
+        return [_said(make(order), n, orders, say) for n, order in enumerate(orders)]
     # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial)
     with ProcessPoolExecutor(cores, multiprocessing.get_context("fork")) as pool:
         try:
-            return [_said(done, n, orders, say) for n, done in enumerate(pool.map(written, orders))]
+            return [_said(done, n, orders, say) for n, done in enumerate(pool.map(make, orders))]
         except BrokenProcessPool as error:
             raise CheckFailure("drawings: a process that made them was killed; no drawing was written") from error
 
 
-def _said(done: Written, n: int, orders: Sequence[Order], say: Callable[[int, int, str], None]) -> Written:
-    say(n + 1, len(orders), f"drawing of {orders[n].part.part_no}")
+def _said(done: Written, n: int, orders: Sequence[Order | AssemblyOrder], say: Callable[[int, int, str], None]) -> Written:
+    say(n + 1, len(orders), f"drawing of {orders[n].name}")
     return done

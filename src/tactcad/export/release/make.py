@@ -59,7 +59,7 @@ def release(
     contents = Contents(design, scenes, flags, failures, draft)
     target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
     with tempfile.TemporaryDirectory(prefix="tactcad-release-") as folder:
-        files = _exported(design, [scene.name for scene in scenes], Path(folder) / design.name, progress)
+        files = _exported(design, [scene.name for scene in scenes], Path(folder) / design.name, progress, draft)
     files = {README: readme_bytes(contents, list(files)), **files}
     data = archive_bytes(files, design.design.date)
     with written_beside(target, progress.line) as part:
@@ -99,9 +99,9 @@ def _checked(design: Design, shop_file: Path, progress: Progress) -> Report:
     return run_checks(design, scene_names(design), shop_file, progress.step)
 
 
-def _exported(design: Design, scenes: Sequence[str], folder: Path, progress: Progress) -> dict[str, bytes]:
+def _exported(design: Design, scenes: Sequence[str], folder: Path, progress: Progress, draft: bool) -> dict[str, bytes]:
     """The export's files that go to the shop, by their path in the zip."""
-    export(design, scenes, folder, progress)
+    export(design, scenes, folder, progress, drawings=True, draft=draft)
     paths = {_path_in_zip(file): file.path for file in read_manifest(folder).files}
     return {name: (folder / path).read_bytes() for name, path in sorted(paths.items()) if name}
 

@@ -14,6 +14,8 @@ from math import isclose
 from pathlib import Path, PurePosixPath
 
 from tactcad.export import bom, inspection, strength
+from tactcad.export.drawing.assembly_file import assembly_faults
+from tactcad.export.drawing.gate import key_faults, pdf_runs
 from tactcad.export.dxf import check_dxf, read_dxf
 from tactcad.export.manifest import sha256_of
 from tactcad.parts.description import Part
@@ -21,7 +23,7 @@ from tactcad.parts.section import cut_section
 from tactcad.scenes.scene import Scene
 
 from .archive import MANIFEST, MODE
-from .readme import DRAFT, Contents
+from .readme import DRAFT, MARK, Contents
 
 README = "README.txt"
 
@@ -43,6 +45,7 @@ def check_archive(path: Path, contents: Contents) -> list[str]:
     return [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
+        *_sheet_faults(files, contents),
         *_table_faults(files, contents),
         *_mark_faults(files, contents),
     ]
@@ -72,21 +75,21 @@ def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
 
 
 def _part_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
-    """One STEP file of one solid a part, one cut file a wire-cut part; their names and headers name the revision."""
+    """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and headers name the revision."""
     revision = contents.design.design.revision
     parts = {p.part_no: p for scene in contents.scenes for p in scene.parts}
     for part in parts.values():
         yield from _step_part_faults(files, f"step/{part.part_no}_{revision}.step", revision)
-        if part.process == "wire-cut":
+        if cut_section(part) is not None:
             yield from _dxf_faults(files, f"dxf/{part.part_no}_{revision}.dxf", part)
     for folder in ("step/", "dxf/", "pdf/"):
         for path in files:
             if path.startswith(folder) and not PurePosixPath(path).stem.endswith(f"_{revision}"):
                 yield f"{path}: its name does not end in revision {revision}"
-    cut = {p.part_no for p in parts.values() if p.process == "wire-cut"}
+    cut = {p.part_no for p in parts.values() if cut_section(p) is not None}
     for path in files:
         if path.startswith("dxf/") and PurePosixPath(path).stem.rpartition("_")[0] not in cut:
-            yield f"{path}: no wire-cut part has this name"
+            yield f"{path}: no part cut from sheet or plate has this name"
 
 
 def _step_part_faults(files: Mapping[str, bytes], path: str, revision: str) -> Iterator[str]:
@@ -124,7 +127,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) 
     """The assembly has as many solids as its bill, the bill's files are here as it has them, and it says the revision."""
     revision = contents.design.design.revision
     path = f"step/{contents.design.name}-{scene.name}_{revision}.step"
-    bill = "bom.csv" if scene.name == "array" else f"bom-{scene.name}.csv"
+    bill = _bill(scene)
     if path not in files or bill not in files:
         yield f"{path} or {bill}: missing"
         return
@@ -139,6 +142,52 @@ def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) 
             yield f"{bill}: {row.part_no} is of revision {row.rev!r}"
         if row.file and sha256_of(files.get(row.file, b"")) != row.sha256:
             yield f"{bill}: {row.file} is not here as it stands there"
+
+
+def _sheet_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
+    """A sheet for every part made and an assembly drawing for every scene: number and revision on every page, key
+    characteristics once and with the model's values, the digest of the file that the part is made from, balloons and
+    parts list as the bill has them; PRELIMINARY on every page of a draft and on none of a release."""
+    design, revision = contents.design, contents.design.design.revision
+    for part in contents.made:
+        path = f"pdf/{part.part_no}_{revision}.pdf"
+        pages = _pages(files, path)
+        if len(pages) != 1:
+            yield f"{path}: {len(pages)} pages instead of 1"
+            continue
+        yield from (f"{path}: {t!r} is missing" for t in (part.part_no, revision) if t not in pages[0])
+        yield from (f"{path}: {fault}" for fault in key_faults(pages[0], [c for c in part.characteristics if c.key]))
+        source = f"dxf/{part.part_no}_{revision}.dxf" if part.process == "wire-cut" else f"step/{part.part_no}_{revision}.step"
+        if sha256_of(files.get(source, b"")) not in "".join(pages[0]).replace(" ", ""):
+            yield f"{path}: does not have the SHA-256 of {source}"
+        yield from _preliminary_faults(path, pages, contents.draft)
+    for scene in contents.scenes:
+        path = f"pdf/{design.name}-{scene.name}_{revision}.pdf"
+        rows = bom.rows_from_csv(files[_bill(scene)]) if _bill(scene) in files else ()
+        pages = _pages(files, path)
+        faults = assembly_faults(files[path], f"{design.name}-{scene.name}", revision, rows) if pages else ["missing"]
+        yield from (f"{path}: {fault}" for fault in faults)
+        yield from _preliminary_faults(path, pages, contents.draft)
+
+
+def _pages(files: Mapping[str, bytes], path: str) -> list[list[str]]:
+    """Texts of a PDF's pages; none where it is absent or cannot be read."""
+    from pypdf.errors import PyPdfError
+
+    try:
+        return pdf_runs(files[path]) if path in files else []
+    except (PyPdfError, ValueError):
+        return []
+
+
+def _preliminary_faults(path: str, pages: Sequence[Sequence[str]], draft: bool) -> Iterator[str]:
+    for n, runs in enumerate(pages, start=1):
+        if (MARK in runs) != draft:
+            yield f"{path}, sheet {n}: {'without' if draft else 'with'} {MARK}"
+
+
+def _bill(scene: Scene) -> str:
+    return "bom.csv" if scene.name == "array" else f"bom-{scene.name}.csv"
 
 
 def _table_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
