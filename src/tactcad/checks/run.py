@@ -15,6 +15,7 @@ from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
 from .brep import check_brep
+from .calibration import check_calibration
 from .clearance import check_clearance
 from .finding import Finding
 from .interference import check_interference
@@ -41,6 +42,8 @@ def run_checks(
     report = Report(design.name, design.design.revision)
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
+    if "calibration" in scene_names:
+        report.run("calibration travel", check_calibration, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
@@ -55,7 +58,7 @@ def run_checks(
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:
-            report.run("machining", check_machining, part)
+            report.run("machining", check_machining, part, shop.machining)
     report.run("scenes left out", _left_out, design)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):

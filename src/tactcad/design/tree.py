@@ -26,8 +26,8 @@ class Identity:
 
     name: str = given(
         Text(
-            r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
-            "1 to 40 of a-z, 0-9 and '-', not first or last '-'",
+            r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])$)[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
+            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...)",
             "short name: folder, part numbers and file names start with it",
         )
     )

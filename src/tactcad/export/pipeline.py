@@ -211,7 +211,7 @@ def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cac
 
     facts = part_facts(part, shapes, cache)
     low, high = facts["box"]
-    cut = cut_section(part) if part.process == "wire-cut" else None
+    cut = cut_section(part)
     return PartRecord(
         part_no=part.part_no,
         name=part.name,

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.section import cut_section
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
@@ -49,20 +50,34 @@ class Shapes:
 
     def of(self, part: Part) -> TopoDS_Shape:
         """The part's shape in its own frame."""
+        return self._shape(part, partial(self._built, part))
+
+    def drawn(self, part: Part) -> TopoDS_Shape:
+        """The part's shape for pictures of several parts."""
+        from tactcad.parts.library.screws import for_pictures
+
+        shown = for_pictures(part)
+        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
+
+    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
             from tactcad.solids.bytes import from_bytes
 
             key = f"shape {self.made_by} {digest(part)}"
             # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, partial(self._built, part)))
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
         return self._known[part.part_no]
 
     def _built(self, part: Part) -> bytes:
-        from tactcad.solids.build import build
-        from tactcad.solids.bytes import to_bytes
-
         self.built.append(part.part_no)
-        return to_bytes(build(part).wrapped)
+        return _shape_bytes(part)
+
+
+def _shape_bytes(part: Part) -> bytes:
+    from tactcad.solids.build import build
+    from tactcad.solids.bytes import to_bytes
+
+    return to_bytes(build(part).wrapped)
 
 
 def header(design: Design, name: str, description: str) -> Header:
@@ -71,7 +86,7 @@ def header(design: Design, name: str, description: str) -> Header:
 
 
 def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
-    """STEP, DXF where a wire cuts the part, and a picture where it is made here."""
+    """STEP, DXF where the part is cut from sheet or plate, and a picture where it is made here."""
     head = header(design, part.part_no, part.name)
     revision = design.design.revision
     made = []
@@ -81,7 +96,7 @@ def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
         made.append(Product(path, kind, part.part_no, key, make))
 
     product(f"step/{part.part_no}_{revision}.step", "step-part", lambda: _part_step(part, shapes, head))
-    if part.process == "wire-cut":
+    if cut_section(part) is not None:
         product(f"dxf/{part.part_no}_{revision}.dxf", "dxf", lambda: _part_dxf(part))
     if not part.bought:
         placement = (Placement(part.part_no, part),)
@@ -151,6 +166,9 @@ def drawing_products(
 
     The first one that is asked for makes all that the cache has not, side by side.
     """
+    from .drawing.fonts import font_file
+
+    font_file()  # a missing font is said before anything is made
     made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
     keys = {}
@@ -294,7 +312,7 @@ def _picture(
     eye: View = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing([placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+        return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     picture.check_picture(data, placements, eye)

@@ -23,7 +23,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tactcad.design.files import refusal
+from tactcad.design.files import absolute, refusal
 from tactcad.design.messages import CheckFailure, InputError
 
 WAIT_SECONDS = 600.0  # a cold export of the largest design takes a fraction of this
@@ -61,7 +61,7 @@ class Published:
 
     def refuse_foreign(self) -> None:
         """Raises InputError where DIR holds anything that was not put there by an export, or lies in one."""
-        for folder in self.link.parent.resolve().parts:
+        for folder in Path(os.path.realpath(self.link.parent)).parts:
             if folder.startswith(".") and folder.endswith(".builds"):
                 raise InputError(str(self.link), "lies inside an earlier export", legal=LEGAL)
         if self.link.is_symlink():
@@ -79,7 +79,7 @@ LEGAL = "a new name, an empty folder, or the folder of an earlier export"
 
 def published(directory: str | os.PathLike[str]) -> Published:
     """Where `directory` would be published; touches nothing. Raises InputError where it has no name."""
-    link = Path(os.path.abspath(directory))
+    link = absolute(directory)
     if not link.name:
         raise InputError(str(directory), "cannot be replaced", legal=LEGAL)
     return Published(link)

@@ -47,6 +47,7 @@ def compose(
     """
     width_, height_ = _main_size(plan)
     said: list[str] = []
+    refused: list[str] = []
     for scale in SERIES:
         if max(width_, height_) * factor(scale) > LARGEST:
             continue
@@ -56,10 +57,11 @@ def compose(
             sheet, faults = _attempt(plan, curves, block, paper, scale, beside)
             if sheet and not faults:
                 return sheet
-            said = faults or said
+            said = said or (faults if sheet else [])
+            refused = faults
     raise CheckFailure(
         f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on {', '.join(p.name for p in papers)} at "
-        f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join(said[:3])}; no drawing was written"
+        f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join((said or refused)[:3])}; no drawing was written"
     )
 
 
@@ -217,8 +219,8 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
     x0, x1, y0, y1 = x0 + origin[0], x1 + origin[0], y0 + origin[1], y1 + origin[1]
     board.add([box(x0, y0, x1 - x0, y1 - y0, THIN, "symbol")])
     w = width(view.label, LABEL)
-    for gap in (1.5, 3.0, 5.0, 8.0):
-        for share in (0.0, 0.25, 0.5, 0.75, 1.0):
+    for gap in (1.5, 3.0, 5.0, 8.0, 12.0):
+        for share in (0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0):
             for at in (
                 (x0 + share * (x1 - x0) - w / 2, y1 + gap), (x0 + share * (x1 - x0) - w / 2, y0 - gap - LABEL),
                 (x0 - gap - w, y0 + share * (y1 - y0) - LABEL / 2), (x1 + gap, y0 + share * (y1 - y0) - LABEL / 2),

@@ -19,6 +19,7 @@ GAP = 1.0  # between a feature and its extension line
 OVERSHOOT = 2.0  # of the extension line beyond the dimension line: 8 line widths
 FIRST, PITCH, PITCH_BOXED = 10.0, 8.0, 10.0  # dimension lines from the outline and from each other
 TAIL = 6.0  # of a dimension line whose arrows point inwards
+BEYOND = 12.0  # from the part to the text of a dimension across a web
 ABOVE = 1.0  # from the dimension line to the text
 PAD = 1.1  # around the text of a key characteristic
 LABELS = 4.4  # least distance of running dimensions' texts
@@ -225,7 +226,8 @@ def across(a: Across, scale: float, values: Values) -> list[Item]:
     p, q = ((x * scale, y * scale) for x, y in (a.p, a.q))
     size = ((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2) ** 0.5
     ux, uy = (q[0] - p[0]) / size, (q[1] - p[1]) / size
-    before, end = (p[0] - ux * TAIL, p[1] - uy * TAIL), (q[0] + ux * a.reach, q[1] + uy * a.reach)
+    reach = a.past * scale + BEYOND
+    before, end = (p[0] - ux * TAIL, p[1] - uy * TAIL), (q[0] + ux * reach, q[1] + uy * reach)
     text, key = a.dimension.text(values), a.dimension.key
     items: list[Item] = [
         segment(before, p), segment(q, end), arrow(p, before, ARROW), arrow(q, end, ARROW),

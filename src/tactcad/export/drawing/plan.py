@@ -92,7 +92,7 @@ class Across:
     dimension: Dimension
     p: Point
     q: Point
-    reach: float = 14.0  # mm of paper from q to the text
+    past: float = 0.0  # mm of the part from q that the line runs before the text may stand
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ the bearing face at z = 0, the screw pointing along +z.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
@@ -64,6 +65,9 @@ SET_SCREW_LENGTHS = {
 
 # Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
 ENGAGED = 1.5
+# Full thread in diameters, and drilled depth in diameters, that taps and drills reach (usual advice).
+TAP_REACH = 3.0
+DRILL_REACH = 10.0
 
 
 def engagement(thread: str) -> float:
@@ -129,6 +133,28 @@ def set_screw(thread: str, length: float) -> Part:
         purchase=Purchase(f"ISO 4026 {thread}x{length:g} A2-21H", alternates=f"DIN 913 {thread}x{length:g} A2"),
         spares=2,
     )
+
+
+def for_pictures(part: Part) -> Part:
+    """A screw or rod as thin as its tapped hole, a hair less; any other part as it is.
+
+    Hidden-line removal takes parts as not meeting: a thread that reaches into the material around its hole leaves
+    ticks on the faces that it pierces.
+    """
+    match = _THREADED.match(part.part_no)
+    if not match:
+        return part
+    m = METRIC[match[1]]
+    thin = m.tap_drill / 2 - 0.02
+    if isinstance(part.body, Extrusion):
+        body = replace(part.body, outer=circle((0, 0), 2 * thin))
+    else:
+        points = (s.start for s in part.body.profile)
+        body = _revolved([(r if r > m.d / 2 else min(r, thin), z) for r, z in points])
+    return replace(part, part_no=f"{part.part_no}-drawn", body=body)
+
+
+_THREADED = re.compile(r"(?:ISO4762|ISO4026|DIN976-1)-(M[\d.]+)x")
 
 
 def nut(thread: str) -> Part:
