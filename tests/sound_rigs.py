@@ -96,7 +96,7 @@ def _grasping(d: Draw) -> None:
 
 
 def _calibration(d: Draw, into_sample: float) -> None:
-    travel = d.number("calibration.travel", high=0.9)
+    travel = d.number("calibration.travel", high=min(0.9, d.elastic))
     retract = d.number("calibration.retract", high=40.0)
     d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
     d.number("calibration.stage_travel", max(d.far_x, d.far_y))

@@ -9,11 +9,11 @@ from tactcad.design.tree import Design
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs import bought, carried
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
 
 from .array import DOWN, array
 from .builder import Builder
-from .calibration_loads import calibration_loads
 from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
 from .scene import REST, Motion, Pose, Rotation, Scene
 
@@ -126,7 +126,10 @@ def _limits(design: Design) -> str:
     for load in calibration_loads(design):
         if load.place.arm not in seen:
             seen.add(load.place.arm)
-            lines.append(f"arm {load.place.arm:g}: {load.force:.2f} N, yields at {floor(load.travel_at_yield * 1e3):g} um")
+            tells = "the estimator does not reach it" if load.refused else (
+                f"{load.force:.2f} N, yields at {floor(load.travel_at_yield * 1e3):g} um"
+            )
+            lines.append(f"arm {load.place.arm:g}: {tells}")
     return (
         f"Nothing protects the elements here. With {c.travel * 1e3:g} um on the micrometer, of which the gauge itself takes a part, each "
         f"arm carries ({'; '.join(sorted(lines))} on the micrometer). Never turn on beyond {c.travel * 1e3:g} um."

@@ -17,6 +17,7 @@ from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
 from .bought import FITTING_RADIUS
+from .calibration_loads import calibration_loads
 from .carried import BAR_MIDDLE, BAR_SCREW_X, CARRIER_SCREW, under_carrier_screw
 from .layout import (
     BAR,
@@ -188,6 +189,19 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
             yield ("calibration.axis_travel", f"vertical axis rests {rest:+.3g} mm off its middle", c.axis_travel, f"at least {need:.4g} mm")
 
 
+def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
+    """No hinge yields at the end of the travel: in this set-up there is no stop plate."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    for load in calibration_loads(layout.design):
+        if c.travel > load.travel_at_yield:  # not where the estimator does not reach
+            yield (
+                "calibration.travel", f"the hinge of element {load.place.number} yields before its end", c.travel,
+                f"at most {load.travel_at_yield:.4g} mm",
+            )
+
+
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.calibration is None:
@@ -334,6 +348,7 @@ RIG_RULES: dict[str, Rule] = {
         port_clears_cart,
         tip_land_clears_sample,
         axis_reaches_contact,
+        calibration_bends_elastically,
         weights_clear_guide,
     )
 }
