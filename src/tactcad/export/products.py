@@ -166,6 +166,9 @@ def drawing_products(
 
     The first one that is asked for makes all that the cache has not, side by side.
     """
+    from .drawing.fonts import font_file
+
+    font_file()  # a missing font is said before anything is made
     made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
     keys = {}

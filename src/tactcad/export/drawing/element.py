@@ -178,11 +178,10 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
     view = View("hinge", *FRONT, part_box(part), label="Z", window=window, room=HINGE_ROOM, least=HINGE_LEAST)
     middle = (xa + xb) / 2
-    near = "hinge_face" if not one else "flat_face"
     linears, across, callouts = [], [], []
-    low = o.start(near)[1] if near in o else flat
-    floor, floor_y = _floor(o)
-    web = _key(sketch, part, limits, "hinge thickness", Span(o.y(near), floor))
+    near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
+    floor, floor_y = _floor(o, "slot_floor", "slot_")
+    web = _key(sketch, part, limits, "hinge thickness", Span(near, floor))
     across.append(Across(web, (middle, floor_y), (middle, low), low - min(flat, face)))
     length = sketch.must(_within(0, (Span(arm_x, body_x),), "slot length", t.hinge_length))
     linears.append(Linear(length, "top", (xa, back), (xb, ledge)))
@@ -194,7 +193,7 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     if not one:
         for name in ("front_slot_arm_wall", "front_slot_body_wall"):
             sketch.convention(Span(o.x(name), arm_x if "arm" in name else body_x))
-        depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), o.y("hinge_face")),)))
+        depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
         linears.append(Linear(depth, "left", (window[0], flat), (xa, low)))
         if abs(face - flat) < ALIKE:
             sketch.convention(Span(o.y("flat_face"), o.y("body_face")))
@@ -205,7 +204,8 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     callouts += _radii(sketch, view, o, fillets)
     if "slot_floor" not in o:
         arc = o.segment(next(n for n in fillets if n in o))
-        callouts.append(Callout(("full round",), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
+        ends = "full round" if one else "full round, both slots"
+        callouts.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
     if rough := re.search(r"Ra [\d.]+", part.finish):
         callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
     return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
@@ -215,15 +215,16 @@ def part_box(part: Part) -> tuple[float, float, float, float]:
     return part.body.outer.box
 
 
-def _floor(o: Outline) -> tuple[Level, float]:
-    """Level of the slot's floor; of a full round: half the slot's width below its centre."""
-    if "slot_floor" in o:
-        return o.y("slot_floor"), o.start("slot_floor")[1]
-    arc = next(n for n in ("slot_body_fillet", "slot_arm_fillet") if n in o)
+def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
+    """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's side."""
+    if face in o:
+        return o.y(face), o.start(face)[1]
+    arc = next(n for n in (f"{slot}body_fillet", f"{slot}arm_fillet") if n in o)
     i, s = o.index[arc], o.segment(arc)
-    half = 0.5 if s.end[0] < s.start[0] else -0.5
+    half = 0.5 if (s.end[0] > s.start[0]) == slot.startswith("front") else -0.5
+    up = slot.startswith("front")
     ends = ((f"outer.{i}.x", -half), (f"{o.point(arc, True)}.x", half))
-    return Level(((f"outer.{i}.cy", 1.0), *ends)), s.centre[1] - s.radius
+    return Level(((f"outer.{i}.cy", 1.0), *ends)), s.centre[1] + (s.radius if up else -s.radius)
 
 
 def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic]) -> View:

@@ -248,7 +248,8 @@ def _stop(
         return None
     same = next((o for o in sketch.known[k] if abs(o.at[k] - c.at[k]) < ALIKE), None)
     if same:
-        sketch.convention(Span(same.level, c.level))
+        if same.level != c.level:
+            sketch.convention(Span(same.level, c.level))
         return None
     row = Span(origin.level, c.level) if way > 0 else Span(c.level, origin.level)
     d = characteristic(limits, (row,)) if limits else Dimension(c.name, (row,))
@@ -373,7 +374,8 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
     if max(measured) - min(measured) > ALIKE:
         return None
     for i, offset in zip(sides, offsets):
-        sketch.convention(Slope(f"{name}.{i}", f"{name}.{(i + 1) % n}"))
+        if min(abs(a - b) for a, b in zip(contour.segments[i].start, contour.segments[i].end)) > ALIKE:
+            sketch.convention(Slope(f"{name}.{i}", f"{name}.{(i + 1) % n}"))
         if offset is not offsets[0]:
             sketch.convention(Difference(offset, offsets[0]))
     half = len(sides) // 2
