@@ -68,7 +68,7 @@ def axles_fit_plate(layout: Layout) -> Iterator[Finding]:
     if c.length < end - SAME:
         yield ("cart.wheel_base", "axles too near the plate's ends", c.wheel_base, f"at most {c.length - 2 * around:g} mm")
     apart = abs(c.wheel_base / 2 - rig.holder_screw)
-    least = m.clearance / 2 + METRIC["M3"].tap_drill / 2 + LEAST_AIR
+    least = (m.clearance + METRIC["M3"].d) / 2 + HOLE_WEB
     if apart < least - SAME:
         yield ("cart.wheel_base", "axles meet the holder's screws", c.wheel_base, f"at least {least:g} mm beside {rig.holder_screw:g} mm")
 
