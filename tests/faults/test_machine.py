@@ -156,11 +156,6 @@ def test_read_only_file_system(bench, exported):
     assert "Read-only file system" in refused(done)
     assert contents(out) == bench.files["A"]
     assert_tidy(out, exported)
-    for where, change in (("cache", {"TACTCAD_CACHE": str(exported / "exports" / "cache")}), ("home", {"HOME": str(exported / "exports")})):
-        env = environment(exported, **change)
-        done = tactcad_run("export", "A.toml", "--out", f"{where}/out", cwd=exported, env=env, command=[*command, *MODULE])
-        assert done.returncode == 0, done.stderr.decode()
-        assert contents(exported / where / "out") == bench.files["A"]
 
 
 AS_NOBODY = """
@@ -248,6 +243,7 @@ def test_four_exports_at_once_into_one_directory(bench, work):
     assert done.returncode == 0 and contents(out) == bench.files["A"]
 
 
+@pytest.mark.nightly
 def test_two_exports_at_once_with_one_cold_cache(bench, work):
     shutil.rmtree(work / "cache")
     together([["export", f"{name}.toml", "--out", f"{name}/out"] for name in "AB"], work, environment(work))

@@ -16,15 +16,20 @@ from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
-from .stop_gap import stop_gap
 
 ALUMINIUM = "#c3c8ce"
 
 
-def element(layout: Layout, place: ElementPlace) -> Part:
-    """The element that stands at `place`; equal elements give equal parts with one part number."""
+def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
+    """The element that stands at `place`; equal elements give equal parts with one part number.
+
+    Its stop gap is `gap` mm, if given, instead of the design's.
+    """
     design = layout.design
-    gap = stop_gap(layout, place)
+    if gap is None:
+        from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
+
+        gap = stop_gap(layout, place)
     cut = design.element
     e, s, allowed = place.hinge, design.stop, design.tolerance
     return Part(

@@ -25,8 +25,16 @@ from .layout import (
     Layout,
 )
 from .library.dowels import largest_dowel
-from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement
+from .library.screws import (
+    DRILL_REACH,
+    METRIC,
+    SET_SCREW_LENGTHS,
+    TAP_REACH,
+    counterbore_diameter,
+    engagement,
+)
 from .rigs.rules import RIG_RULES
+from .slivers import no_slivers
 from .stop_gap import land_room, stop_gap, stop_limit
 
 # Below this, two lengths written in decimals are the same length (mm).
@@ -46,6 +54,8 @@ def broken_rules(design: Design) -> list[Broken]:
     for name, rule in (RULES | RIG_RULES).items():
         if name in ASK_THE_GAP and any(b.rule in NO_GAP for b in found):
             continue
+        if name in ASK_THE_CONTOUR and found:
+            continue  # there may be none
         for path, what, value, legal in rule(layout):
             found.append(Broken(name, path, what, value, legal))
             break
@@ -358,6 +368,9 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     first = min(x - r for x, r in spots)
     if first < LEAST_GAP:
         yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {LEAST_GAP:g} mm from the middle line")
+    reach = DRILL_REACH * min(m.clearance if rod else m.tap_drill, float(c.dowel))
+    if c.end_plate_thickness > reach + SAME:
+        yield ("clamp.end_plate_thickness", "too thick for the drills of its holes", c.end_plate_thickness, f"at most {reach:g} mm")
     if c.end_plate_thickness / 2 - m.tap_drill / 2 < END_PLATE_WEB:
         yield ("clamp.end_plate_thickness", "too thin for the carrier's threads", c.end_plate_thickness, f"at least {2 * END_PLATE_WEB + m.tap_drill:g} mm")
 
@@ -384,6 +397,9 @@ def carrier_can_be_screwed(layout: Layout) -> Iterator[Finding]:
     least = engagement(c.mount_thread)
     if c.carrier_thickness < least - SAME:
         yield ("clamp.carrier_thickness", f"too thin for the axis's {c.mount_thread} threads", c.carrier_thickness, f"at least {least:g} mm")
+    most = TAP_REACH * METRIC[c.screw].d
+    if c.carrier_thickness > most + SAME:
+        yield ("clamp.carrier_thickness", f"too thick to be tapped through for {c.screw} set screws", c.carrier_thickness, f"at most {most:g} mm")
 
 
 def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
@@ -488,6 +504,7 @@ RULES: dict[str, Rule] = {
         carrier_can_be_screwed,
         stop_plate_can_be_held,
         carrier_holes_apart,
+        no_slivers,
     )
 }
 # Rules whose breach would make later ones fail for the same reason.
@@ -495,3 +512,5 @@ STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
 # Rules that need the stop gap, and those without which there is none: what is no hinge has no stiffness.
 ASK_THE_GAP = frozenset({"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm"})
 NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
+# Rules on contours as drawn, which only a design that keeps the rules before them is sure to have.
+ASK_THE_CONTOUR = frozenset({"no_slivers"})

@@ -123,13 +123,13 @@ def _limits(design: Design) -> str:
     """What the calibration asks of each arm, and where it would do harm."""
     c = design.calibration
     lines, seen = [], set()
-    for load in calibration_loads(design):
-        if load.place.arm not in seen:
+    for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):
+        if not load.refused and load.place.arm not in seen:
             seen.add(load.place.arm)
-            lines.append(f"arm {load.place.arm:g}: {load.force:.2f} N, yields at {floor(load.travel_at_yield * 1e3):g} um")
+            lines.append(f"arm {load.place.arm:g} carries {load.force:.2f} N and would yield at {floor(load.travel_at_yield * 1e3):g} um")
     return (
-        f"Nothing protects the elements here. With {c.travel * 1e3:g} um on the micrometer, of which the gauge itself takes a part, each "
-        f"arm carries ({'; '.join(sorted(lines))} on the micrometer). Never turn on beyond {c.travel * 1e3:g} um."
+        f"Nothing protects the elements here: never turn the micrometer beyond {c.travel * 1e3:g} um from first touch."
+        + (f" There {', '.join(lines)}." if lines else "")
     )
 
 

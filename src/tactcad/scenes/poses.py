@@ -16,8 +16,9 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
     """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
     the way into the sample; the array lifted, without weights, and pressed in."""
     if name == "calibration":
-        # to a micrometre: what a check tells apart
-        deflections = [floor(load.deflection * 1e3) / 1e3 for load in calibration_loads(design)]
+        # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no stiffness
+        free = [design.calibration.travel if load.refused else load.deflection for load in calibration_loads(design)]
+        deflections = [floor(d * 1e3 + 1e-6) / 1e3 for d in free]
         return tuple(Pose(element=n, deflection=d) for n, d in enumerate(deflections, start=1))
     if name == "sample-stiffness":
         travel = design.sample.travel
@@ -26,9 +27,16 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
         return (
             Pose(weights=0),
             Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
-            Pose(deflection=design.sample.travel),
+            *_pressed_in(design),
         )
     return ()
+
+
+def _pressed_in(design: Design) -> tuple[Pose, ...]:
+    """The pads in the sample: by its travel, but no deeper than they stand out of the arms' root fillets."""
+    e = design.element
+    deep = floor(min(design.sample.travel, e.pad_height - e.pad_root_radius) * 1e3 + 1e-6) / 1e3
+    return (Pose(deflection=deep),) if deep > 0 else ()
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import isclose
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
@@ -12,6 +14,8 @@ from tactcad.export.bom import BomRow
 from tactcad.scenes.scene import Scene
 
 from .assembly import assembly_sheets
+from .balloons import height
+from .fonts import em
 from .gate import pdf_runs
 from .ink import Sheet
 from .sheets import Written
@@ -76,16 +80,33 @@ def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRo
     wrong = []
     for n, runs in enumerate(pages, start=1):
         wrong += [f"sheet {n}: {t!r} is missing" for t in (number, revision, f"{n}/{len(pages)}") if t not in runs]
-    runs = [run for page in pages for run in page]
+    numbers = _ballooned(pdf)
     wrong += [
-        f"item {row.item} ({row.part_no}) has no balloon" for row in rows if row.has_solid and runs.count(str(row.item)) < 2
-    ]
-    listed = "".join(_without_spaces(run) for run in runs)
+        f"item {row.item} ({row.part_no}) has {numbers.count(row.item)} balloons" for row in rows
+        if numbers.count(row.item) != row.has_solid
+    ]  # fmt: skip
+    listed = "".join(_without_spaces(run) for page in pages for run in page)
     wrong += [
         f"{row.part_no} is not in the parts list as the bill has it" for row in rows
         if _without_spaces(f"{row.item}{row.qty:g}{'' if row.unit == 'pcs' else row.unit}{row.part_no}{row.description}") not in listed
     ]  # fmt: skip
     return wrong
+
+
+def _ballooned(pdf: bytes) -> list[int]:
+    """Numbers that stand in balloons, told from others by the size of their letters."""
+    from pypdf import PdfReader
+
+    found: list[int] = []
+
+    def take(text: str, _matrix: object, _text_matrix: object, _font: object, size: float) -> None:
+        number = text.strip()
+        if number.isdecimal() and isclose(size, em(height(number)), rel_tol=1e-3):
+            found.append(int(number))
+
+    for page in PdfReader(io.BytesIO(pdf)).pages:
+        page.extract_text(visitor_text=take)
+    return found
 
 
 def _without_spaces(text: str) -> str:

@@ -21,15 +21,15 @@ from .layout import crossing
 Polyline = Sequence[Point]
 Box = tuple[float, float, float, float]
 
-RADIUS = 4.0  # of a balloon: numbers of three digits fit
-TEXT = 2.5  # height of its number
-PITCH = 11.0  # of the places
+RADIUS = 4.5  # of a balloon
+TEXT, SMALLER = 3.5, 2.5  # height of its number, larger than dimensions are (ISO 6433); of three digits
+PITCH = 12.0  # of the places
 CLEAR = 3.0  # from a balloon to any line of the parts
 CELL = 0.5  # of the raster on which outlines are filled
 SHORTEST = 4.0  # leader outside its balloon
 APART = 1.2  # between leaders, and from a leader to another balloon or another leader's end
 TIPS = 60  # places tried for the end of an item's leader
-ROUNDS = 200  # of forbidding and trying again
+ROUNDS = 120  # of forbidding and trying again
 FORBIDDEN = 1e6
 
 
@@ -49,6 +49,11 @@ class Balloon:
         return ((cx + share * (tx - cx), cy + share * (ty - cy)), self.tip)
 
 
+def height(number: str) -> float:
+    """Of the number in its balloon, mm."""
+    return TEXT if len(number) < 3 else SMALLER
+
+
 def place(own: Mapping[int, Sequence[Polyline]], lines: Sequence[Polyline], area: Box) -> list[Balloon] | None:
     """A balloon for each item, by item number; None where they find no place.
 
@@ -60,9 +65,8 @@ def place(own: Mapping[int, Sequence[Polyline]], lines: Sequence[Polyline], area
     tips = {item: _tips(some, own, item) for item, some in own.items()}
     if len(places) < len(own) or not all(tips.values()):
         return None
-    spots = np.array(places)
-    cost, nearest = _costs(list(tips.values()), spots)
-    return _without_faults(list(own), cost, nearest, places)
+    lengths = [_lengths(np.array(places), np.array(some)) for some in tips.values()]
+    return _without_faults(list(own), lengths, list(tips.values()), places)
 
 
 def _places(lines: Sequence[Polyline], area: Box) -> list[Point]:
@@ -113,35 +117,33 @@ def _middle(line: Polyline) -> Point:
     return line[-1]
 
 
-def _costs(tips: Sequence[Sequence[Point]], spots: np.ndarray) -> tuple[np.ndarray, list[list[Point]]]:
-    """Length of the leader from each place to each item's nearest tip that is not too near, and that tip."""
-    cost = np.full((len(tips), len(spots)), FORBIDDEN)
-    nearest: list[list[Point]] = []
-    for i, own in enumerate(tips):
-        lengths = np.hypot(*(spots[:, None, :] - np.array(own)[None, :, :]).transpose(2, 0, 1))
-        lengths[lengths < RADIUS + SHORTEST] = FORBIDDEN
-        best = lengths.argmin(axis=1)
-        cost[i] = lengths[np.arange(len(spots)), best]
-        nearest.append([own[k] for k in best])
-    return cost, nearest
+def _lengths(places: np.ndarray, tips: np.ndarray) -> np.ndarray:
+    """Length of the leader from each place to each of an item's tips; FORBIDDEN where it is too short."""
+    lengths = np.hypot(*(places[:, None, :] - tips[None, :, :]).transpose(2, 0, 1))
+    lengths[lengths < RADIUS + SHORTEST] = FORBIDDEN
+    return lengths
 
 
 def _without_faults(
-    items: Sequence[int], cost: np.ndarray, nearest: Sequence[Sequence[Point]], places: Sequence[Point]
+    items: Sequence[int], lengths: Sequence[np.ndarray], tips: Sequence[Sequence[Point]], places: Sequence[Point]
 ) -> list[Balloon] | None:
+    """The shortest solution that has no faults; of two leaders that disturb each other the longer may not be used again."""
     from scipy.optimize import linear_sum_assignment
 
+    cost = np.array([own.min(axis=1) for own in lengths])
     for _ in range(ROUNDS):
         rows, columns = linear_sum_assignment(cost)
         if cost[rows, columns].max() >= FORBIDDEN:
             return None
-        balloons = [Balloon(items[i], places[k], nearest[i][k]) for i, k in zip(rows, columns)]
+        used = [int(lengths[i][k].argmin()) for i, k in zip(rows, columns)]
+        balloons = [Balloon(items[i], places[k], tips[i][t]) for i, k, t in zip(rows, columns, used)]
         wrong = faults(balloons)
         if not wrong:
             return sorted(balloons, key=lambda b: b.item)
-        for a, b in wrong:  # the longer leader of two that disturb each other goes elsewhere
-            worse = max(a, b, key=lambda n: cost[rows[n], columns[n]])
-            cost[rows[worse], columns[worse]] = FORBIDDEN
+        for worse in {max(pair, key=lambda n: cost[rows[n], columns[n]]) for pair in wrong}:
+            i, k = rows[worse], columns[worse]
+            lengths[i][k, used[worse]] = FORBIDDEN
+            cost[i, k] = lengths[i][k].min()
     return None
 
 
@@ -173,9 +175,11 @@ def drawn(balloons: Sequence[Balloon]) -> list[Item]:
     for b in balloons:
         start, tip = b.leader
         head: Fill = arrow(tip, start, role="leader")
+        number = str(b.item)
+        size = height(number)
         items += [
             Arc(b.centre, RADIUS, line=THIN, role="symbol"),
-            Text((b.centre[0], b.centre[1] - TEXT / 2), str(b.item), TEXT, "middle"),
+            Text((b.centre[0], b.centre[1] - size / 2), number, size, "middle"),
             segment(start, tip, THIN, "leader"), head,
         ]  # fmt: skip
     return items

@@ -75,21 +75,21 @@ def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
 
 
 def _part_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
-    """One STEP file of one solid a part, one cut file a wire-cut part; their names and headers name the revision."""
+    """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and headers name the revision."""
     revision = contents.design.design.revision
     parts = {p.part_no: p for scene in contents.scenes for p in scene.parts}
     for part in parts.values():
         yield from _step_part_faults(files, f"step/{part.part_no}_{revision}.step", revision)
-        if part.process == "wire-cut":
+        if cut_section(part) is not None:
             yield from _dxf_faults(files, f"dxf/{part.part_no}_{revision}.dxf", part)
     for folder in ("step/", "dxf/", "pdf/"):
         for path in files:
             if path.startswith(folder) and not PurePosixPath(path).stem.endswith(f"_{revision}"):
                 yield f"{path}: its name does not end in revision {revision}"
-    cut = {p.part_no for p in parts.values() if p.process == "wire-cut"}
+    cut = {p.part_no for p in parts.values() if cut_section(p) is not None}
     for path in files:
         if path.startswith("dxf/") and PurePosixPath(path).stem.rpartition("_")[0] not in cut:
-            yield f"{path}: no wire-cut part has this name"
+            yield f"{path}: no part cut from sheet or plate has this name"
 
 
 def _step_part_faults(files: Mapping[str, bytes], path: str, revision: str) -> Iterator[str]:

@@ -65,6 +65,9 @@ SET_SCREW_LENGTHS = {
 
 # Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
 ENGAGED = 1.5
+# Full thread in diameters, and drilled depth in diameters, that taps and drills reach (usual advice).
+TAP_REACH = 3.0
+DRILL_REACH = 10.0
 
 
 def engagement(thread: str) -> float:
