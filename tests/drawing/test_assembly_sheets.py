@@ -12,11 +12,12 @@ from variants import variant
 
 from tactcad.export.bom import bom_rows
 from tactcad.export.drawing import parts_list
-from tactcad.export.drawing.assembly import MOST_DRAWN, _fewer, assembly_sheets
+from tactcad.export.drawing.assembly import assembly_sheets
 from tactcad.export.drawing.assembly_file import assembly_faults, stacked_svg
 from tactcad.export.drawing.gate import pdf_runs
 from tactcad.export.drawing.ink import Arc, Fill, Stroke, Text, preliminary
 from tactcad.export.drawing.layout import layout_faults
+from tactcad.export.drawing.page import MOST_DRAWN, fewer
 from tactcad.export.drawing.pdf import pdf_bytes
 from tactcad.export.guide import exploded
 from tactcad.parts.library.screws import METRIC
@@ -209,6 +210,6 @@ def test_long_lists_go_over_several_pages_whole():
 
 def test_of_very_many_parts_some_of_each_are_drawn():
     scene = make_scene(variant({"array.row_arms": [[4.0, 5.0, 6.0] * 40] * 2}), "array")
-    kept = _fewer(scene.placements)
+    kept = fewer(scene.placements)
     assert len(scene.placements) > 400 > MOST_DRAWN >= len(kept)
     assert {p.part.part_no for p in kept} == {p.part_no for p in scene.parts}

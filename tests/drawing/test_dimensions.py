@@ -49,7 +49,7 @@ def plans(changes, base="macro-array"):
     refuse_broken(design)
     names = ("array",) if changes else scene_names(design)
     parts = {p.part_no: p for name in names for p in make_scene(design, name).parts}
-    return [part_plan(p, design, FILE) for p in parts.values() if p.process not in ("bought", "reference")]
+    return [part_plan(p, design, (FILE,)) for p in parts.values() if p.process not in ("bought", "reference")]
 
 
 @pytest.fixture(scope="module", params=[*DESIGNS, "soft-tissue", "double-sample", "smallest-bearing"])

@@ -45,7 +45,7 @@ def orders(macro, macro_scene, macro_shapes):
     from tactcad.solids.bytes import to_bytes
 
     return {
-        p.part_no: Order(macro, p, to_bytes(macro_shapes[p.part_no]), DXF) for p in macro_scene.parts if not p.bought
+        p.part_no: Order(macro, p, to_bytes(macro_shapes[p.part_no]), (DXF,)) for p in macro_scene.parts if not p.bought
     }
 
 
@@ -228,14 +228,17 @@ def test_export_with_drawings(tmp_path):
     assert check_manifest((tmp_path / "out").resolve()) == []
     made = {p.part_no for p in manifest.parts if p.process != "bought"}
     files = {f.path: f for f in manifest.files}
-    drawings = [f for f in manifest.files if f.kind == "drawing"]
+    drawings = [f for f in manifest.files if f.kind == "drawing" and f.part_no]
     revision = manifest.revision
     assert {f.path for f in drawings} == {f"drawings/{n}_{revision}.{e}" for n in made for e in ("pdf", "svg")}
     for f in drawings:
         if f.path.endswith(".pdf"):
             text = " ".join(pdf_runs((tmp_path / "out" / f.path).read_bytes())[0])
-            source = files.get(f"dxf/{f.part_no}_{revision}.dxf") or files[f"step/{f.part_no}_{revision}.step"]
-            assert source.sha256 in text and Path(source.path).name in text
+            wire_cut = next(p for p in manifest.parts if p.part_no == f.part_no).process == "wire-cut"
+            model = [] if wire_cut else [files[f"step/{f.part_no}_{revision}.step"]]
+            cut = files.get(f"dxf/{f.part_no}_{revision}.dxf")
+            for source in model + ([cut] if cut else []):
+                assert source.sha256 in text and Path(source.path).name in text
             assert sha256_of((tmp_path / "out" / f.path).read_bytes()) == f.sha256
     again = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     status, loaded = json.loads(again.stdout)
@@ -265,5 +268,5 @@ def test_sheets_of_other_designs_are_clean(name):
     design = variant(VARIANTS[name]) if name in VARIANTS else variant({}, name)
     scenes = ("array",) if VARIANTS.get(name) else scene_names(design)
     parts = {p.part_no: p for s in scenes for p in make_scene(design, s).parts if p.process not in ("bought", "reference")}
-    made = all_written([Order(design, p, to_bytes(build(p).wrapped), DXF) for p in parts.values()])
+    made = all_written([Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()])
     assert len(made) == len(parts)

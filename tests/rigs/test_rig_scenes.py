@@ -20,9 +20,9 @@ from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import RigLayout, pad_middles
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.calibration_loads import calibration_loads
 from tactcad.scenes.poses import pose_of, poses
 from tactcad.scenes.scene import Pose, Scene
 from tactcad.solids.build import build

@@ -171,10 +171,13 @@ def drawing_products(
     font_file()  # a missing font is said before anything is made
     made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
-    keys = {}
-    for part in made_here:
-        source = sources[part.part_no, "dxf" if part.process == "wire-cut" else "step-part"]
-        keys[part.part_no] = digest(("drawing", shapes.made_by, part, source.key, design.design, design.tolerance, design.holes, draft))
+    keys = {
+        part.part_no: digest((
+            "drawing", shapes.made_by, part, [s.key for s in _made_from(part, sources)], design.design, design.tolerance,
+            design.holes, draft,
+        ))
+        for part in made_here
+    }  # fmt: skip
     drawn: dict[str, Written] = {}
 
     def drawing(part_no: str) -> Written:
@@ -193,6 +196,13 @@ def drawing_products(
     ]  # fmt: skip
 
 
+def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
+    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
+    from the DXF where there is one."""
+    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
+
+
 def _drawings(
     design: Design, parts: Sequence[Part], shapes: Shapes, sources: Mapping[tuple[str, str], Product],
     say: Callable[[int, int, str], None], draft: bool,
@@ -205,9 +215,10 @@ def _drawings(
 
     orders = []
     for part in parts:
-        source = sources[part.part_no, "dxf" if part.process == "wire-cut" else "step-part"]
-        file = MadeFrom(source.path, sha256_of(shapes.cache.get_or_make(source.key, source.make)))
-        orders.append(Order(design, part, to_bytes(shapes.of(part)), file, draft))
+        files = [
+            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make))) for s in _made_from(part, sources)
+        ]
+        orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
     return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
 
 

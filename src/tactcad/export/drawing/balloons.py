@@ -29,7 +29,7 @@ CELL = 0.5  # of the raster on which outlines are filled
 SHORTEST = 4.0  # leader outside its balloon
 APART = 1.2  # between leaders, and from a leader to another balloon or another leader's end
 TIPS = 60  # places tried for the end of an item's leader
-ROUNDS = 400  # of forbidding and trying again
+ROUNDS = 120  # of forbidding and trying again
 FORBIDDEN = 1e6
 
 

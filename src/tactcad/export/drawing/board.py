@@ -18,6 +18,7 @@ REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0,
 MOST_TARGETS = 12  # of equal features tried for the leader
 # What a leader pays for crossing: it may pass extension and centre lines, hardly the part, no dimension line.
 CROSSING = {"outline": 12.0, "hidden": 4.0, "dimension": 80.0, "leader": 80.0, "symbol": 80.0, "extension": 6.0, "table": 500.0}
+FORBIDDEN = 80.0  # of the costs above: what a datum's stem never crosses
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
 
@@ -39,7 +40,7 @@ class Board:
             self.items.append(item)
             if isinstance(item, Text):
                 if item.text.strip():
-                    self._boxes.append(item.corners(0.25))
+                    self._boxes.append(item.corners(BESIDE_LINE + 0.2))
                 continue
             for (ax, ay), (bx, by) in item.chords():
                 self._chords.append((ax, ay, bx, by))
@@ -71,8 +72,8 @@ class Board:
     def datum(self, d: Datum, scale: float, origin: Point) -> bool:
         """Place a datum's triangle on its edge, the letter outside, where both are free."""
         ux, uy = d.away
-        for reach in (8.0, 11.0, 14.0, 18.0, 22.0, 27.0, 33.0):
-            for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9):
+        for reach in (8.0, 9.5, 11.0, 12.5, 14.0, 16.0, 18.0, 20.0, 22.0, 25.0, 28.0, 32.0, 36.0, 40.0):
+            for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.05, 0.95):
                 x = origin[0] + scale * (d.start[0] + share * (d.end[0] - d.start[0]))
                 y = origin[1] + scale * (d.start[1] + share * (d.end[1] - d.start[1]))
                 items = datum((x, y), d.away, reach, d.letter)
@@ -82,7 +83,8 @@ class Board:
                 square = ((middle[0] - m, middle[1] - m), (middle[0] + m, middle[1] - m), (middle[0] + m, middle[1] + m), (middle[0] - m, middle[1] + m))
                 foot = [(x + a * uy + b * ux, y - a * ux + b * uy) for a, b in ((-1.9, 0.6), (1.9, 0.6), (1.9, 3.4), (-1.9, 3.4))]
                 blocked = any(x1 > square[0][0] and x0 < square[1][0] and y1 > square[0][1] and y0 < square[2][1] for x0, y0, x1, y1 in self.kept)
-                legs_free = not any(chord_meets((outside, middle), quad) for quad in self._boxes)
+                stem = (outside, middle)
+                legs_free = not any(chord_meets(stem, quad) for quad in self._boxes) and self._crossings(stem) < FORBIDDEN
                 if not blocked and legs_free and not self.hit([square, foot], bounds([*square, *foot])):
                     self.add(items)
                     return True

@@ -22,7 +22,7 @@ MARGIN = 4.0  # from the frame to anything
 APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
-LARGEST = 160.0  # mm of paper: a view is not enlarged beyond
+LARGEST = 200.0  # mm of paper: a view is not enlarged beyond
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,6 @@ def compose(
     """
     width_, height_ = _main_size(plan)
     said: list[str] = []
-    refused: list[str] = []
     for scale in SERIES:
         if max(width_, height_) * factor(scale) > LARGEST:
             continue
@@ -57,11 +56,11 @@ def compose(
             sheet, faults = _attempt(plan, curves, block, paper, scale, beside)
             if sheet and not faults:
                 return sheet
-            said = said or (faults if sheet else [])
-            refused = faults
+            said.append(f"{paper.name} {shown(scale)}: {faults[0]}")
+    nearest = [line for line in said if "do not fit" not in line] or said[-1:]
     raise CheckFailure(
         f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on {', '.join(p.name for p in papers)} at "
-        f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join((said or refused)[:3])}; no drawing was written"
+        f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join(nearest[:6])}; no drawing was written"
     )
 
 
@@ -97,10 +96,14 @@ def _attempt(
     for d in drawn:
         if d.view.window and not _mark_window(board, d.view, factor(scale), places[plan.views[0].name]):
             return None, [f"the letter {d.view.label} finds no place"]
+    lettered = {}
     for d in drawn:
         for edge in d.view.datums:
-            if not board.datum(edge, factor(d.scale), places[d.view.name]):
-                return None, [f"datum {edge.letter} finds no place"]
+            # a letter that several views offer stands on the first of them that has room
+            if not lettered.get(edge.letter):
+                lettered[edge.letter] = board.datum(edge, factor(d.scale), places[d.view.name])
+    if not all(lettered.values()):
+        return None, [f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place"]
     for d in drawn:
         for callout in d.view.callouts:
             if not board.callout(callout, factor(d.scale), places[d.view.name]):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from tactcad.contour import Arc, Contour, Line
 from tactcad.design.tree import Design
@@ -23,6 +23,15 @@ from .prism import ALIKE, FRONT, Sketch, closed, hole_callout, key_number, radiu
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
 ARM_ROOM = (190.0, 75.0)
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A sharp corner of the outline: its levels, and where it is."""
+
+    x: Level
+    y: Level
+    at: Point
 
 
 class Outline:
@@ -53,6 +62,12 @@ class Outline:
     def point(self, name: str, end: bool) -> str:
         """Name of a segment's start or end among the variables."""
         return f"outer.{(self.index[name] + end) % len(self.contour)}"
+
+    def corner(self, before: str, after: str) -> Corner:
+        """The corner between two edges, of which fillets may have used up one."""
+        name = self.point(before, True) if before in self else self.point(after, False)
+        at = self.end(before) if before in self else self.start(after)
+        return Corner(level(f"{name}.x"), level(f"{name}.y"), at)
 
     def arcs(self, names: Sequence[str]) -> list[str]:
         return [n for n in names if n in self and isinstance(self.segment(n), Arc)]
@@ -113,16 +128,15 @@ def _front_view(
         ("tip from dowel hole", Span(o.x("tip"), x), o.start("tip")),
     ):
         linears.append(Linear(sketch.must(Dimension(name, (row,))), "top", at, q))
-    recess = Span(o.x("recess_wall"), o.x("rear_end"))
-    linears.append(
-        Linear(sketch.must(Dimension("length of the recess", (recess,))), "bottom", o.start("recess_wall"), o.start("rear_end"))
-    )
     face = "body_face" if "body_face" in o else "flat_face"
+    step = o.corner(face, "recess_wall")
+    recess = sketch.must(Dimension("length of the recess", (Span(step.x, o.x("rear_end")),)))
+    linears.append(Linear(recess, "bottom", step.at, o.start("rear_end")))
     for name, other, q in (
         ("depth of the recess", "recess_face", o.start("rear_end")), ("height of the rear body", "rear_top", o.end("rear_end")),
     ):
         row = Span(o.y(face), o.y(other))
-        linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", o.start("recess_wall"), q))
+        linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", step.at, q))
     pad = _key(
         sketch, part, limits, "pad height over the dowel hole's centre", Span(o.y("pad_face"), level(f"{dowel.name}.y"))
     )
@@ -154,25 +168,18 @@ def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list
     return callouts
 
 
-def _slot(o: Outline) -> tuple[Level, Level, float, float]:
-    """Levels and x of the slot's walls, arm side and body side. A wall that fillets used up is where its arc ends."""
-
-    def wall(side: str) -> tuple[Level, float]:
-        name = f"slot_{side}_wall"
-        if name in o:
-            return o.x(name), o.start(name)[0]
-        raise ValueError(f"the slot has no {side} wall")
-
-    (a, xa), (b, xb) = wall("arm"), wall("body")
-    return a, b, xa, xb
+def _slot(o: Outline) -> tuple[Corner, Corner]:
+    """The slot's upper corners, arm side and body side."""
+    return o.corner("slot_arm_wall", "arm_back"), o.corner("ledge", "slot_body_wall")
 
 
 def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic]) -> View:
     """The hinge: thickness, slot, fillets, and the heights beside it."""
-    arm_x, body_x, xa, xb = _slot(o)
+    arm, body = _slot(o)
+    (xa, back), (xb, ledge) = arm.at, body.at
     t = design.tolerance
     one = "body_face" not in o
-    flat, ledge, back = o.start("flat_face")[1], o.start("ledge")[1], o.start("arm_back")[1]
+    flat = o.start("flat_face")[1]
     face = flat if one else o.start("body_face")[1]
     side = max(0.55 * (xb - xa), 0.35 * back)
     window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
@@ -183,16 +190,16 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     floor, floor_y = _floor(o, "slot_floor", "slot_")
     web = _key(sketch, part, limits, "hinge thickness", Span(near, floor))
     across.append(Across(web, (middle, floor_y), (middle, low), low - min(flat, face)))
-    length = sketch.must(_within(0, (Span(arm_x, body_x),), "slot length", t.hinge_length))
+    length = sketch.must(_within(0, (Span(arm.x, body.x),), "slot length", t.hinge_length))
     linears.append(Linear(length, "top", (xa, back), (xb, ledge)))
-    height = sketch.must(_within(0, (Span(o.y("flat_face"), o.y("arm_back")),), "arm height", t.arm_height))
+    height = sketch.must(_within(0, (Span(o.y("flat_face"), arm.y),), "arm height", t.arm_height))
     linears.append(Linear(height, "left", (window[0], flat), (window[0], back)))
     body_low = o.y("flat_face") if one else o.y("body_face")
-    body = sketch.must(Dimension("body height", (Span(body_low, o.y("ledge")),)))
-    linears.append(Linear(body, "right", (window[2], face), (window[2], ledge)))
+    high = sketch.must(Dimension("body height", (Span(body_low, body.y),)))
+    linears.append(Linear(high, "right", (window[2], face), (window[2], ledge)))
     if not one:
-        for name in ("front_slot_arm_wall", "front_slot_body_wall"):
-            sketch.convention(Span(o.x(name), arm_x if "arm" in name else body_x))
+        sketch.convention(Span(o.corner("flat_face", "front_slot_arm_wall").x, arm.x))
+        sketch.convention(Span(o.corner("front_slot_body_wall", "body_face").x, body.x))
         depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
         linears.append(Linear(depth, "left", (window[0], flat), (xa, low)))
         if abs(face - flat) < ALIKE:
@@ -208,7 +215,8 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
         callouts.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
     if rough := re.search(r"Ra [\d.]+", part.finish):
         callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
-    return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
+    lettered = Datum("A", (xb, face), (window[2], face), (0.0, -1.0))
+    return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=(lettered,))
 
 
 def part_box(part: Part) -> tuple[float, float, float, float]:
@@ -229,21 +237,21 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
 
 def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic]) -> View:
     """The arm: its length to the hinge's middle, pad, stop land."""
-    arm_x, body_x, xa, xb = _slot(o)
+    slot, body = _slot(o)
+    (xa, back), (xb, ledge) = slot.at, body.at
     t = design.tolerance
     tip, pad = o.start("tip"), o.start("pad_face")
-    land, ledge = o.segment("stop_land"), o.start("ledge")[1]
-    back, flat = o.start("arm_back")[1], o.start("flat_face")[1]
+    land, flat = o.segment("stop_land"), o.start("flat_face")[1]
     margin = 0.2 * back
     window = (tip[0] - margin, pad[1] - margin, xb + 0.5 * back, max(ledge, back) + margin)
     view = View("arm", *FRONT, part_box(part), label="X", window=window, room=ARM_ROOM)
     tip_x = o.x("tip")
     middle = (xa + xb) / 2
-    arm = sketch.must(_within(0, (Span(tip_x, halfway(arm_x, body_x)),), "arm length", t.load_arm))
-    length = sketch.must(Dimension("pad length", (Span(tip_x, o.x("pad_side")),)))
+    arm = sketch.must(_within(0, (Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
+    length = sketch.must(Dimension("pad length", (Span(tip_x, level(f"{o.point('pad_face', True)}.x")),)))
     height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
     lands = sketch.must(Dimension("stop land", (Span(tip_x, level(f"{o.point('stop_land', False)}.x")),)))
-    gap = _key(sketch, part, limits, "stop gap", Span(o.y("stop_land"), o.y("ledge")))
+    gap = _key(sketch, part, limits, "stop gap", Span(o.y("stop_land"), body.y))
     linears = (
         Linear(lands, "top", land.end, land.start),
         Linear(arm, "top", land.end, (middle, max(ledge, back) + margin / 2)),
@@ -258,4 +266,6 @@ def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: di
     angle = ramp.text(sketch.values).removeprefix("-")
     callouts.append(Callout((f"ramp {angle}",), ((spot, 0.0),), (ramp,)))
     centre_line = ((middle, flat - 0.1 * back), (middle, max(ledge, back) + margin / 2))
-    return replace(view, linears=linears, callouts=tuple(callouts), axes=(centre_line,))
+    low = o.corner("front_slot_body_wall", "body_face").at if "body_face" in o else o.start("flat_face")
+    face = Datum("A", low, (window[2] if "body_face" in o else xa, low[1]), (0.0, -1.0))
+    return replace(view, linears=linears, callouts=tuple(callouts), axes=(centre_line,), datums=(face,))

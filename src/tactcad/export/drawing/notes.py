@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactcad.design.materials import ALLOYS
@@ -16,16 +17,20 @@ class MadeFrom:
     sha256: str
 
 
-def notes_of(part: Part, file: MadeFrom) -> tuple[str, ...]:
-    """Numbered notes of the part's sheet."""
+def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
+    """Numbered notes of the part's sheet, which names the files that the part is made from."""
     keys = [f"K{n} {c.name}" for n, c in enumerate((c for c in part.characteristics if c.key), start=1)]
     lines = [_capital(note) for note in part.notes]
     if keys:
         lines.append(f"Key characteristics, framed, to be recorded on every piece: {', '.join(keys)}")
     lines += _wire_cut(part) if part.process == "wire-cut" else []
-    name = file.path.rsplit("/", 1)[-1]
-    what = "Cut from" if name.endswith(".dxf") else "Model"
-    return (*lines, f"{what} {name}, SHA-256 {file.sha256}")
+    return (*lines, *(f"{_use(part, file)} {file.path.rsplit('/', 1)[-1]}, SHA-256 {file.sha256}" for file in files))
+
+
+def _use(part: Part, file: MadeFrom) -> str:
+    if not file.path.endswith(".dxf"):
+        return "Model"
+    return "Cut from" if part.process == "wire-cut" else "Blank and plain through holes, cut from"
 
 
 def _wire_cut(part: Part) -> list[str]:

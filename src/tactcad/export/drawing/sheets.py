@@ -32,12 +32,12 @@ PARALLEL_FROM = 3  # drawings: fewer are not worth processes
 
 @dataclass(frozen=True)
 class Order:
-    """One sheet to make: the part, its solid as the kernel's text, and the file that the shop makes it from."""
+    """One sheet to make: the part, its solid as the kernel's text, and the files that the shop makes it from."""
 
     design: Design
     part: Part
     shape: bytes
-    file: MadeFrom
+    files: tuple[MadeFrom, ...]
     draft: bool = False
 
     @property
@@ -53,13 +53,13 @@ class Written:
     svg: bytes
 
 
-def part_plan(part: Part, design: Design, file: MadeFrom) -> Plan:
+def part_plan(part: Part, design: Design, files: Sequence[MadeFrom]) -> Plan:
     """What the part's sheet shows. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
     names = {s.name for s in part.body.outer}
     make = element_plan if {"pad_face", "stop_land"} <= names else prism_plan
-    return make(part, design, notes_of(part, file))
+    return make(part, design, notes_of(part, files))
 
 
 def part_sheet(order: Order) -> Sheet:
@@ -69,7 +69,7 @@ def part_sheet(order: Order) -> Sheet:
     from .hidden_lines import projected
 
     design, part = order.design, order.part
-    plan = part_plan(part, design, order.file)
+    plan = part_plan(part, design, order.files)
     shape = from_bytes(order.shape)
     curves = {view.name: projected(shape, view.eye, view.right) for view in plan.views}
     sheet = compose(plan, curves, title_of(design, part, order.draft), (A4, A3))
