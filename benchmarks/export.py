@@ -9,8 +9,9 @@ the shortest of each kind counts: what else the machine does only ever adds time
     baseline    baseline_export.py: every distinct shape once through the kernel, each file written and read back once
     numpy       python -c "import numpy": the yardstick for a command that does nothing
 
-usage: export.py [--smoke] [--scenes] [--json FILE]     --smoke: 10 elements only, each command once;
-                                                        --scenes: each rig's scene alone, full and as envelopes
+usage: export.py [--smoke] [--scenes] [--drawings] [--json FILE]
+       --smoke: 10 elements only, each command once; --scenes: each rig's scene alone, full and as envelopes;
+       --drawings: what the sheets of the shipped design add to its export, on one core and on all
 """
 
 from __future__ import annotations
@@ -109,6 +110,33 @@ def measure_scenes() -> list[dict[str, float | str]]:
     return rows
 
 
+def measure_drawings(runs: int = 3) -> dict[str, float]:
+    """Shortest export (s) of the shipped design with all its scenes: without drawings, with them on one core, with them
+    on all cores, and unchanged with them; and how many PDF files the drawings are."""
+    times: dict[str, list[float]] = {"without": [], "one core": [], "all cores": [], "unchanged": []}
+    for _ in range(runs):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            export = [sys.executable, "-m", "tactcad", "export", str(DESIGN), "--out"]
+            times["without"].append(seconds([*export, str(folder / "without")], folder / "a"))
+            one = ["taskset", "-c", "0", *export, str(folder / "one"), "--drawings"]
+            times["one core"].append(seconds(one, folder / "b"))
+            drawn = [*export, str(folder / "all"), "--drawings"]
+            times["all cores"].append(seconds(drawn, folder / "c"))
+            times["unchanged"].append(seconds(drawn, folder / "c"))
+            sheets = len(list((folder / "all" / "drawings").glob("*.pdf")))
+    return {"sheets": sheets, **{name: min(t) for name, t in times.items()}}
+
+
+def drawing_table(row: dict[str, float]) -> str:
+    """Markdown. On one core the whole export, not the sheets alone, is kept on it."""
+    names = ("without", "one core", "all cores", "unchanged")
+    cells = " | ".join(f"{row[name]:.1f}" for name in names)
+    return "\n".join([
+        "| drawings | " + " | ".join(f"{name}, s" for name in names) + " |", "|" + "---|" * (1 + len(names)), f"| {row['sheets']} | {cells} |",
+    ])
+
+
 def scene_table(rows: list[dict[str, float | str]]) -> str:
     """Markdown. Memory is the largest of this and every process before it."""
     lines = ["| scene | detail | parts | cold, s | unchanged, s | STEP, kB |", "|---|---|---|---|---|---|"]
@@ -151,10 +179,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--smoke", action="store_true", help="10 elements only, each command once")
     parser.add_argument("--scenes", action="store_true", help="the rigs' scenes instead of the array's sizes")
+    parser.add_argument("--drawings", action="store_true", help="what the sheets of the shipped design cost")
     parser.add_argument("--json", metavar="FILE", help="write all figures to FILE")
     args = parser.parse_args()
     if args.scenes:
         print(scene_table(measure_scenes()))
+        return
+    if args.drawings:
+        print(drawing_table(measure_drawings()))
         return
     rows = []
     for elements in SIZES[:1] if args.smoke else SIZES:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
   tactcad check soft-tissue --json        findings, runs and times as JSON
-  tactcad check --shop my-shop.toml       with your own shop's limits for wire cutting
+  tactcad check --shop my-shop.toml       with your own shop's limits
   tactcad check macro-array soft-tissue --report exports/check
                                           both designs; check.json and junit.xml in that folder
 

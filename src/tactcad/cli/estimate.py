@@ -41,6 +41,7 @@ COLUMNS = (  # heading, unit, field, format
     ("yield at", "N", "yield_force", ".3g"),
     ("and", "um", "yield_deflection_um", ".4g"),
     ("rated", "N", "rated_force", ".3g"),
+    ("at most", "um", "rated_deflection_um", ".4g"),
 )
 
 
@@ -224,6 +225,7 @@ def _shown(row: dict) -> dict:
         "gauge_microstrain": ("gauge_strain", 1e6),
         "peak_microstrain": ("peak_strain", 1e6),
         "yield_deflection_um": ("yield_deflection", 1e3),
+        "rated_deflection_um": ("rated_deflection", 1e3),
     }
     return row | {name: None if row[of] is None else row[of] * by for name, (of, by) in scaled.items()}
 

@@ -17,13 +17,23 @@ class Parser(argparse.ArgumentParser):
         if unknown:
             hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
             self.error(str(InputError(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")))
+        for action in self._actions:
+            self._refuse_empty(action, getattr(parsed, action.dest, None))
         return parsed
+
+    def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
+        """An empty text is a slip of whoever wrote the script, never a wish for the default."""
+        if "" in (value if isinstance(value, list) else [value]):
+            self.error(str(InputError(_named(action), "empty", value="", legal=action.help or "")))
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
-            name = "/".join(action.option_strings) or str(action.metavar or action.dest)
-            self.error(str(InputError(name, "unknown", value=value, legal=one_of(value, map(str, action.choices)))))
+            self.error(str(InputError(_named(action), "unknown", value=value, legal=one_of(value, map(str, action.choices)))))
 
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""
         self.exit(2, f"tactcad: {message}\n")
+
+
+def _named(action: argparse.Action) -> str:
+    return "/".join(action.option_strings) or str(action.metavar or action.dest)

@@ -33,21 +33,23 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     or may not be read.
     """
     shown = str(path)
+    if "\0" in shown:
+        raise InputError(shown, "cannot be read: a NUL in its name", legal=kind)
     try:
         handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # without waiting for a pipe's writer
         with open(handle, "rb") as stream:
-            if not stat.S_ISREG(os.fstat(handle).st_mode):
+            state = os.fstat(handle)
+            if not stat.S_ISREG(state.st_mode):
                 raise InputError(shown, "cannot be read: not a file", legal=kind)
-            data = stream.read(most_bytes + 1)
+            # a file may say less than it gives, as those of /proc do
+            data = stream.read(most_bytes + 1) if state.st_size <= most_bytes else None
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(shown, "cannot be read: no such file", legal=kind) from None
     except IsADirectoryError:
         raise InputError(shown, "cannot be read: not a file", legal=kind) from None
     except OSError as error:
         raise InputError(shown, f"cannot be read: {error.strerror}", legal=kind) from None
-    except ValueError as error:  # a NUL in the path
-        raise InputError(shown, f"cannot be read: {error}", legal=kind) from None
-    if len(data) > most_bytes:
+    if data is None or len(data) > most_bytes:
         raise InputError(shown, "larger than such a file can be", legal=f"{kind} of at most {most_bytes} bytes")
     return data
 
@@ -102,8 +104,8 @@ def write_whole(path: str | Path, data: bytes) -> None:
     A link is followed; its folder must be there. Raises InputError where the place cannot be written to,
     CheckFailure where there is no room; what was there before is then unchanged.
     """
-    place = Path(os.path.realpath(path))
     try:
+        place = Path(os.path.realpath(path))
         if os.path.lexists(place) and not place.is_file():
             raise InputError(str(path), "not a file; nothing was changed", legal="a new name, or a file to replace")
         handle, part = tempfile.mkstemp(prefix=f".{place.name[:100]}.", suffix=".part", dir=place.parent)
@@ -118,6 +120,14 @@ def write_whole(path: str | Path, data: bytes) -> None:
             with suppress(OSError):
                 os.unlink(part)
             raise
+    except OSError as error:
+        raise refusal(str(path), error) from error
+
+
+def absolute(path: str | Path) -> Path:
+    """The path from the root. Raises InputError where the folder that it starts from is gone."""
+    try:
+        return Path(os.path.abspath(path))
     except OSError as error:
         raise refusal(str(path), error) from error
 

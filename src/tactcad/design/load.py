@@ -37,10 +37,10 @@ def find(source: str | Path) -> Path:
     text = str(source)
     if isinstance(source, Path) or "/" in text or text.endswith(".toml"):
         return Path(text)
-    for folder in _hardware_folders():
-        if (folder / f"{text}.toml").is_file():
-            return folder / f"{text}.toml"
     known = names()
+    for folder in _hardware_folders() if text in known else ():
+        if (folder / f"{text}.toml").exists():
+            return folder / f"{text}.toml"
     raise InputError(
         "DESIGN", "no design of that name in hardware/", value=text,
         legal=f"a path ending in .toml, or {one_of(text, known)}" if known else "a path ending in .toml",

@@ -1,4 +1,4 @@
-"""The cut file of a wire-cut part, written from its contours and read back.
+"""The cut file of a part that is cut from sheet or plate, written from its contours and read back.
 
 AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities
 follow each contour head to tail; openings come before the outline, as they are cut, since the part drops
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.parts.description import Part
-from tactcad.parts.section import section
+from tactcad.parts.section import cut_section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -56,7 +56,7 @@ class CutFile:
 
 
 def dxf_bytes(part: Part) -> bytes:
-    """The cut file of a wire-cut part; the same bytes in every process, time zone and home."""
+    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and home."""
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing
@@ -66,10 +66,10 @@ def dxf_bytes(part: Part) -> bytes:
         drawing.header["$INSUNITS"] = MILLIMETRES
         drawing.header["$MEASUREMENT"] = METRIC
         drawing.layers.add(LAYER, color=7)
-        outer, openings = section(part)
-        for contour in (*openings, outer):
+        cut = cut_section(part)
+        for contour in (*cut.openings, cut.outer):
             _add(drawing, contour)
-        _set_extents(drawing, outer.box)
+        _set_extents(drawing, cut.outer.box)
         text = io.StringIO(newline="\n")
         drawing.write(text)
     finally:
@@ -227,7 +227,8 @@ def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     if file.gap > ARC_END_MM:
         wrong.append(f"neighbours are {file.gap:.3g} mm apart")
     wrong += _short_or_double(file)
-    return wrong + _differences(file, *section(part))
+    cut = cut_section(part)
+    return wrong + _differences(file, cut.outer, cut.openings)
 
 
 def _short_or_double(file: CutFile) -> list[str]:

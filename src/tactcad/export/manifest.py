@@ -32,7 +32,7 @@ class FileRecord:
 @dataclass(frozen=True)
 class PartRecord:
     """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and
-    `section_area_mm2` are the cut file's; None where nothing is wire-cut.
+    `section_area_mm2` are the cut file's; None where there is none.
 
     `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the most that one of the scenes places: an array
     moves from rig to rig; each scene's own count stands in its bill of materials.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -53,7 +54,7 @@ def read_side(source: str) -> Side:
     Raises InputError where it is none of them, or damaged.
     """
     path = Path(source)
-    if path.is_dir():
+    if os.path.isdir(path):  # False too for what is no path
         return _export(source, path.resolve())
     if path.suffix == ".json":
         record = read_golden(path)

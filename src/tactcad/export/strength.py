@@ -17,7 +17,8 @@ NAME = "strength.csv"
 COLUMNS = (
     "design", "revision", "element", "part_no", "alloy", "yield_strength_MPa", "arm_mm", "stiffness_N_per_mm",
     "rated_force_N", "yield_force_N", "yield_factor_at_rated", "goodman_factor_at_rated", "overload_force_N",
-    "largest_stop_gap_mm", "stop_closes_at_N", "fillet_stress_at_overload_MPa", "yield_factor_at_overload", "not_known_because",
+    "largest_stop_gap_mm", "stop_closes_at_N", "hinge_deflection_at_overload_mm", "rated_deflection_mm",
+    "fillet_stress_at_overload_MPa", "yield_factor_at_overload", "not_known_because",
 )  # fmt: skip
 
 
@@ -40,7 +41,8 @@ def strength_bytes(layout: Layout) -> bytes:
     for i, (place, state) in enumerate(zip(places, states)):
         figures = (
             stiffness[i], state.rated_force, yields[i], yields[i] / state.rated_force, goodman[i],
-            design.rating.overload_force, state.gap, state.closing_force, state.stress, state.yield_factor,
+            design.rating.overload_force, state.gap, state.closing_force, state.deflection,
+            state.rated_deflection, state.stress, state.yield_factor,
         )  # fmt: skip
         writer.writerow((
             design.name, design.design.revision, place.designator, element_number(design, place),

@@ -38,7 +38,8 @@ class ElementEstimate:
     goodman_factor: float | None  # at 5e8 cycles between 0 and the force
     yield_force: float  # N
     yield_deflection: float  # mm
-    rated_force: float  # N
+    rated_force: float  # N, in use
+    rated_deflection: float  # mm, never passed: overload and calibration stay below
 
 
 def estimate(
@@ -129,7 +130,7 @@ def _by_elements(
 def _estimates(
     layout: Layout, section: HingeSection, K: Array, per_newton: _PerNewton, force: float
 ) -> list[ElementEstimate]:
-    alloy, safety = design_alloy(layout.design), layout.design.rating.yield_factor
+    alloy, rating = design_alloy(layout.design), layout.design.rating
     rows = []
     for i, place in enumerate(layout.elements):
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
@@ -155,7 +156,8 @@ def _estimates(
                 goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
                 yield_force=yield_force,
                 yield_deflection=yield_force / float(K[i]),
-                rated_force=min(force, yield_force / safety),
+                rated_force=min(force, yield_force / rating.yield_factor),
+                rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
             )
         )
     return rows

@@ -33,7 +33,7 @@ REQUIRED = (
 OPTIONAL = {"pad_height": 0.0, "friction": 0.0}
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"
-MOST_BYTES = 500_000_000  # three million designs
+MOST_BYTES = 200_000_000  # a million designs and more
 ADDED = ("stiffness", "model", "valid", "reason")
 ADDED_BY_ACCURACY = ("mesh", "expected_error")
 

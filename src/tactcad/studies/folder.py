@@ -12,7 +12,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from tactcad.design.files import read_json, refusal
+from tactcad.design.files import absolute, read_json, refusal
 from tactcad.design.messages import InputError
 
 MOST_BYTES = 100_000_000  # a report takes two
@@ -26,8 +26,8 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
     kinds only). Raises InputError where it is something else or may not be written, CheckFailure where there is no
     room; then `out` is as before.
     """
-    out = Path(os.path.abspath(out))
-    _require_ours(out, files, schema)
+    out = absolute(out)
+    refuse_foreign(out, {Path(name).suffix for name in files}, schema)
     part = None
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,8 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
+def refuse_foreign(out: Path, endings: set[str], schema: str) -> None:
+    """Raises InputError where `out` is neither missing nor empty nor an earlier report of such files."""
     if not os.path.lexists(out):
         return
     if out.is_symlink() or not out.is_dir():
@@ -52,7 +53,6 @@ def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
             str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report"
         )
     there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    endings = {Path(name).suffix for name in files}
     if not there:
         return
     try:
