@@ -125,16 +125,16 @@ def test_signal_is_proportional_until_a_supply_holds_it(factor):
 def test_stop_keeps_its_closing_force_over_size_squared(size):
     s, arm = REFERENCE.with_(**scaled(size)), 7.0 * size
     K = float(ladder.stiffness(s))
-    base = float(stop.largest_closing_force(REFERENCE, float(ladder.stiffness(REFERENCE)), 7.0, 13.0, 500.0))
-    assert float(stop.largest_closing_force(s, K, arm, 13.0 * size**2, 500.0)) == pytest.approx(base * size**2, rel=1e-12)
+    base = float(stop.largest_closing_force(REFERENCE, float(ladder.stiffness(REFERENCE)), 7.0, 13.0, 8.0))
+    assert float(stop.largest_closing_force(s, K, arm, 13.0 * size**2, 8.0 * size**2)) == pytest.approx(base * size**2, rel=1e-12)
 
 
 def test_stop_at_the_load_line_carries_all_that_is_beyond():
-    """arm = L: no share of the rest goes through the hinge, which then closes at its yield force."""
+    """arm = L: nothing of the rest reaches the hinge, and the stop may close at the hinge's own limit."""
     K = float(ladder.stiffness(REFERENCE))
-    assert float(stop.equivalent_force(REFERENCE, K, REFERENCE.load_arm, 1e6)) == 0.0
-    found = float(stop.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 1e6, 500.0))
-    assert found == pytest.approx(500.0 / float(strain.peak_stress(REFERENCE, 1.0)), rel=1e-12)
+    assert float(stop.stress_share(REFERENCE, K, REFERENCE.load_arm)) == 0.0
+    assert float(stop.deflection_share(REFERENCE, K, REFERENCE.load_arm)) == 0.0
+    assert float(stop.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 1e6, 8.0)) == pytest.approx(8.0, rel=1e-12)
 
 
 def test_grid_longer_than_a_two_sided_hinge_is_refused_and_a_point_is_its_own_limit():
@@ -155,15 +155,6 @@ def test_rig_statics_go_with_size(size):
     contacts = tuple((x * size, y * size) for x, y in SQUARE)
     assert rigs.tipping_margin(contacts, 10 * size) == pytest.approx(15 * size, rel=1e-12)
     assert rigs.tipping_pull(contacts, 30 * size, 2.0, 3.0, (0, 0)) == pytest.approx(5.0 * 25 / 30, rel=1e-12)
-
-
-@pytest.mark.parametrize("load", [0.0, 1e-9, 1.0, 13.04, 13.04e3])
-def test_stopped_arm_is_in_balance_under_any_load(load):
-    found = rigs.stopped(10.0, load, 0.1, 5.0, 6.0, 3.0, 0.25, 0.75)
-    shear = (load - found.hinge) * (1 - 5.0 / 6.0)
-    assert found.hinge + found.stop + shear == pytest.approx(load, abs=1e-12 * max(load, 1e-3))
-    assert 0.0 <= found.hinge <= 10.0 * 0.1 * 5.0 / 6.0 * (1 + 1e-12)
-    assert found.bending >= 0.0 and found.shear >= -1e-12
 
 
 def test_rig_without_height_load_or_vacuum():
