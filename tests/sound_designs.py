@@ -200,6 +200,7 @@ def _loads(d: Draw) -> None:
     E = d.number("material.youngs_modulus", max(1e3, 1 / ratio, 2e-6 / force / ratio), min(1e6, 5000 / ratio))
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
     d.rest("material")
+    d.elastic = 0.2 * bend * factor * least * ratio  # mm of deflection that no hinge yields at
     gap = min(room, bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 16)
     d.number("rating.overload_force", high=force * strength)

@@ -68,7 +68,7 @@ def _cart(d: Draw) -> None:
     deep = shank - 2 * shim - bearing.B + 1 + 2 * axle.pitch + axle.tap_drill
     d.number("cart.width", max(holder, 2 * deep), widest)
     screw = holder / 2 - 4
-    apart = axle.clearance / 2 + M3.tap_drill / 2 + 0.51
+    apart = axle.clearance / 2 + M3.d / 2 + 0.51
     outside = side / 2 + 2
     inner = screw - apart
     if inner > outside and d.once_in(2):
@@ -96,7 +96,7 @@ def _grasping(d: Draw) -> None:
 
 
 def _calibration(d: Draw, into_sample: float) -> None:
-    travel = d.number("calibration.travel", high=0.9)
+    travel = d.number("calibration.travel", high=min(0.9, d.elastic))
     retract = d.number("calibration.retract", high=40.0)
     d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
     d.number("calibration.stage_travel", max(d.far_x, d.far_y))

@@ -24,6 +24,8 @@ REFUSED = {
     "a 3 mm reamer through 30.5 mm of end plate": ("end_plate_takes_holes", {"clamp.end_plate_thickness": 30.5}),
     "the flat tip's body pressed into the sample": ("tip_land_clears_sample", {"sample.travel": 2.1}),
     "a tip pressed through a thin sample": ("tip_land_clears_sample", {"sample.thickness": 0.4}),
+    "the axle's bore 0.26 mm from the holder's thread": ("axles_fit_plate", {"cart.wheel_base": 47.2}),
+    "a calibration that bends a stiff, weak hinge beyond yield": ("calibration_bends_elastically", {"calibration.travel": 0.4}),
     "the hose fitting on the cart plate": ("port_clears_cart", {"holder.floor": 1.0}),
 }  # fmt: skip
 

@@ -28,6 +28,7 @@ WITNESSES = {
     "port_clears_cart": {"holder.floor": 1.2},
     "tip_land_clears_sample": {"sample.travel": 2.1},
     "axis_reaches_contact": {"calibration.axis_travel": 0.9},
+    "calibration_bends_elastically": {"calibration.travel": 0.4},
     "weights_clear_guide": {"grasping.weight_diameter": 60.0},
 }
 

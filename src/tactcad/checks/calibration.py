@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
-from tactcad.scenes.calibration_loads import calibration_loads
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 from .finding import Finding
 

@@ -14,7 +14,7 @@ from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
-from .brep import check_brep
+from .brep import check_brep, check_step
 from .calibration import check_calibration
 from .clearance import check_clearance
 from .finding import Finding
@@ -54,6 +54,7 @@ def run_checks(
         if part.part_no not in shapes:
             continue
         report.run("brep", check_brep, part, shapes[part.part_no])
+        report.run("step", check_step, part, shapes[part.part_no])
         report.run("mesh", check_mesh, part, shapes[part.part_no])
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)

@@ -509,8 +509,10 @@ RULES: dict[str, Rule] = {
 }
 # Rules whose breach would make later ones fail for the same reason.
 STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
-# Rules that need the stop gap, and those without which there is none: what is no hinge has no stiffness.
-ASK_THE_GAP = frozenset({"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm"})
+# Rules that need the stop gap or the stiffness, and those without which there is none: what is no hinge has no stiffness.
+ASK_THE_GAP = frozenset(
+    {"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm", "calibration_bends_elastically"}
+)
 NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
 # Rules on contours as drawn, which only a design that keeps the rules before them is sure to have.
 ASK_THE_CONTOUR = frozenset({"no_slivers"})

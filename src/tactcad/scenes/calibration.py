@@ -9,11 +9,11 @@ from tactcad.design.tree import Design
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs import bought, carried
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
 
 from .array import DOWN, array
 from .builder import Builder
-from .calibration_loads import calibration_loads
 from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
 from .scene import REST, Motion, Pose, Rotation, Scene
 

@@ -7,8 +7,8 @@ from math import floor
 
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 
-from .calibration_loads import calibration_loads
 from .scene import Pose
 
 

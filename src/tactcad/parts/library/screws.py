@@ -12,7 +12,7 @@ from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
 
-from ..description import Extrusion, Material, Part, Pocket, Purchase, Revolution, drill_point_height
+from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution, drill_point_height
 
 STAINLESS = Material("stainless steel A2-70", 7900)
 STAINLESS_SET = Material("stainless steel A2-21H", 7900)
@@ -165,7 +165,10 @@ def nut(thread: str) -> Part:
         name=f"Hexagon nut {thread}",
         process="bought",
         material=STAINLESS,
-        body=Extrusion(_hexagon(m.nut), m.nut_height, (circle((0, 0), m.tap_drill),)),
+        body=Extrusion(_hexagon(m.nut), m.nut_height),
+        features=(
+            Hole("thread", (0, 0, 0), (0, 0, 1), m.tap_drill, m.nut_height, True, thread=thread, thread_depth=m.nut_height),
+        ),
         colour="#8a8d91",
         purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
         spares=2,

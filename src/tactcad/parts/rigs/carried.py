@@ -7,7 +7,7 @@ from math import ceil
 from tactcad.contour import Contour, circle, rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..library.screws import METRIC
+from ..library.screws import METRIC, tapped_depth
 from .bought import PIN, disc_weight
 from .bought import STEEL as WEIGHT_STEEL
 from .cart import COLOUR, plate_alloy
@@ -146,7 +146,8 @@ def platform(rig: RigLayout) -> Part:
 def pin(rig: RigLayout, under: float = 0.0) -> Part:
     """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its foot."""
     stack = round(rig.design.grasping.weights) * disc_weight(rig).body.thickness
-    height = 5.0 * ceil((stack + max(9.0, under + 1.0)) / 5.0)
+    thread = tapped_depth("M4") + 1.0  # in its foot, and the floor over it
+    height = 5.0 * ceil(max(stack + max(9.0, under + 1.0), thread) / 5.0)
     return Part(
         part_no=f"{rig.design.name}-weight-pin",
         name="Weight pin",

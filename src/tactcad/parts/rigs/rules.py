@@ -17,6 +17,7 @@ from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
 from .bought import FITTING_RADIUS
+from .calibration_loads import calibration_loads
 from .carried import BAR_MIDDLE, BAR_SCREW_X, CARRIER_SCREW, under_carrier_screw
 from .layout import (
     BAR,
@@ -67,7 +68,7 @@ def axles_fit_plate(layout: Layout) -> Iterator[Finding]:
     if c.length < end - SAME:
         yield ("cart.wheel_base", "axles too near the plate's ends", c.wheel_base, f"at most {c.length - 2 * around:g} mm")
     apart = abs(c.wheel_base / 2 - rig.holder_screw)
-    least = m.clearance / 2 + METRIC["M3"].tap_drill / 2 + LEAST_AIR
+    least = (m.clearance + METRIC["M3"].d) / 2 + HOLE_WEB
     if apart < least - SAME:
         yield ("cart.wheel_base", "axles meet the holder's screws", c.wheel_base, f"at least {least:g} mm beside {rig.holder_screw:g} mm")
 
@@ -186,6 +187,19 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
         need = max(rest + c.retract, down - rest)
         if need > c.axis_travel + SAME:
             yield ("calibration.axis_travel", f"vertical axis rests {rest:+.3g} mm off its middle", c.axis_travel, f"at least {need:.4g} mm")
+
+
+def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
+    """No hinge yields at the end of the travel: in this set-up there is no stop plate."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    for load in calibration_loads(layout.design):
+        if c.travel > load.travel_at_yield:  # not where the estimator does not reach
+            yield (
+                "calibration.travel", f"the hinge of element {load.place.number} yields before its end", c.travel,
+                f"at most {load.travel_at_yield:.4g} mm",
+            )
 
 
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
@@ -334,6 +348,7 @@ RIG_RULES: dict[str, Rule] = {
         port_clears_cart,
         tip_land_clears_sample,
         axis_reaches_contact,
+        calibration_bends_elastically,
         weights_clear_guide,
     )
 }

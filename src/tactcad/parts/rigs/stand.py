@@ -15,6 +15,8 @@ from .holes import sunk, tapped_blind, tapped_through
 from .layout import BASE, PLATE, PLATE_SCREW, POST, RISER_PITCH, STAGE_HOLE, TIP, TIP_LAND, RigLayout
 
 POST_SCREWS = tuple((sx * 20.0, sy * 5.0) for sx in (-1, 1) for sy in (-1, 1))  # from the post's middle
+BASE_SCREW = 16.0  # M5 through the base plate into the post, head sunk
+BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 0.5
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 GAUGE_SCREW_X, GAUGE_SCREW_Z = 40.0, 20.0  # gauge plate on axis plate: outside the gauge's width
 
@@ -51,7 +53,8 @@ def post(rig: RigLayout) -> Part:
     features: list[Feature] = [
         tapped_through("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
     ]
-    features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0)) for px, py in POST_SCREWS]
+    # the base plate's screws reach 9 mm in, more than the usual blind thread has
+    features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS]
     return Part(
         part_no=f"{rig.design.name}-post",
         name="Post",

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tactcad.design.tree import Design
-from tactcad.parts.layout import ElementPlace, Layout
+
+from ..layout import ElementPlace, Layout
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,8 @@ class CalibrationLoad:
 def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     """Every element, by number."""
     from tactcad.mechanics import ladder, strength  # numpy: only checks and guides ask for this
-    from tactcad.parts.hinge_section import design_alloy, hinge_section
+
+    from ..hinge_section import design_alloy, hinge_section
 
     c, layout = design.calibration, Layout(design)
     s = hinge_section(layout, layout.elements)
