@@ -56,7 +56,7 @@ def check_interference(
         first, second = scene.placements[i], scene.placements[j]
         key, anchor = _situation(first, second, local, changing)
         if key not in known:
-            known[key] = _meeting(first, second, shapes, anchor)
+            known[key] = meeting(first, second, shapes, anchor)
         pair = frozenset((first.designator, second.designator))
         if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
             met.add(pair)
@@ -110,7 +110,8 @@ def _situation(
     return (*numbers, relative(first, second)), 0
 
 
-def _meeting(first: Placement, second: Placement, shapes: Mapping[str, TopoDS_Shape], anchor: int) -> Meeting:
+def meeting(first: Placement, second: Placement, shapes: Mapping[str, TopoDS_Shape], anchor: int = 0) -> Meeting:
+    """What the kernel says of two placed parts; the common volume is asked for only where they touch."""
     a, b = (shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in (first, second))
     nearest = BRepExtrema_DistShapeShape(a, b)
     point = nearest.PointOnShape1(1) if nearest.NbSolution() else None

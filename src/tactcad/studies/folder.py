@@ -11,6 +11,7 @@ import json
 import os
 import shutil
 import tempfile
+from collections.abc import Iterable
 from pathlib import Path
 
 from tactcad.design.messages import CheckFailure, InputError
@@ -26,7 +27,7 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
     `out` is as before.
     """
     out = Path(os.path.abspath(out))
-    _require_ours(out, files, schema)
+    require_ours(out, files, schema)
     part = None
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -45,7 +46,8 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
+def require_ours(out: Path, names: Iterable[str], schema: str) -> None:
+    """Raise InputError unless `out` is missing, empty, or an earlier report with files of the names' endings."""
     if not os.path.lexists(out):
         return
     if out.is_symlink() or not out.is_dir():
@@ -53,7 +55,7 @@ def _require_ours(out: Path, files: dict[str, bytes], schema: str) -> None:
             str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report"
         )
     there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    endings = {Path(name).suffix for name in files}
+    endings = {Path(name).suffix for name in names}
     if not there:
         return
     try:
