@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check golden review bench reference nightly clean
+.PHONY: help environment export test check golden review release bench reference nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -18,7 +18,7 @@ environment:
 
 export: environment ## write the files of every design in hardware/ to exports/<design>/
 	@status=0; \
-	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide || status=1; done; \
+	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide --drawings || status=1; done; \
 	exit $$status
 
 test: environment ## every test but the long ones
@@ -40,6 +40,9 @@ review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, co
 	$(BIN)/python packaging/review/in_ezdxf.py $(EXPORTS) || status=1; \
 	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
 	exit $$status
+
+release: environment ## one zip a shop can quote from, of every design no check of which fails: exports/releases
+	$(BIN)/tactcad release $(DESIGNS)
 
 bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
 	$(BIN)/tactcad bench --out exports/bench

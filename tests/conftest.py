@@ -15,6 +15,15 @@ def own_cache(tmp_path_factory, monkeypatch):
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
 
 
+def pytest_terminal_summary(terminalreporter):
+    """What a test reports besides passing or failing: seeds and counts of the designs drawn by chance."""
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            for name, value in getattr(report, "user_properties", ()):
+                if report.when == "call":
+                    terminalreporter.write_line(f"{name}: {value}")
+
+
 @pytest.fixture(scope="session")
 def macro():
     """The paper's array as shipped."""

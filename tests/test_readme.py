@@ -62,7 +62,8 @@ def test_estimate_shown_is_the_one_printed(capsys, monkeypatch):
     monkeypatch.chdir(ROOT)
     assert main(["estimate"]) == 0
     printed = capsys.readouterr().out.strip("\n")
-    assert quoted("macro-array A, 7075-T6").rstrip() == printed.rstrip()
+    revision = re.search(r'(?m)^revision = "(\w+)"', (ROOT / "hardware" / "macro-array.toml").read_text())[1]
+    assert quoted(f"macro-array {revision}, 7075-T6").rstrip() == printed.rstrip()
 
 
 def test_refusal_shown_is_the_one_printed(tmp_path, capsys, monkeypatch):

@@ -11,8 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 from tactcad.parts.description import Extrusion
-from tactcad.studies.bench import interference
-from tactcad.studies.bench.interference import count_wrong
+from tactcad.studies.bench.interference import Prepared, count_wrong, kernel_verdict, mesh_verdict
 from tactcad.studies.bench.pairs import GAPS, KINDS, known_pairs, lens
 
 PAIRS = list(known_pairs(2, seed=5))
@@ -81,30 +80,46 @@ def test_wrong_verdicts_are_counted_by_kind():
     assert count_wrong(found, true) == {"wrong": 5, "missed": 1, "false": 2, "others": 2}
 
 
+def prepared(pair, *angular) -> Prepared:
+    made = Prepared()
+    for p in pair.placements:
+        made.add(p.part, angular, {})
+    return made
+
+
 @pytest.mark.cad
 def test_the_kernel_knows_them_all_and_its_volume_is_the_closed_form():
-    from tactcad.checks.interference import meeting
-    from tactcad.solids.build import build
+    from tactcad.checks.interference import meeting, placed_box
 
     for pair in PAIRS[::7]:  # every kind, every gap at some kind
-        shapes = {p.part.part_no: build(p.part).wrapped for p in pair.placements}
-        assert interference.kernel_verdict(pair.placements, shapes) == pair.verdict, (pair.kind, pair.gap)
-        assert meeting(*pair.placements, shapes).overlap == pytest.approx(pair.overlap, rel=1e-4, abs=1e-7)
+        made = prepared(pair)
+        assert kernel_verdict(pair.placements, made) == pair.verdict, (pair.kind, pair.gap)
+        boxes = tuple(placed_box(p, made.boxes[p.part.part_no]) for p in pair.placements)
+        overlap = meeting(pair.placements, boxes, made.shapes, made.faces).overlap
+        assert overlap == pytest.approx(pair.overlap, rel=1e-4, abs=1e-7)
 
 
 @pytest.mark.cad
 def test_flat_faced_meshes_are_exact_and_round_ones_miss_what_is_thinner_than_their_chords():
     """At 0.5 rad a chord of a radius r stands r (1 - cos 0.25) off: 0.03 r. A pin's overlap of 0.1 um is lost in that."""
-    from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
-    from tactcad.solids.mesh_overlap import closed, volume
-
     wrong = Counter()
     for pair in PAIRS:
-        raw = {p.part.part_no: triangles(build(p.part).wrapped, 0.05, 0.5) for p in pair.placements}
+        made = prepared(pair, 0.5)
         for p in pair.placements:
             flat = not any(c.as_circle() for c in (p.part.body.outer, *p.part.body.openings))
-            assert volume(raw[p.part.part_no]) == pytest.approx(p.part.volume, rel=1e-9 if flat else 0.1)
-        found = interference.mesh_verdict(pair.placements, {name: closed(mesh) for name, mesh in raw.items()})
-        wrong[pair.kind] += found != pair.verdict
+            assert made.meshes[p.part.part_no, 0.5].volume() == pytest.approx(p.part.volume, rel=1e-9 if flat else 0.1)
+        wrong[pair.kind] += mesh_verdict(pair.placements, made, 0.5) != pair.verdict
     assert wrong["box on box"] == 0 and wrong["pin in its hole"] > 0 and wrong["pin beside pin"] > 0
+
+
+@pytest.mark.cad
+def test_the_volume_of_triangles_is_the_mesh_librarys():
+    import trimesh
+
+    from tactcad.solids.build import build
+    from tactcad.solids.mesh import triangles
+    from tactcad.solids.mesh_overlap import volume
+
+    for pair in PAIRS[:9]:
+        mesh = triangles(build(pair.placements[1].part).wrapped, 0.05, 0.5)
+        assert volume(mesh) == pytest.approx(trimesh.Trimesh(*mesh, process=False).volume, rel=1e-12)

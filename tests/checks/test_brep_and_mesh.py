@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,13 +10,14 @@ import pytest
 import trimesh
 
 from tactcad.checks import mesh as mesh_check
-from tactcad.checks.brep import check_brep
+from tactcad.checks.brep import check_brep, check_step, check_step_file
 from tactcad.checks.mesh import check_mesh, check_triangles
 from tactcad.checks.run import run_checks
 from tactcad.contour import chain, circle, rectangle
 from tactcad.parts.description import Extrusion, Material, Part
 from tactcad.solids import build as builder
 from tactcad.solids.mesh import triangles
+from tactcad.solids.step import write_step
 
 pytestmark = pytest.mark.cad
 
@@ -109,6 +111,58 @@ def test_an_invalid_solid_is_seen():
     face = BRepBuilderAPI_MakeFace(polygon.Wire()).Face()
     bow_tie = Solid(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 5)).Shape())
     assert "brep-valid" in [f.check for f in check_brep(BLOCK, bow_tie.wrapped)]
+
+
+# --- read back from STEP ---
+
+
+def test_the_shipped_parts_come_back_from_step_as_they_were(macro_scene, macro_shapes):
+    for part in macro_scene.parts:
+        assert check_step(part, macro_shapes[part.part_no]) == []
+
+
+def without_a_face(data: bytes) -> bytes:
+    """The file with the first face taken off its shell's list."""
+    return re.sub(rb"(CLOSED_SHELL\('',\()#\d+,", rb"\1", data, count=1)
+
+
+def stretched(data: bytes) -> bytes:
+    """Every point 1 % further out along x."""
+    return re.sub(rb"CARTESIAN_POINT\('',\(([-0-9.E+]+),", lambda m: b"CARTESIAN_POINT('',(%r," % (1.01 * float(m[1])), data)
+
+
+def cut_off(data: bytes) -> bytes:
+    return data[: len(data) // 2]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "expected"),
+    [
+        (without_a_face, {"one-solid"}),
+        (stretched, {"volume", "step-volume", "step-area", "step-box"}),
+    ],
+)
+def test_a_spoilt_step_file_is_seen(shape, spoil, expected):
+    data = write_step(shape)
+    assert check_step_file(BLOCK, shape, data) == []
+    assert spoil(data) != data
+    found = {f.check for f in check_step_file(BLOCK, shape, spoil(data))}
+    assert found == expected
+
+
+def test_a_shape_that_was_moved_before_it_was_written_is_seen(shape):
+    from OCP.gp import gp_Trsf, gp_Vec
+    from OCP.TopLoc import TopLoc_Location
+
+    moved = gp_Trsf()
+    moved.SetTranslation(gp_Vec(0.0, 0.0, 2e-6))
+    found = check_step_file(BLOCK, shape, write_step(shape.Moved(TopLoc_Location(moved))))
+    assert {f.check for f in found} == {"step-box"} and "STEP" in found[0].message
+
+
+def test_a_step_file_that_ends_early_cannot_be_read(shape):
+    with pytest.raises(ValueError, match="STEP"):
+        check_step_file(BLOCK, shape, cut_off(write_step(shape)))
 
 
 # --- meshes ---

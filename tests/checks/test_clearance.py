@@ -23,7 +23,7 @@ def test_opposite_pads_come_nearer_by_what_their_height_turns():
     design = variant({"stop.gaps": {"4": 0.12}, "array.row_arms": [[4], [4]]})
     layout = Layout(design)
     arms, (first, second) = _Arms(layout), layout.elements
-    w = asin(0.135 / 4)
+    w = asin((0.12 + design.stop.tolerance) / 4)
     towards = (2 + 0.125) * sin(w) - 4 * (1 - cos(w))
     one = _nearest(arms.of(first, True), map(_mirrored, arms.of(second, False)))
     both = _nearest(arms.of(first, True), map(_mirrored, arms.of(second, True)))

@@ -79,6 +79,35 @@ def test_two_parts(name):
     assert call(*arguments) == expected
 
 
+def tapped(depth: float, full: float, counterbore: tuple[float, float] | None = None) -> Part:
+    hole = Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, depth, depth == 10, counterbore, thread="M4", thread_depth=full)
+    return block("TAPPED", 10, 10, 10, hole)
+
+
+THREADS = {
+    "as far as the full thread": (tapped(10, 6), PIN, (5, 5, -14), []),
+    "beyond the full thread": (tapped(10, 6), PIN, (5, 5, -13.9), [("thread", "A")]),
+    "into the floor of a blind hole": (tapped(8, 8), PIN, (5, 5, -11), [("thread", "A")]),
+    "a thicker screw": (tapped(10, 10), pin("M5", 5.0, 20), (5, 5, -5), [("thread", "A")]),
+    "beside the hole's axis": (tapped(10, 10), PIN, (5.01, 5, -5), [("thread", "A")]),
+    "in no tapped hole": (CUBE, PIN, (5, 5, -5), [("thread", "A")]),
+    "in a hole that is not tapped": (block("DRILLED", 10, 10, 10, Hole("d", (5, 5, 0), (0, 0, 1), 3.3, 10, True)),
+                                     PIN, (5, 5, -5), [("thread", "A")]),
+    "in the clearance over a thread": (tapped(10, 5, (4.5, 5)), PIN, (5, 5, -10.1), []),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", THREADS)
+def test_a_thread_explains_its_own_ring_and_no_more(name):
+    first, second, origin, expected = THREADS[name]
+    placements = [Placement("A", first), Placement("B", second, origin)]
+    contact = [Contact("A", "B", "thread")]
+    assert checks(placements, contact) == expected
+    # and the other way round: the screw is declared first
+    turned = [Placement("A", second, origin), Placement("B", first)]
+    assert checks(turned, contact) == expected
+
+
 def test_where_and_how_much_stands_in_the_finding():
     scene = Scene("test", (Placement("A", CUBE), Placement("B", CUBE, (9.0, 4.0, 0.0))))
     (finding,) = check_interference(scene, {"CUBE": build(CUBE).wrapped})

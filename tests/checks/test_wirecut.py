@@ -9,6 +9,7 @@ import pytest
 
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.checks.wirecut import check_wirecut
+from tactcad.cli.main import main
 from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
 from tactcad.contour.offset import offset
 from tactcad.design.messages import InputError
@@ -176,15 +177,20 @@ def test_a_shop_with_a_finer_wire_cuts_more(tmp_path):
     [
         (("wall = 0.5", "wall = 0.5\nwal = 0.5"), "limits.wal: unknown field"),
         (("spark_gap = 0.025\n", ""), "limits.spark_gap: missing field"),
-        (("wall = 0.5", "wall = -0.5"), "limits.wall: is no length; found -0.5"),
-        (("wall = 0.5", "wall = nan"), "limits.wall: is no length; found nan"),
-        (("wall = 0.5", "wall = 1e300"), "limits.wall: is no length"),
-        (("wall = 0.5", "wall = true"), "limits.wall: is no length; found True"),
-        (("wall = 0.5", 'wall = "0.5"'), "limits.wall: is no length; found '0.5'"),
+        (("wall = 0.5", "wall = -0.5"), "limits.wall: is no size; found -0.5"),
+        (("wall = 0.5", "wall = nan"), "limits.wall: is no size; found nan"),
+        (("wall = 0.5", "wall = 1e300"), "limits.wall: is no size"),
+        (("wall = 0.5", "wall = true"), "limits.wall: is no size; found True"),
+        (("wall = 0.5", 'wall = "0.5"'), "limits.wall: is no size; found '0.5'"),
         (("wall = 0.5", "wall = "), "is not TOML"),
         (('name = "general practice"', "name = 3"), "name: is no text"),
         (("[source]", "[sources]"), "sources: unknown field"),
         (('spark_gap = "', 'spark_gap = "" # "'), "source.spark_gap: is no text"),
+        (("wall = 0.8", "wal = 0.8"), "machining.wal: unknown field"),
+        (("drill_reach = 10.0", "drill_reach = 0"), "machining.drill_reach: is no size; found 0"),
+        (("[machining]", "[[machining]]"), "machining: is no table"),
+        (('floor = "', 'floor = "" # "'), "machining_source.floor: is no text"),
+        (('ring = "', '# "'), "machining_source.ring: missing field"),
     ],
 )
 def test_a_shop_file_that_cannot_be_used(tmp_path, change, message):
@@ -194,6 +200,30 @@ def test_a_shop_file_that_cannot_be_used(tmp_path, change, message):
         load_shop(path)
     assert message in str(refusal.value)
     assert "shop.toml" in str(refusal.value)
+
+
+def test_a_shop_may_say_only_in_what_its_machining_differs(tmp_path):
+    path = tmp_path / "shop.toml"
+    head = DEFAULT.read_text().split("# mills")[0]
+    path.write_text(head)
+    assert load_shop(path).machining == SHOP.machining
+    path.write_text(head + '[machining]\nwall = 1.2\n[machining_source]\nwall = "our own mill"\n')
+    own = load_shop(path)
+    assert own.machining == replace(SHOP.machining, wall=1.2)
+    assert own.machining_source == {**SHOP.machining_source, "wall": "our own mill"}
+
+
+@pytest.mark.cad
+def test_the_shop_s_machining_limits_reach_the_check(tmp_path, capsys):
+    """A shop that wants 1 mm flags the end plate; one that wants no less than that fails it; a broken file ends with 2."""
+    path = tmp_path / "shop.toml"
+    for least, status in (("0.5", 0), ("1.0", 1)):
+        path.write_text(shop_text(wall=("wall = 0.8\nwall_least = 0.5", f"wall = 1.0\nwall_least = {least}")))
+        assert main(["check", "soft-tissue", "--scene", "array", "--shop", str(path)]) == status
+        assert "0.892 mm between screw_1 and dowel_1" in capsys.readouterr().out
+    path.write_text(path.read_text() + "drill = ")
+    assert main(["check", "soft-tissue", "--shop", str(path)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_a_shop_file_that_is_not_there(tmp_path):

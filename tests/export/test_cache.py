@@ -122,3 +122,89 @@ def test_where_it_lies(monkeypatch, tmp_path):
     assert default_root() == Path(__file__).parents[2] / ".cache" / "tactcad"
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path))
     assert default_root() == tmp_path
+
+
+def entries(cache: Cache) -> dict[str, int]:
+    """Size of every entry, by the key that a test gave it."""
+    return {key: len(data) for key in ("old", "middle", "new") if (data := cache.get(key)) is not None}
+
+
+def used(cache: Cache, key: str, seconds: float) -> None:
+    """As if the entry had last been used at that time."""
+    (path,) = (p for p in cache.root.rglob("*") if p.is_file() and p.read_bytes().endswith(b"\n" + key.encode() * 1000))
+    os.utime(path, (seconds, seconds))
+
+
+def test_what_was_used_least_recently_goes_first(cache):
+    for n, key in enumerate(("old", "middle", "new")):
+        cache.put(key, key.encode() * 1000)
+        used(cache, key, 1000.0 + n)
+    total = sum(p.stat().st_size for p in cache.root.rglob("*") if p.is_file())
+    assert cache.trim(total) == 0
+    assert cache.trim(total - 1) == 1
+    assert set(entries(cache)) == {"middle", "new"}
+
+
+def test_reading_is_using(cache):
+    for n, key in enumerate(("old", "middle", "new")):
+        cache.put(key, key.encode() * 1000)
+        used(cache, key, 1000.0 + n)
+    assert cache.get("old")
+    assert cache.trim(4000) == 2
+    assert set(entries(cache)) == {"old"}
+
+
+def test_a_clock_that_was_set_back_costs_time_only(cache):
+    """Entries from the future count as used last; the bound holds all the same, and nothing wrong comes back."""
+    for key, year_from_now in (("old", 0), ("middle", 1), ("new", -50)):
+        cache.put(key, key.encode() * 1000)
+        used(cache, key, 1.8e9 + year_from_now * 3.15e7)
+    assert cache.trim(7000) == 2
+    assert entries(cache) == {"middle": 6000}
+
+
+def test_what_a_killed_run_left_half_written_goes(cache):
+    cache.put("old", b"x")
+    left = entry(cache).with_name(".new-left")
+    left.write_bytes(b"half")
+    cache.trim()
+    assert not left.exists() and cache.get("old") == b"x"
+
+
+def test_what_a_running_process_writes_stays(cache):
+    cache.put("old", b"x")
+    writing = entry(cache).with_name(".new-writing")
+    script = (
+        "import fcntl, sys; file = open(sys.argv[1], 'wb'); fcntl.flock(file, fcntl.LOCK_EX)\n"
+        "print(1, flush=True); sys.stdin.read()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", script, str(writing)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as writer:
+        writer.stdout.readline()
+        cache.trim()
+        assert writing.exists()
+    cache.trim()
+    assert not writing.exists()
+
+
+TRIMMER = """
+import sys
+from pathlib import Path
+from tactcad.export.cache import Cache
+cache = Cache(Path(sys.argv[1]), lambda text: None)
+for turn in range(300):
+    data = b"%d" % (turn % 7) * 5_000
+    assert cache.get_or_make(f"key {turn % 7}", lambda: data) == data
+    cache.trim(20_000)
+"""
+
+
+def test_two_processes_trim_at_once(tmp_path):
+    runs = [subprocess.Popen([sys.executable, "-c", TRIMMER, str(tmp_path)]) for _ in range(3)]
+    assert [run.wait() for run in runs] == [0, 0, 0]
+    assert sum(p.stat().st_size for p in tmp_path.rglob("*") if p.is_file()) <= 20_000
+
+
+def test_trimming_where_there_is_no_cache(cache):
+    assert cache.trim() == 0

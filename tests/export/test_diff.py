@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from html.parser import HTMLParser
 from math import dist
 from pathlib import Path
@@ -19,13 +20,14 @@ from tactcad.export.sides import compare_sides, read_side
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ROOT / "hardware" / "soft-tissue.toml"
+REVISION = tomllib.loads(SHIPPED.read_text())["design"]["revision"]
 
 
 @pytest.fixture
 def thicker(tmp_path):
-    """The shipped design with another hinge, as revision B."""
+    """The shipped design with another hinge, as revision Z."""
     text = SHIPPED.read_text()
-    changed = text.replace("hinge_thickness = 0.15", "hinge_thickness = 0.17").replace('revision = "A"', 'revision = "B"')
+    changed = text.replace("hinge_thickness = 0.15", "hinge_thickness = 0.17").replace(f'revision = "{REVISION}"', 'revision = "Z"')
     assert changed != text
     path = tmp_path / "thicker.toml"
     path.write_text(changed)
@@ -50,7 +52,7 @@ def diff(capsys, *args) -> str:
 
 def test_two_designs(thicker, capsys):
     lines = diff(capsys, SHIPPED, thicker).splitlines()
-    assert "changed revision: A -> B" in lines
+    assert f"changed revision: {REVISION} -> Z" in lines
     assert "changed values / element.hinge_thickness: 0.15 -> 0.17 (+13.3 %)" in lines
     [K] = [line for line in lines if line.startswith("changed elements / E1 / stiffness")]
     old, new = map(float, re.search(r": (\S+) -> (\S+) ", K).groups())
@@ -69,7 +71,7 @@ def test_a_design_and_its_golden_file(capsys):
 
 def test_json(thicker, capsys):
     record = json.loads(diff(capsys, SHIPPED, thicker, "--json"))
-    assert record["identical"] is False and record["old"]["revision"] == "A" and record["new"]["kind"] == "design"
+    assert record["identical"] is False and record["old"]["revision"] == REVISION and record["new"]["kind"] == "design"
     [change] = [c for c in record["changes"] if c["path"] == ["values", "element.hinge_thickness"]]
     assert (change["kind"], change["old"], change["new"]) == ("changed", 0.15, 0.17)
 

@@ -7,6 +7,7 @@ import dataclasses
 import json
 import re
 import shutil
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -32,6 +33,9 @@ from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
 
 ROOT = Path(__file__).parents[2]
+# the letter that the shipped file has now, and one that it will not have soon
+REVISION = tomllib.loads((ROOT / "hardware" / "soft-tissue.toml").read_text())["design"]["revision"]
+NEXT = "Z"
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +103,7 @@ def test_a_new_revision_is_flagged_until_it_is_taken_up(record):
     changed = dataclasses.replace(
         design,
         sheet=dataclasses.replace(design.sheet, thickness=2.9),
-        design=dataclasses.replace(design.design, revision="B"),
+        design=dataclasses.replace(design.design, revision=NEXT),
     )
     findings = judge(record, golden_record(changed))
     assert severities(findings) == {"flag"} and len(findings) > 10
@@ -203,8 +207,8 @@ def test_accept_writes_a_new_revision_and_refuses_the_rest(tmp_path):
     with pytest.raises(CheckFailure, match="new revision letter"):
         accept(changed, path, [])
     assert path.read_bytes() == first
-    accept(dataclasses.replace(changed, design=dataclasses.replace(design.design, revision="B")), path, [])
-    assert read_golden(path)["revision"] == "B"
+    accept(dataclasses.replace(changed, design=dataclasses.replace(design.design, revision=NEXT)), path, [])
+    assert read_golden(path)["revision"] == NEXT
     assert [p.name for p in path.parent.iterdir()] == [path.name]
 
 
@@ -228,8 +232,8 @@ def test_commands_from_first_file_to_new_revision(tmp_path, capsys):
     assert main(["golden", str(file)]) == 1
     assert golden.read_bytes() == before
 
-    file.write_text(file.read_text().replace('revision = "A"', 'revision = "B"'))
+    file.write_text(file.read_text().replace(f'revision = "{REVISION}"', f'revision = "{NEXT}"'))
     assert main(["golden", str(file)]) == 0
-    assert "changed revision: A -> B" in capsys.readouterr().out
+    assert f"changed revision: {REVISION} -> {NEXT}" in capsys.readouterr().out
     assert main(["check", str(file)]) == 0
     assert golden.read_bytes() != before

@@ -154,3 +154,25 @@ def test_every_kind_of_feature_against_the_kernel():
     assert got["volume"] == pytest.approx(part.volume, rel=1e-10)
     assert got["centre"] == pytest.approx(part.centre, abs=1e-9)
     assert part.mass == pytest.approx(part.volume * 1e-3)
+
+
+@pytest.mark.parametrize("thread", METRIC)
+def test_a_screw_in_a_picture_stays_clear_of_its_tapped_hole_and_keeps_its_length_and_head(thread):
+    m = METRIC[thread]
+    made = (
+        cap_screw(thread, CAP_SCREW_LENGTHS[thread][0]),
+        set_screw(thread, SET_SCREW_LENGTHS[thread][-1]),
+        threaded_rod(thread, 50.0),
+    )
+    for part in made:
+        shown = screws.for_pictures(part)
+        if isinstance(part.body, Extrusion):
+            assert shown.body.outer.box[2] < m.tap_drill / 2 < part.body.outer.box[2]
+            assert shown.body.thickness == part.body.thickness
+            continue
+        reach = [max(s.start[0] for s in p.body.profile if s.start[1] > 0) for p in (shown, part)]
+        assert reach[0] < m.tap_drill / 2 < reach[1] == m.d / 2
+        assert shown.body.profile.box[1:2] + shown.body.profile.box[3:] == part.body.profile.box[1:2] + part.body.profile.box[3:]
+        head = [max(s.start[0] for s in p.body.profile if s.start[1] < 0) for p in (shown, part) if part.body.profile.box[1] < 0]
+        assert len(set(head)) <= 1
+    assert screws.for_pictures(nut(thread)) == nut(thread)

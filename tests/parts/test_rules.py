@@ -92,9 +92,11 @@ WITNESSES = {
         ({"stop.gaps": {"6": 0.5}}, "stop.gaps.6"),
     ],
     "stop_gap_above_tolerance": [
-        ({"stop.tolerance": 0.1, "stop.yield_fraction": 0.4}, "stop.tolerance"),
-        ({"stop.gaps": {"4": 0.015}}, "stop.tolerance"),
+        ({"stop.tolerance": 0.1}, "stop.tolerance"),
+        ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
+        ({"rating.overload_force": 250.0}, "rating.overload_force"),
     ],
+    "stop_keeps_rated_deflection": [({"stop.gaps": {"4": 0.115}}, "stop.gaps.4")],
     "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],
     "holes_inside_body": [
         ({"holes.screw_offsets": [4.1, 15.0], "clamp.end_plate_margin": 1.0}, "holes.screw_offsets"),
@@ -109,10 +111,12 @@ WITNESSES = {
     "end_plate_takes_holes": [
         ({"clamp.end_plate_bottom": 0.9}, "clamp.end_plate_bottom"),
         ({"clamp.end_plate_thickness": 4.0}, "clamp.end_plate_thickness"),
+        ({"clamp.end_plate_thickness": 30.5}, "clamp.end_plate_thickness"),
         ({"clamp.end_plate_height": 14.5, "clamp.stop_plate_thickness": 2.0}, "clamp.end_plate_height"),
     ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
+        ({"clamp.carrier_thickness": 9.1, "clamp.stop_plate_thickness": 7.0}, "clamp.carrier_thickness"),
     ],
     "stop_plate_can_be_held": [
         ({"element.seat_length": 1.7}, "element.seat_length"),
@@ -127,6 +131,10 @@ WITNESSES = {
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
         ({"clamp.carrier_screw_offset": 6.0, "clamp.mount_pitch_y": 25.0}, "clamp.mount_pitch_y"),
+    ],
+    "no_slivers": [
+        ({"element.hinge_length": 0.6005}, "element.hinge_length"),
+        ({**TWO_SIDED, "array.row_arms": [[4], [2.7405]], "stop.land_length": 0.2}, "array.row_arms"),
     ],
 }  # fmt: skip
 

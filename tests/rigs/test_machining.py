@@ -6,13 +6,15 @@ from dataclasses import replace
 
 import pytest
 
-from tactcad.checks.machining import check_machining, limits
+from tactcad.checks.machining import check_machining
+from tactcad.checks.shop import load_shop
 from tactcad.contour import Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.design.load import names
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, Revolution
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene, scene_names
 
+USUAL = load_shop().machining
 UP, DOWN, X = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
 BLOCK = Extrusion(rectangle(0, 0, 40, 30), 20)
 
@@ -53,20 +55,20 @@ CASES = {
         (part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8.2))), part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8)))),
         (part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7.2))), part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7)))),
     ],
-    "mill-floor": [(part(pocket(rounded(4), 19.6)), part(pocket(rounded(4), 19.5)))],
+    "mill-floor": [(part(pocket(rounded(4), 19.3)), part(pocket(rounded(4), 19.2)))],
     "drill-diameter": [(part(hole(d=0.4, depth=2)), part(hole(d=0.5, depth=2)))],
     "drill-depth": [
         (part(hole(d=1.0, depth=10.1)), part(hole(d=1.0, depth=10.0))),
         (part(hole(d=1.0, depth=14, counterbore=(2.0, 3.9))), part(hole(d=1.0, depth=14, counterbore=(2.0, 4.0)))),
     ],
     "drill-floor": [
-        (part(hole(depth=19.6)), part(hole(depth=19.5))),
-        (part(hole(depth=19.0, drill_point=True)), part(hole(depth=18.5, drill_point=True))),
+        (part(hole(depth=19.3)), part(hole(depth=19.2))),
+        (part(hole(depth=19.0, drill_point=True)), part(hole(depth=18.2, drill_point=True))),
     ],
     "counterbore": [
         (
-            part(hole(depth=20, through=True, counterbore=(6.0, 19.6))),
-            part(hole(depth=20, through=True, counterbore=(6.0, 19.5))),
+            part(hole(depth=20, through=True, counterbore=(6.0, 19.3))),
+            part(hole(depth=20, through=True, counterbore=(6.0, 19.2))),
         ),
         (part(hole(depth=10, counterbore=(6.0, 10.0))), part(hole(depth=10, counterbore=(6.0, 9.0)))),
     ],
@@ -77,15 +79,15 @@ CASES = {
         (part(hole(d=2.5, depth=8.9, thread="M3", thread_depth=8)), part(hole(d=2.5, depth=9, thread="M3", thread_depth=8))),
     ],
     "hole-wall": [
-        (part(hole(at=(1.9, 15, 20))), part(hole(at=(2.0, 15, 20)))),
-        (part(hole(at=(0, 15, 1.9), axis=X)), part(hole(at=(0, 15, 2.0), axis=X))),
-        (part(hole(at=(3.4, 15, 20), counterbore=(6.0, 3.0))), part(hole(at=(3.5, 15, 20), counterbore=(6.0, 3.0)))),
+        (part(hole(at=(2.2, 15, 20))), part(hole(at=(2.3, 15, 20)))),
+        (part(hole(at=(0, 15, 2.2), axis=X)), part(hole(at=(0, 15, 2.3), axis=X))),
+        (part(hole(at=(3.7, 15, 20), counterbore=(6.0, 3.0))), part(hole(at=(3.8, 15, 20), counterbore=(6.0, 3.0)))),
         (part(hole(at=(-3.0, 15, 20))), part(hole(at=(3.0, 15, 20)))),  # outside altogether
     ],
     "hole-web": [
-        (part(hole(), hole(at=(23.3, 15, 20))), part(hole(), hole(at=(23.4, 15, 20)))),
-        # crossing bores: 3.05 apart at right angles
-        (part(hole(), hole(at=(0, 18.3, 15), axis=X, depth=30)), part(hole(), hole(at=(0, 18.5, 15), axis=X, depth=30))),
+        (part(hole(), hole(at=(23.7, 15, 20))), part(hole(), hole(at=(23.8, 15, 20)))),
+        # crossing bores at right angles
+        (part(hole(), hole(at=(0, 18.7, 15), axis=X, depth=30)), part(hole(), hole(at=(0, 18.8, 15), axis=X, depth=30))),
     ],
     "turn-slender": [
         (part(body=Extrusion(circle((0, 0), 5), 61), process="turned"), part(body=Extrusion(circle((0, 0), 5), 60), process="turned")),
@@ -105,25 +107,26 @@ CASES = {
 
 @pytest.mark.parametrize(("rule", "bad", "mended"), [(rule, *case) for rule, cases in CASES.items() for case in cases])
 def test_a_bad_part_is_seen_and_its_mended_twin_passes(rule, bad, mended):
-    found = check_machining(bad)
+    found = check_machining(bad, USUAL)
     assert rule in {f.check for f in found}
     assert all(f.part == "bad" and f.message for f in found)
-    assert rule not in {f.check for f in check_machining(mended)}
+    assert rule not in {f.check for f in check_machining(mended, USUAL)}
 
 
 def test_thin_webs_are_for_the_quotation_and_broken_ones_fail():
-    thin, broken = (check_machining(part(hole(), hole(at=(20 + d, 15, 20)))) for d in (3.3, 3.05))
-    assert [f.severity for f in thin] == ["flag"]
-    assert [f.severity for f in broken] == ["fail"]
+    for some in ((part(hole(), hole(at=(20 + d, 15, 20))) for d in (3.5, 3.49)), (part(hole(at=(x, 15, 20))) for x in (2.0, 1.99))):
+        thin, broken = (check_machining(one, USUAL) for one in some)
+        assert [f.severity for f in thin] == ["flag"]
+        assert [f.severity for f in broken] == ["fail"]
 
 
 def test_bought_and_wire_cut_parts_are_not_looked_at():
     bad = part(hole(d=0.1))
-    assert check_machining(replace(bad, process="bought")) == check_machining(replace(bad, process="wire-cut")) == []
+    assert check_machining(replace(bad, process="bought"), USUAL) == check_machining(replace(bad, process="wire-cut"), USUAL) == []
 
 
 def test_a_workshop_may_have_other_limits():
-    fine = replace(limits(), drill=0.2)
+    fine = replace(USUAL, drill=0.2)
     assert check_machining(part(hole(d=0.3, depth=2)), fine) == []
 
 
@@ -131,4 +134,4 @@ def test_a_workshop_may_have_other_limits():
 def test_every_part_of_the_shipped_designs_can_be_made(name):
     design = load(name)
     parts = {p.part_no: p for scene in scene_names(design) for p in make_scene(design, scene).parts}
-    assert [str(f) for p in parts.values() for f in check_machining(p) if f.severity == "fail"] == []
+    assert [str(f) for p in parts.values() for f in check_machining(p, USUAL)] == []

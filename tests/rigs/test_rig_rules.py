@@ -25,7 +25,10 @@ WITNESSES = {
     "seal_fits_holder": {"holder.vacuum_diameter": 29.9, "sample.side": 32.0, "holder.margin": 3.6},
     "holder_can_be_screwed": {"holder.lid_thickness": 4.0},
     "screws_clear_sample": {"holder.margin": 6.0},
+    "port_clears_cart": {"holder.floor": 1.2},
+    "tip_land_clears_sample": {"sample.travel": 2.1},
     "axis_reaches_contact": {"calibration.axis_travel": 0.9},
+    "calibration_bends_elastically": {"calibration.travel": 0.4},
     "weights_clear_guide": {"grasping.weight_diameter": 60.0},
 }
 
@@ -34,9 +37,14 @@ MISFITS = {
     "mount_clears_carrier": ("calibration", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
     "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 9.0}),
     "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
+    "mount_holes_apart": (
+        "calibration", {"clamp.mount_pitch_y": 44.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},
+    ),
+    "foot_holes_apart": ("grasping", {"clamp.mount_pitch_y": 40.0, "clamp.carrier_screw_offset": 6.0}),
     "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
     "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
     "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
+    "ballast_trims_moving_weight": ("grasping", {"grasping.moving_weight": 2.8}),
 }
 
 
@@ -50,7 +58,7 @@ def test_a_design_that_breaks_it_is_refused(rule):
     design = variant(WITNESSES[rule])
     assert rule in [b.rule for b in broken_rules(design)]
     found = next(iter(RIG_RULES[rule](Layout(design))))
-    assert found[0].split(".")[0] in {"cart", "holder", "grasping", "calibration"}
+    assert found[0].split(".")[0] in {"cart", "holder", "grasping", "calibration", "sample"}
     assert found[3]  # says what is legal
 
 

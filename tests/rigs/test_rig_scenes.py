@@ -8,7 +8,9 @@ from io import StringIO
 from math import cos, sin
 
 import pytest
+from variants import variant
 
+from tactcad.checks.calibration import check_calibration
 from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
@@ -18,14 +20,20 @@ from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import RigLayout, pad_middles
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.poses import calibration_deflections, pose_of, poses
+from tactcad.scenes.poses import pose_of, poses
 from tactcad.scenes.scene import Pose, Scene
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
 
 RIGS = ("calibration", "sample-stiffness", "grasping")
+# what a workshop cuts from plate; the rest is turned, milled from a block or a bar, or bought
+PLATES = {
+    "end-plate-head", "end-plate-tapped", "stop-plate", "carrier", "base-stages", "base-cart", "axis-plate", "gauge-plate", "array-mount",
+    "cart-plate", "holder-lid", "foot", "bar", "platform", "post", "riser",
+}
 DESIGNS = ("macro-array", "double-sample", "smallest-bearing")
 
 
@@ -48,7 +56,7 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
     assert all(not row["source_verified"] for row in bill if row["make_buy"] == "buy")
-    cut = {p.part_no for p in make_scene(design, scene).parts if p.process == "wire-cut"}
+    cut = {p.part_no for p in make_scene(design, scene).parts if p.process == "wire-cut" or p.part_no.removeprefix("smallest-bearing-") in PLATES}
     assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
     again = export(design, [scene], tmp_path / "out", progress(StringIO()))
     assert (again.made, again.built) == ((), ())
@@ -136,9 +144,40 @@ def _gap(layout, place):
 
 def test_calibration_shares_its_travel_between_gauge_and_element():
     design = load("macro-array")
-    for d, place in zip(calibration_deflections(design), Layout(design).elements):
-        assert 0 < d < design.calibration.travel
-        assert d < _gap(Layout(design), place) * place.load_arm / place.arm  # the stop stays open
+    for one in calibration_loads(design):
+        # the force that bends the element is the one that bends the gauge, over the rest of the travel
+        assert one.force == pytest.approx(design.calibration.load_cell_stiffness * (design.calibration.travel - one.deflection))
+        assert one.force < design.calibration.load_cell_range
+        assert 0 < one.deflection < one.rated_deflection
+        # the same travel split the same way at the rated deflection and at yield, which is its factor away
+        assert one.travel_at_rated * one.deflection == pytest.approx(design.calibration.travel * one.rated_deflection)
+        assert one.travel_at_yield == pytest.approx(one.travel_at_rated * design.rating.deflection_factor)
+
+
+def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_comes():
+    """With it the stops of the short arms would close on the way: that is why."""
+    design = load("macro-array")
+    layout = Layout(design)
+    placed = {p.designator for p in make_scene(design, "calibration").placements}
+    whole = {p.designator for p in make_scene(design, "array").placements}
+    assert {d for d in whole - placed} == {"ST1", *(d for d in whole if d.startswith("SS"))}
+    closing = {s.place.arm for s in calibration_loads(design) if s.deflection > _gap(layout, s.place) * s.place.load_arm / s.place.arm}
+    assert closing == {4.0, 5.0}
+    texts = {step.title: step.text for step in make_scene(design, "array").steps}
+    assert "without stop plate" in texts["Stop plate"]
+    last = make_scene(design, "calibration").steps[-1]
+    assert "stop plate" in last.title and "arm 4 carries 3.42 N and would yield at 185 um" in last.text
+
+
+@pytest.mark.parametrize(("changes", "severity"), [
+    ({}, None), ({"calibration.travel": 0.16}, "flag"), ({"calibration.travel": 0.20}, "fail"), ({"material.yield_strength": 275}, "fail"),
+])
+def test_a_calibration_beyond_the_rated_deflection_is_seen(changes, severity):
+    found = check_calibration(variant(changes))
+    assert (found == []) is (severity is None)
+    assert not found or found[0].severity == severity
+    for f in found:
+        assert f.value > f.limit and "calibrate it to" in f.message
 
 
 def test_there_is_a_pose_for_every_element():
@@ -225,3 +264,12 @@ def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
         assert (detail == "full") or not list(out.glob("dxf/*"))
     assert masses["full"] == masses["envelope"]
     assert sizes["envelope"] < sizes["full"] / 2
+
+
+def test_an_array_beyond_the_estimator_still_has_a_calibration():
+    """Its strength is flagged as not known; guide and poses say nothing of it."""
+    odd = variant({"element.hinge_length": 3.0, "element.hinge_thickness": 0.02, "stop.gaps": {f"{a}": 0.1 for a in range(4, 9)}})
+    assert all(one.refused for one in calibration_loads(odd))
+    assert check_calibration(odd) == []
+    assert {p.deflection for p in poses(odd, "calibration")} == {0.0}
+    assert "yield" not in make_scene(odd, "calibration").steps[-1].text

@@ -252,7 +252,7 @@ def test_units_stand_in_the_columns_names(tmp_path):
 def test_a_calibration_is_read_back_as_written(tmp_path):
     rows = calibration.calibrate(simulated(Noise(), seed=2), CELL)
     csv, js = tmp_path / "c.csv", tmp_path / "c.json"
-    calibration_text.write(str(csv), calibration_text.to_csv(rows, CELL))
+    csv.write_text(calibration_text.to_csv(rows, CELL))
     js.write_text(calibration_text.to_json(rows, CELL, 0.95))
     for known in (calibration_text.read(str(csv)), calibration_text.read(str(js))):
         assert known.element.tolist() == [4, 8]

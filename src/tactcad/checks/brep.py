@@ -1,10 +1,11 @@
 """Is the kernel's solid a good one: valid, one solid, one closed shell, the description's volume, no slivers, no
-surface through another one."""
+surface through another one; and is it still, written as STEP and read back?"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from dataclasses import replace
+from math import dist, inf
 
 from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
 from OCP.BRep import BRep_Tool
@@ -17,10 +18,13 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 from tactcad.parts.description import Part
 from tactcad.solids.explore import subshapes
 from tactcad.solids.measure import measure
+from tactcad.solids.step import read_step, write_step
 
 from .finding import Finding
 
 VOLUME_AGREES = 1e-6
+# What comes back from a STEP file is what went in, but for the last of its 15 digits: shares of volume and area, and mm.
+STEP_AGREES, STEP_AGREES_MM = 1e-9, 1e-6
 # A tenth of the finest step that any shop here works to (0.01 mm), and its square; smaller is a modelling slip.
 LEAST_EDGE = 1e-3
 LEAST_FACE = 1e-6
@@ -47,6 +51,32 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
     volume = measure(shape)["volume"]
     if abs(volume - part.volume) > VOLUME_AGREES * part.volume:
         fail("volume", volume, part.volume, f"the solid has {volume:.9g} mm3, its description {part.volume:.9g} mm3")
+    return found
+
+
+def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
+    """The same findings on what the part's STEP file holds, and where that is not the shape that was written."""
+    try:
+        return check_step_file(part, shape, write_step(shape))
+    except ValueError as error:
+        return [Finding("step-file", "fail", part.part_no, (), 0, 1, str(error))]
+
+
+def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Finding]:
+    """Findings on a STEP file of the part's shape. Raises ValueError where it cannot be read."""
+    read = read_step(data)
+    found = [replace(f, message=f"read back from STEP: {f.message}") for f in check_brep(part, read)]
+    if any(f.check == "one-solid" for f in found):
+        return found
+    back, meant = measure(read), measure(shape)
+    for name, unit in (("volume", "mm3"), ("area", "mm2")):
+        if abs(back[name] - meant[name]) > STEP_AGREES * meant[name]:
+            message = f"{name} of {back[name]:.9g} {unit} read back from STEP, {meant[name]:.9g} written"
+            found.append(Finding(f"step-{name}", "fail", part.part_no, (), back[name], meant[name], message))
+    for end, corner, wanted in zip(("least", "largest"), back["box"], meant["box"]):
+        if (off := dist(corner, wanted)) > STEP_AGREES_MM:
+            message = f"{end} corner {off:.3g} mm off its place, read back from STEP"
+            found.append(Finding("step-box", "fail", part.part_no, tuple(corner), off, STEP_AGREES_MM, message))
     return found
 
 

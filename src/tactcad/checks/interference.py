@@ -12,19 +12,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
-from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.solids.measure import bounding_box, measure, volume
+from tactcad.solids.near import Faces, boxed, faces_within, nearest
 from tactcad.solids.place import location
 
 from .finding import Finding
 from .sliding import stretch, zones
+from .threads import thread_overlap
 
 # Solids nearer than this touch (mm); overlaps of less volume are the rounding of touching faces (mm3).
 TOUCH_MM = 1e-5
 OVERLAP_MM3 = 1e-6
+# The kernel's volumes agree with closed forms within this share.
+VOLUME_AGREES = 1e-6
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,7 @@ def check_interference(
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
     boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
+    faces: dict[str, Faces] = {}
     changing = {part.part_no: zones(part) for part in scene.parts}
     known = {} if known is None else known
     found = []
@@ -56,7 +60,7 @@ def check_interference(
         first, second = scene.placements[i], scene.placements[j]
         key, anchor = _situation(first, second, local, changing)
         if key not in known:
-            known[key] = meeting(first, second, shapes, anchor)
+            known[key] = meeting((first, second), (boxes[i], boxes[j]), shapes, faces, anchor)
         pair = frozenset((first.designator, second.designator))
         if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
             met.add(pair)
@@ -102,7 +106,7 @@ def _situation(
         slides = changing[slider.part.part_no]
         if slides is None:
             continue
-        low, high = _boxed(local[other.part.part_no], np.reshape(seen[:9], (3, 3)), np.array(seen[9:]))
+        low, high = boxed(local[other.part.part_no], np.reshape(seen[:9], (3, 3)), np.array(seen[9:]))
         stretches = [stretch(slides[k], low[k], high[k]) for k in range(3)]
         if any(s is not None for s in stretches):
             offset = tuple(("along", s) if s is not None else seen[9 + k] for k, s in enumerate(stretches))
@@ -110,49 +114,62 @@ def _situation(
     return (*numbers, relative(first, second)), 0
 
 
-def meeting(first: Placement, second: Placement, shapes: Mapping[str, TopoDS_Shape], anchor: int = 0) -> Meeting:
-    """What the kernel says of two placed parts; the common volume is asked for only where they touch."""
-    a, b = (shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in (first, second))
-    nearest = BRepExtrema_DistShapeShape(a, b)
-    point = nearest.PointOnShape1(1) if nearest.NbSolution() else None
-    place = (point.X(), point.Y(), point.Z()) if point else (0.0, 0.0, 0.0)
-    distance = nearest.Value()
-    if distance > TOUCH_MM:
-        return Meeting(0.0, distance, place, anchor)
-    common = BRepAlgoAPI_Common(a, b).Shape()
+def meeting(
+    pair: tuple[Placement, Placement], boxes: tuple[np.ndarray, np.ndarray], shapes: Mapping[str, TopoDS_Shape],
+    faces: dict[str, Faces], anchor: int = 0,
+) -> Meeting:
+    """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these are
+    measured. One part may hold the other without touching it only where its box holds the other's."""
+    reach = [
+        faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
+    ]
+    distance, place = nearest(*reach)
+    if distance > TOUCH_MM and not (_holds(*boxes) or _holds(*reversed(boxes))):
+        return Meeting(0.0, distance, (0.0, 0.0, 0.0), anchor)
+    common = BRepAlgoAPI_Common(*(shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in pair)).Shape()
     overlap = volume(common)
     if overlap > OVERLAP_MM3:
         place = tuple(measure(common)["centre"])
-    seen_from = (first, second)[anchor]
+    seen_from = pair[anchor]
     there = np.array(seen_from.rotation).T @ (np.array(place) - np.array(seen_from.origin))
     return Meeting(overlap, distance, tuple(map(float, there)), anchor)
+
+
+def _faces(p: Placement, shapes: Mapping[str, TopoDS_Shape], known: dict[str, Faces]) -> Faces:
+    number = p.part.part_no
+    if number not in known:
+        known[number] = Faces(shapes[number])
+    return known[number]
+
+
+def _holds(outer: np.ndarray, inner: np.ndarray) -> bool:
+    return bool(np.all(outer[0] <= inner[0] + TOUCH_MM) and np.all(outer[1] >= inner[1] - TOUCH_MM))
 
 
 def _verdict(first: Placement, second: Placement, m: Meeting, meant: Contact | None) -> list[Finding]:
     kind = meant.kind if meant else ""
     pair = f"{first.designator} ({first.part.part_no}) and {second.designator} ({second.part.part_no})"
-    if m.overlap > OVERLAP_MM3 and kind != "thread":
+    if kind == "thread":
+        most = thread_overlap(first, second)
+        if m.overlap > most * (1 + VOLUME_AGREES) + OVERLAP_MM3:
+            message = f"{pair} overlap by {m.overlap:.4g} mm3, the thread between them explains {most:.4g} mm3"
+            return [_finding("thread", first, second, m, m.overlap, message, most)]
+    elif m.overlap > OVERLAP_MM3:
         declared = f", although only {kind} contact is declared" if kind else ""
         return [_finding("overlap", first, second, m, m.overlap, f"{pair} overlap by {m.overlap:.4g} mm3{declared}")]
-    if m.overlap <= OVERLAP_MM3 and m.distance < TOUCH_MM and not kind:
+    elif m.distance < TOUCH_MM and not kind:
         return [_finding("undeclared-touch", first, second, m, m.distance, f"{pair} touch, which the scene does not declare")]
     return []
 
 
-def _finding(check: str, first: Placement, second: Placement, m: Meeting, value: float, message: str) -> Finding:
+def _finding(
+    check: str, first: Placement, second: Placement, m: Meeting, value: float, message: str, limit: float = 0.0
+) -> Finding:
     seen_from = (first, second)[m.anchor]
     place = np.array(seen_from.rotation) @ np.array(m.place) + np.array(seen_from.origin)
-    return Finding(check, "fail", first.designator, tuple(map(float, place)), value, 0.0, message)
+    return Finding(check, "fail", first.designator, tuple(map(float, place)), value, limit, message)
 
 
 def placed_box(p: Placement, box: list[list[float]]) -> np.ndarray:
     """Box (2, 3) in the scene of a placed part, from its own (least, largest corner)."""
-    return _boxed(box, np.array(p.rotation), np.array(p.origin))
-
-
-def _boxed(box: list[list[float]], rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
-    """Least and largest corner (2, 3) of a box (mm) turned and moved."""
-    (x0, y0, z0), (x1, y1, z1) = box
-    corners = np.array([(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)])
-    there = corners @ rotation.T + origin
-    return np.array([there.min(axis=0), there.max(axis=0)])
+    return boxed(box, np.array(p.rotation), np.array(p.origin))

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import lru_cache
 from itertools import combinations
 from math import dist, hypot, inf
-from pathlib import Path
 from typing import Literal
 
 from tactcad.contour import Arc, Contour
@@ -26,43 +22,22 @@ from tactcad.parts.description import (
 from tactcad.parts.library.screws import METRIC
 
 from .finding import Finding
+from .shop import Machining
 
-DEFAULT = Path(__file__).parent / "data" / "machining.toml"
 MACHINED = ("milled", "turned", "ground")
 SAME = 1e-9
 # Coarse pitches that are no screws of the array (ISO 261), mm.
 PITCH = {name: m.pitch for name, m in METRIC.items()} | {"M6": 1.0}
 
 
-@dataclass(frozen=True)
-class Limits:
-    """cutter_radius, drill, wall, web, break_through, floor, ring in mm; reaches in diameters; run_out in pitches; slenderness length/diameter."""
-
-    cutter_radius: float
-    cutter_reach: float
-    drill: float
-    drill_reach: float
-    thread_reach: float
-    run_out: float
-    wall: float
-    web: float
-    break_through: float
-    floor: float
-    ring: float
-    slenderness: float
+# Walls: flagged where they are thinner than advised, failed where no workshop would leave them.
+WALLS = ("hole-web", "hole-wall", "counterbore")
 
 
-@lru_cache(maxsize=1)
-def limits() -> Limits:
-    """The limits that come with tactcad; where each is from stands in the same file."""
-    return Limits(**tomllib.loads(DEFAULT.read_text(encoding="utf-8"))["limits"])
-
-
-def check_machining(part: Part, limit: Limits | None = None) -> list[Finding]:
+def check_machining(part: Part, limit: Machining) -> list[Finding]:
     """Findings on a part that is milled, turned or ground; nothing for others."""
     if part.process not in MACHINED:
         return []
-    limit = limit or limits()
     rules = (_corners, _narrow_pockets, _pocket_floors, _drills, _threads, _hole_walls, _slender)
     return [
         Finding(check, _severity(check, value, limit), part.part_no, place, value, least, message)
@@ -70,8 +45,8 @@ def check_machining(part: Part, limit: Limits | None = None) -> list[Finding]:
     ]
 
 
-def _severity(check: str, value: float, limit: Limits) -> Literal["fail", "flag"]:
-    return "flag" if check == "hole-web" and value >= limit.break_through - SAME else "fail"
+def _severity(check: str, value: float, limit: Machining) -> Literal["fail", "flag"]:
+    return "flag" if check in WALLS and value >= limit.wall_least - SAME else "fail"
 
 
 Raw = tuple[str, Vector, float, float, str]
@@ -85,7 +60,7 @@ def _pockets(part: Part) -> Iterator[Pocket]:
             yield f
 
 
-def _corners(part: Part, limit: Limits) -> Iterator[Raw]:
+def _corners(part: Part, limit: Machining) -> Iterator[Raw]:
     """Inside corners: no tighter than the cutter that reaches the depth."""
     if isinstance(part.body, Extrusion) and part.process == "milled":
         yield from _tight("outline", part.body.outer, part.body.thickness, limit, inside=False)
@@ -97,7 +72,7 @@ def _corners(part: Part, limit: Limits) -> Iterator[Raw]:
             yield from _tight(f"island in {pocket.name}", island, pocket.depth, limit, inside=False)
 
 
-def _tight(name: str, contour: Contour, depth: float, limit: Limits, inside: bool) -> Iterator[Raw]:
+def _tight(name: str, contour: Contour, depth: float, limit: Machining, inside: bool) -> Iterator[Raw]:
     """Corners of a contour that the cutter meets from its inside (a pocket) or its outside (an outline)."""
     least = max(limit.cutter_radius, depth / limit.cutter_reach / 2)
     contour = contour if contour.ccw else contour.reversed()
@@ -125,7 +100,7 @@ def _direction(s, u: float) -> tuple[float, float]:
     return ((s.end[0] - s.start[0]) / s.length, (s.end[1] - s.start[1]) / s.length)
 
 
-def _narrow_pockets(part: Part, limit: Limits) -> Iterator[Raw]:
+def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Raw]:
     """Grooves around islands: as wide as the cutter that reaches their floor."""
     for pocket in _pockets(part):
         least = max(2 * limit.cutter_radius, pocket.depth / limit.cutter_reach)
@@ -135,7 +110,7 @@ def _narrow_pockets(part: Part, limit: Limits) -> Iterator[Raw]:
                 yield ("mill-groove", pocket.at, wide, least, f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more")
 
 
-def _pocket_floors(part: Part, limit: Limits) -> Iterator[Raw]:
+def _pocket_floors(part: Part, limit: Machining) -> Iterator[Raw]:
     for pocket in _pockets(part):
         left = _material_along(part, pocket.at, pocket.axis) - pocket.depth
         if left < limit.floor - SAME:
@@ -146,7 +121,7 @@ def _holes(part: Part) -> list[Hole]:
     return [f for f in part.features if isinstance(f, Hole)]
 
 
-def _drills(part: Part, limit: Limits) -> Iterator[Raw]:
+def _drills(part: Part, limit: Machining) -> Iterator[Raw]:
     for h in _holes(part):
         if h.diameter < limit.drill - SAME:
             yield ("drill-diameter", h.at, h.diameter, limit.drill, f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}")
@@ -155,10 +130,10 @@ def _drills(part: Part, limit: Limits) -> Iterator[Raw]:
             if deep > limit.drill_reach * diameter + SAME:
                 yield ("drill-depth", h.at, deep, limit.drill_reach * diameter, f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters")
         if h.counterbore and h.counterbore[1] >= h.depth - SAME:
-            yield ("counterbore", h.at, h.counterbore[1], h.depth, f"hole {h.name}: counterbore as deep as the hole")
+            yield ("counterbore", h.at, h.depth - h.counterbore[1], limit.wall, f"hole {h.name}: counterbore as deep as the hole")
         elif h.counterbore and h.through and h.depth - h.counterbore[1] < limit.wall - SAME:
             left = h.depth - h.counterbore[1]
-            yield ("counterbore", h.at, left, limit.wall, f"hole {h.name}: {left:.3g} mm left under the head, at least {limit.wall:g}")
+            yield ("counterbore", h.at, left, limit.wall, f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}")
         if not h.through:
             tip = drill_point_height(h.diameter) if h.drill_point else 0.0
             left = _material_along(part, h.at, h.axis) - h.depth - tip
@@ -166,7 +141,7 @@ def _drills(part: Part, limit: Limits) -> Iterator[Raw]:
                 yield ("drill-floor", h.at, left, limit.floor, f"blind hole {h.name} leaves {left:.3g} mm of material, at least {limit.floor:g}")
 
 
-def _threads(part: Part, limit: Limits) -> Iterator[Raw]:
+def _threads(part: Part, limit: Machining) -> Iterator[Raw]:
     for h in _holes(part):
         if not h.thread:
             continue
@@ -180,15 +155,15 @@ def _threads(part: Part, limit: Limits) -> Iterator[Raw]:
                 yield ("thread-run-out", h.at, room, least, f"thread {h.name} {h.thread}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}")
 
 
-def _hole_walls(part: Part, limit: Limits) -> Iterator[Raw]:
+def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
     """Material between holes, and between a hole and the part's sides."""
     cylinders = [c for h in _holes(part) for c in _cylinders(h)]
     for (h, a, b, r), (k, c, d, q) in combinations(cylinders, 2):
         if h is k:
             continue
         wall = _between(a, b, c, d) - r - q
-        if wall < limit.web - SAME:
-            yield ("hole-web", a, wall, limit.web, f"{wall:.3g} mm between {h.name} and {k.name}; webs under {limit.web:g} bulge, under {limit.break_through:g} holes break into each other")
+        if wall < limit.wall - SAME:
+            yield ("hole-web", a, wall, limit.wall, f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}")
     if not isinstance(part.body, Extrusion):
         return
     t = part.body.thickness
@@ -199,7 +174,7 @@ def _hole_walls(part: Part, limit: Limits) -> Iterator[Raw]:
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
         if wall < limit.wall - SAME:
-            yield ("hole-wall", a, wall, limit.wall, f"{wall:.3g} mm between {h.name} and the part's side, at least {limit.wall:g}")
+            yield ("hole-wall", a, wall, limit.wall, f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}")
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
@@ -252,7 +227,7 @@ def _material_along(part: Part, at: Vector, axis: Vector) -> float:
     return min(((high[i] if axis[i] > 0 else low[i]) - at[i]) / axis[i] for i in range(3) if abs(axis[i]) > 0.5)
 
 
-def _slender(part: Part, limit: Limits) -> Iterator[Raw]:
+def _slender(part: Part, limit: Machining) -> Iterator[Raw]:
     if part.process != "turned":
         return
     if isinstance(part.body, Extrusion):

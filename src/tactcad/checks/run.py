@@ -14,7 +14,8 @@ from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
-from .brep import check_brep
+from .brep import check_brep, check_step
+from .calibration import check_calibration
 from .clearance import check_clearance
 from .finding import Finding
 from .interference import check_interference
@@ -22,7 +23,6 @@ from .machining import MACHINED, check_machining
 from .mesh import check_mesh
 from .motion import check_motions
 from .moving_weight import check_moving_weight
-from .overload import check_stops
 from .report import Report
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
@@ -42,6 +42,8 @@ def run_checks(
     report = Report(design.name, design.design.revision)
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
+    if "calibration" in scene_names:
+        report.run("calibration travel", check_calibration, design)
     scenes = [make_scene(design, name) for name in scene_names]
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
@@ -52,12 +54,12 @@ def run_checks(
         if part.part_no not in shapes:
             continue
         report.run("brep", check_brep, part, shapes[part.part_no])
+        report.run("step", check_step, part, shapes[part.part_no])
         report.run("mesh", check_mesh, part, shapes[part.part_no])
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:
-            report.run("machining", check_machining, part)
-    report.run("overload stop", check_stops, design)
+            report.run("machining", check_machining, part, shop.machining)
     report.run("scenes left out", _left_out, design)
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):

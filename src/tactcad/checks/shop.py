@@ -1,22 +1,24 @@
-"""The limits of a wire-EDM shop, read from a file that the shop can write."""
+"""The limits of a workshop, wire cutting and machining, read from a file that the shop can write."""
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from tactcad.design.messages import InputError
+from tactcad.design.files import read_text
+from tactcad.design.messages import InputError, one_of
+from tactcad.design.toml_text import parse_toml
 
+MOST_BYTES = 100_000  # a page of limits and their sources
 DEFAULT = Path(__file__).parent / "data" / "shop.toml"
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Limits in mm, all positive.
+    """Limits of wire cutting in mm, all positive.
 
     wire_diameter            of the wire that is used
     spark_gap                between wire and cut face, per side
@@ -46,48 +48,103 @@ class Limits:
 
 
 @dataclass(frozen=True)
+class Machining:
+    """Limits of mills, drills, taps and a lathe; mm where nothing else is said, all positive.
+
+    cutter_radius      smallest radius that a cutter leaves
+    cutter_reach       depth that it reaches, in diameters
+    drill              smallest drilled hole
+    drill_reach        depth of a hole, in diameters
+    thread_reach       length of full thread, in diameters
+    run_out            between full thread and drilled depth, in pitches
+    wall, wall_least   thinner walls and webs between holes are flagged, and fail
+    floor              thinnest floor of a pocket or a blind hole
+    ring               thinnest wall of a turned ring
+    slenderness        largest length of a turned part, in diameters
+    """
+
+    cutter_radius: float
+    cutter_reach: float
+    drill: float
+    drill_reach: float
+    thread_reach: float
+    run_out: float
+    wall: float
+    wall_least: float
+    floor: float
+    ring: float
+    slenderness: float
+
+
+@dataclass(frozen=True)
 class Shop:
     """A shop's limits, and where each is from (by field name)."""
 
     name: str
     limits: Limits
     source: Mapping[str, str]
+    machining: Machining
+    machining_source: Mapping[str, str]
 
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
-    """Read a shop file. Raises InputError where it cannot be read or a field is missing, unknown or not legal."""
+    """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them, [machining] and
+    [machining_source]: all of them, or those in which it differs from what comes with tactcad.
+
+    Raises InputError where it cannot be read or a field is missing, unknown or not legal.
+    """
     where = str(path)
-    try:
-        table = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(where, f"cannot be read: {error.strerror}", legal="a TOML file") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(where, f"is not TOML: {error}") from error
-    _names(where, "", table, {"name", "limits", "source"})
+    table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)
+    _names(where, "", table, {"name", "limits", "source"}, {"machining", "machining_source"})
     if not isinstance(table["name"], str):
         raise InputError(f"{where}: name", "is no text", value=table["name"])
-    known = {f.name for f in fields(Limits)}
-    for section in ("limits", "source"):
-        if not isinstance(table[section], dict):
-            raise InputError(f"{where}: {section}", "is no table", value=table[section])
-        _names(where, f"{section}.", table[section], known)
-    limits = Limits(**{name: _length(f"{where}: limits.{name}", v) for name, v in table["limits"].items()})
-    for name, text in table["source"].items():
+    limits, source = _section(where, table, Limits, "limits", "source")
+    usual = None if path == DEFAULT else load_shop()
+    if {"machining", "machining_source"} & set(table) or usual is None:
+        machining, machining_source = _section(where, table, Machining, "machining", "machining_source", usual)
+    else:
+        machining, machining_source = usual.machining, usual.machining_source
+    return Shop(table["name"], limits, source, machining, machining_source)
+
+
+def _section(
+    where: str, table: Mapping[str, Any], kind: type, name: str, source_name: str, usual: Shop | None = None
+) -> tuple[Any, Mapping[str, str]]:
+    """Limits and their sources from two tables of the same fields; those left out from `usual`, where it is given."""
+    known = {f.name for f in fields(kind)}
+    given = []
+    for section in (name, source_name):
+        values = table.get(section, {})
+        if not isinstance(values, dict):
+            raise InputError(f"{where}: {section}", "is no table", value=values)
+        _names(where, f"{section}.", values, set() if usual else known, known)
+        given.append(values)
+    values, source = given
+    for one in values:
+        if one not in source:
+            raise InputError(f"{where}: {source_name}.{one}", "missing field", legal="where the limit is from")
+    values = {one: _size(f"{where}: {name}.{one}", v) for one, v in values.items()}
+    for one, text in source.items():
         if not isinstance(text, str) or not text.strip():
-            raise InputError(f"{where}: source.{name}", "is no text", value=text, legal="where the limit is from")
-    return Shop(table["name"], limits, table["source"])
+            raise InputError(f"{where}: {source_name}.{one}", "is no text", value=text, legal="where the limit is from")
+    if usual:
+        values = {**vars(getattr(usual, name)), **values}
+        source = {**getattr(usual, source_name), **source}
+    return kind(**values), source
 
 
-def _names(where: str, path: str, table: Mapping[str, Any], known: set[str]) -> None:
-    for name in [*table, *known]:
+def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], known: set[str]) -> None:
+    known = known | needed
+    for name in table:
         if name not in known:
-            raise InputError(f"{where}: {path}{name}", "unknown field", legal=", ".join(sorted(known)))
+            raise InputError(f"{where}: {path}{name}", "unknown field", legal=one_of(name, sorted(known)))
+    for name in sorted(needed):
         if name not in table:
             raise InputError(f"{where}: {path}{name}", "missing field")
 
 
-def _length(where: str, value: object) -> float:
+def _size(where: str, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (number and isfinite(value) and 0 < value <= 100):
-        raise InputError(where, "is no length", value=value, legal="mm, more than 0, at most 100")
+        raise InputError(where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100")
     return float(value)

@@ -15,7 +15,7 @@ EXAMPLES = """\
 What is compared is measured in turns, in one run. CalculiX and FreeCAD are measured beside it where they are
 installed, and reported as missing where not. The folder is replaced in one step by a finished one."""
 
-ENDINGS = ("x.json", "x.md", "x.txt", "x.csv", "x.svg")
+ENDINGS = {".json", ".md", ".txt", ".csv", ".svg"}
 SHORT_SEED = 8  # any; a full run draws its own unless it is given one
 
 
@@ -35,6 +35,7 @@ def run(args: argparse.Namespace) -> int:
 
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before numpy: one thread, as every child
         os.environ[variable] = "1"
+    from tactcad.design.files import absolute
     from tactcad.studies import folder
     from tactcad.studies.bench import render, truth
     from tactcad.studies.bench.plan import Plan
@@ -45,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
     names = _names(args.only)
     if args.out:  # before minutes are spent
-        folder.require_ours(Path(os.path.abspath(args.out)), ENDINGS, SCHEMA)
+        folder.refuse_foreign(absolute(args.out), ENDINGS, SCHEMA)
     say = progress(sys.stderr)
     with tempfile.TemporaryDirectory(prefix="tactcad-bench-") as scratch:
         mode = "full" if args.full else "smoke" if args.smoke else "short"

@@ -34,6 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.design.files import write_whole
     from tactcad.studies import calibration, calibration_text, published, readings
 
     load_cell = published.load().figure["load_cell_stiffness"] if args.load_cell is None else args.load_cell
@@ -41,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
         readings.calibration(args.file), load_cell, level=args.level, drop_outliers=args.drop_outliers
     )
     if args.out:
-        calibration_text.write(args.out, calibration_text.to_csv(rows, load_cell))
+        write_whole(args.out, calibration_text.to_csv(rows, load_cell).encode())
     sys.stdout.write(
         calibration_text.to_json(rows, load_cell, args.level)
         if args.json

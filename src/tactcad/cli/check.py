@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
   tactcad check soft-tissue --json        findings, runs and times as JSON
-  tactcad check --shop my-shop.toml       with your own shop's limits for wire cutting
+  tactcad check --shop my-shop.toml       with your own shop's limits
   tactcad check macro-array soft-tissue --report exports/check
                                           both designs; check.json and junit.xml in that folder
 
@@ -90,14 +90,11 @@ def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> 
 
 
 def _write(folder: Path, files: dict[str, bytes]) -> None:
-    from tactcad.design.messages import InputError
+    from tactcad.design.files import make_folder, write_whole
 
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, data in files.items():
-            (folder / name).write_bytes(data)
-    except OSError as error:
-        raise InputError(str(folder), f"cannot be written: {error.strerror}") from None
+    make_folder(folder)
+    for name, data in files.items():
+        write_whole(folder / name, data)
 
 
 def _print(report: Report) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
-from pathlib import Path
 
 EXAMPLES = """\
   tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
@@ -24,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.messages import InputError
+    from tactcad.design.files import write_whole
     from tactcad.export.sides import compare_sides, not_compared, read_side
 
     old, new = read_side(args.old), read_side(args.new)
@@ -33,10 +32,7 @@ def run(args: argparse.Namespace) -> int:
     if args.html:
         from tactcad.export.difference_page import page
 
-        try:
-            Path(args.html).write_bytes(page(old, new, changes))
-        except OSError as error:
-            raise InputError(args.html, f"cannot be written: {error.strerror}") from None
+        write_whole(args.html, page(old, new, changes))
     if args.json:
         sides = {
             name: {"source": side.source, "kind": side.kind, "design": side.design, "revision": side.revision}

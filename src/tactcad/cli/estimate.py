@@ -15,6 +15,8 @@ EXAMPLES = """\
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
+  tactcad estimate --inspection inspection.csv
+                                      the elements as made, from the inspection sheet that the shop filled in
 """
 
 COLUMNS = (  # heading, unit, field, format
@@ -32,6 +34,7 @@ COLUMNS = (  # heading, unit, field, format
     ("yield at", "N", "yield_force", ".3g"),
     ("and", "um", "yield_deflection_um", ".4g"),
     ("rated", "N", "rated_force", ".3g"),
+    ("at most", "um", "rated_deflection_um", ".4g"),
 )
 
 
@@ -52,6 +55,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--batch", metavar="IN.csv", help="a table of designs, one a line (see docs/mechanics.md)"
     )
     parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
+    parser.add_argument(
+        "--inspection", metavar="FILE", help="the design's inspection sheet, filled in: its elements as made, beside the nominal"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -59,6 +65,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--force", "not a force", value=args.force, legal="a positive number of newtons")
     if args.batch is not None:
         return _batch(args)
+    if args.inspection is not None:
+        return _as_made(args)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
     from tactcad.parts.designs import load
@@ -79,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
 def _batch(args: argparse.Namespace) -> int:
     from tactcad.studies.batch import estimate_file
 
-    for name, given in (("DESIGN", args.design), ("--force", args.force)):
+    for name, given in (("DESIGN", args.design), ("--force", args.force), ("--inspection", args.inspection)):
         if given is not None:
             raise InputError("--batch", f"takes its designs from the table; leave out {name}", value=given)
     if args.json:
@@ -88,6 +96,27 @@ def _batch(args: argparse.Namespace) -> int:
         raise InputError("--batch", "needs --out OUT.csv")
     valid, count = estimate_file(args.batch, args.out, args.model)
     print(f"{args.out}: {count} designs, {count - valid} out of range")
+    return 0
+
+
+def _as_made(args: argparse.Namespace) -> int:
+    from tactcad.parts.designs import load
+    from tactcad.parts.layout import Layout
+    from tactcad.studies import as_made_text
+    from tactcad.studies.as_made import as_made
+    from tactcad.studies.inspection_sheet import read_sheet
+
+    if args.out is not None:
+        raise InputError("--out", "goes with --batch only", value=args.out)
+    if args.model in FINITE_ELEMENTS:
+        closed = ", ".join(rung for rung in RUNGS if rung not in FINITE_ELEMENTS)
+        raise InputError("--model", "--inspection takes closed forms only", value=args.model, legal=closed)
+    layout = Layout(load(args.design or "macro-array"))
+    rows = as_made(layout, read_sheet(args.inspection, layout), args.model, args.force)
+    if args.json:
+        print(json.dumps(as_made_text.document(layout.design, args.model, rows), indent=2))
+    else:
+        print(as_made_text.report(layout.design, args.model, rows))
     return 0
 
 
@@ -133,6 +162,7 @@ def _shown(row: dict) -> dict:
         "gauge_microstrain": ("gauge_strain", 1e6),
         "peak_microstrain": ("peak_strain", 1e6),
         "yield_deflection_um": ("yield_deflection", 1e3),
+        "rated_deflection_um": ("rated_deflection", 1e3),
     }
     return row | {name: None if row[of] is None else row[of] * by for name, (of, by) in scaled.items()}
 

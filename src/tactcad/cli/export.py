@@ -14,6 +14,7 @@ EXAMPLES = """\
   tactcad export --scene calibration --pose element=4 --out element-4
                                               a rig in a chosen configuration
   tactcad export --guide                      with the assembly guides, to open in a browser
+  tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing."""
 
@@ -37,6 +38,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="envelope: parts without holes and pockets, for layout; no cut files (default full)",
     )
     parser.add_argument("--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures")
+    parser.add_argument(
+        "--drawings", action="store_true", help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made"
+    )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
@@ -52,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
-    done = export(design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail)
+    done = export(design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     for line in left_out(design) if done.reasons and not args.scene else ():
         say.line(line)
     if args.json:

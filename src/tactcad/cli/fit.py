@@ -56,6 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.design.files import make_folder, write_whole
     from tactcad.studies import fit_samples
     from tactcad.studies.fit import fit
 
@@ -68,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
                 legal=f"at least {least}",
             )
     out = Path(args.out)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     if args.shipped_samples:
         tables = fit_samples.shipped()
     elif args.reuse:
@@ -79,7 +80,7 @@ def run(args: argparse.Namespace) -> int:
     else:
         tables = _sample(args, out)
     result = fit(tables["fitted"], tables["held out"], _today())
-    (out / "ladder.json").write_text(json.dumps(result, indent=1) + "\n", "utf-8")
+    write_whole(out / "ladder.json", (json.dumps(result, indent=1) + "\n").encode())
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
         rungs = ("plane, against plane elements", "solid, against solid elements")
         worst = {name: errors[name]["max"] for name in rungs}

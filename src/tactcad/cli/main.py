@@ -8,15 +8,21 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import os
 import sys
+from contextlib import suppress
 
 from tactcad import __version__
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.files import NO_ROOM
+from tactcad.design.messages import CheckFailure, InputError, one_of
+
+from .parser import Parser
 
 COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
+    "release": "run every check, and write one zip that a shop can quote from",
     "golden": "run every check, show what changed, and write a design's golden geometry",
     "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
@@ -30,31 +36,61 @@ COMMANDS = {
 }
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
+INTERRUPTED = 130  # what shells give: 128 + SIGINT
 
 
 def main(argv: list[str] | None = None) -> int:
     """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input."""
     argv = sys.argv[1:] if argv is None else argv
+    _mend_streams()
     try:
-        return _dispatch(argv)
+        status = _dispatch(argv)
+        sys.stdout.flush()
+        return status
     except InputError as error:
-        print(f"tactcad: {error}", file=sys.stderr)
-        return BAD_INPUT
+        return _refused(error, BAD_INPUT)
     except CheckFailure as error:
-        print(f"tactcad: {error}", file=sys.stderr)
-        return FAILED
+        return _refused(error, FAILED)
     except BrokenPipeError:  # the reader of our output went away, as in `tactcad schema | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return DONE
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        _drop_output()
+        return _refused(f"the output cannot be written: {error.strerror}", FAILED)
     except KeyboardInterrupt:
-        print("tactcad: interrupted; nothing was changed", file=sys.stderr)
-        return 130
+        return _refused("interrupted; nothing was changed", INTERRUPTED)
+
+
+def _refused(why: object, status: int) -> int:
+    with suppress(OSError):  # the status tells it, even where nobody can be told in words
+        print(f"tactcad: {why}", file=sys.stderr)
+    return status
+
+
+def _mend_streams() -> None:
+    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its number."""
+    if None in (sys.stdin, sys.stdout, sys.stderr):
+        while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+            os.set_inheritable(handle, True)
+        os.close(handle)
+        sys.stdout = sys.stdout or open(1, "w", closefd=False)
+        sys.stderr = sys.stderr or open(2, "w", closefd=False)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """What is still to be written goes nowhere, or Python would complain at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         module = importlib.import_module(f"tactcad.cli.{argv[0]}")
-        parser = argparse.ArgumentParser(
+        parser = Parser(
             prog=f"tactcad {argv[0]}",
             description=COMMANDS[argv[0]],
             epilog=f"examples:\n{module.EXAMPLES}",
@@ -62,7 +98,7 @@ def _dispatch(argv: list[str]) -> int:
         )
         module.configure(parser)
         return module.run(parser.parse_args(argv[1:]))
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",
         epilog="commands:\n"
@@ -72,5 +108,7 @@ def _dispatch(argv: list[str]) -> int:
     )
     parser.add_argument("--version", action="version", version=f"tactcad {__version__}")
     parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
+    if not argv:
+        parser.error(str(InputError("COMMAND", "missing", legal=one_of("", COMMANDS))))
     parser.parse_args(argv[:1])
     return BAD_INPUT

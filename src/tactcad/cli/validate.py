@@ -33,6 +33,8 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.parts.designs import load
     from tactcad.studies import array, folder, published, report, validation
 
+    if args.out:
+        folder.refuse_foreign(Path(args.out), {".html", ".json", ".svg"}, report.SCHEMA)  # before the work
     data = published.load(args.table1, args.table2)
     made = validation.validate(data, array.from_design(load(args.design)))
     as_json = report.to_json(made)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from .messages import InputError
+from .messages import InputError, in_brackets, near
 
 REQUIRED = object()
 
@@ -55,7 +55,7 @@ class Choice:
 
     def read(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise InputError(where, "unknown choice", value=value, legal=self.legal)
+            raise InputError(where, "unknown choice", value=value, legal=self.legal + in_brackets(near(str(value), self.options)))
         return value
 
     def schema(self) -> dict:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-import difflib
 import math
 import re
-import tomllib
 import typing
 from pathlib import Path
 from typing import Any
 
 from .fields import Number
+from .files import read_text
 from .materials import ALLOYS
-from .messages import InputError
+from .messages import InputError, near, one_of
+from .toml_text import parse_toml
 from .tree import Design, Element, Hinge, Stop
 
 # A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
@@ -29,7 +29,7 @@ def read(source: str | Path) -> Design:
     Raises InputError where the file is missing or not a design, or a value is not legal.
     """
     path = find(source)
-    return parse(_text(path), str(path))
+    return parse(read_text(path, MOST_BYTES, "a design file (TOML)"), str(path))
 
 
 def find(source: str | Path) -> Path:
@@ -37,13 +37,13 @@ def find(source: str | Path) -> Path:
     text = str(source)
     if isinstance(source, Path) or "/" in text or text.endswith(".toml"):
         return Path(text)
-    for folder in _hardware_folders():
-        if (folder / f"{text}.toml").is_file():
-            return folder / f"{text}.toml"
     known = names()
+    for folder in _hardware_folders() if text in known else ():
+        if (folder / f"{text}.toml").exists():
+            return folder / f"{text}.toml"
     raise InputError(
         "DESIGN", "no design of that name in hardware/", value=text,
-        legal=f"a path ending in .toml, or one of {', '.join(known)}" if known else "a path ending in .toml",
+        legal=f"a path ending in .toml, or {one_of(text, known)}" if known else "a path ending in .toml",
     )
 
 
@@ -60,38 +60,9 @@ def _hardware_folders() -> list[Path]:
     return [here]
 
 
-def _text(path: Path) -> str:
-    try:
-        if not path.is_file():
-            problem = "not a file" if path.exists() else "no such file"
-            raise InputError(str(path), problem, legal="a design file (TOML)")
-        with path.open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
-    except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
-        reason = getattr(error, "strerror", None) or error
-        raise InputError(str(path), f"cannot be read: {reason}") from None
-    if len(data) > MOST_BYTES:
-        raise InputError(str(path), "larger than a design can be", legal=f"at most {MOST_BYTES} bytes")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise InputError(f"{path}:{line}", "not UTF-8 text", value=data[error.start : error.end]) from None
-
-
 def parse(text: str, where: str) -> Design:
     """Read a design from TOML text; `where` names it in messages. Rules between fields are not tried."""
-    try:
-        table = tomllib.loads(text.replace("\r\n", "\n"))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(where, f"not TOML: {error}") from None
-    except RecursionError:
-        raise InputError(where, "nested too deeply for a design file", legal="tables at most 3 deep") from None
-    except ValueError as error:  # an impossible date, or an integer of thousands of digits
-        raise InputError(where, f"not TOML: {error}") from None
-    return from_table(table)
+    return from_table(parse_toml(text, where))
 
 
 def from_table(table: dict[str, Any]) -> Design:
@@ -227,6 +198,4 @@ def paths(design: Design) -> dict[str, Any]:
 
 
 def _unknown(path: str, known: list[str]) -> InputError:
-    near = difflib.get_close_matches(path[:200], known, n=1)
-    hint = f"did you mean {near[0]}?" if near else "see `tactcad schema`"
-    return InputError(path, "unknown field", legal=hint)
+    return InputError(path, "unknown field", legal=near(path, known) or "see `tactcad schema`")

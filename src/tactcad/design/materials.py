@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .messages import InputError
+from .messages import InputError, one_of
 
 
 @dataclass(frozen=True)
@@ -44,5 +44,5 @@ ALLOYS = {
 def alloy(name: str) -> Alloy:
     """The alloy of that name; raises InputError naming the legal ones."""
     if name not in ALLOYS:
-        raise InputError("material.alloy", "unknown alloy", value=name, legal=", ".join(ALLOYS))
+        raise InputError("material.alloy", "unknown alloy", value=name, legal=one_of(name, ALLOYS))
     return ALLOYS[name]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
@@ -21,6 +23,24 @@ class InputError(ValueError):
         if legal:
             parts.append(f"legal: {legal}")
         super().__init__("; ".join(parts))
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """"did you mean X?" for the known word that `word` looks like; "" where none does."""
+    import difflib  # most commands never mistype
+
+    found = difflib.get_close_matches(word[:200], list(known), n=1)
+    return f"did you mean {found[0]}?" if found else ""
+
+
+def one_of(word: object, known: Iterable[str]) -> str:
+    """What is legal in place of a mistyped word: the whole list, and the word that was meant."""
+    known = list(known)
+    return "one of " + ", ".join(known) + in_brackets(near(str(word), known))
+
+
+def in_brackets(hint: str) -> str:
+    return f" ({hint})" if hint else ""
 
 
 class CheckFailure(RuntimeError):

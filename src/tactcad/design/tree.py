@@ -26,8 +26,8 @@ class Identity:
 
     name: str = given(
         Text(
-            r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
-            "1 to 40 of a-z, 0-9 and '-', not first or last '-'",
+            r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])$)[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
+            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...)",
             "short name: folder, part numbers and file names start with it",
         )
     )
@@ -128,7 +128,7 @@ class Holes:
 
     height: float = given(Number("mm", 0.1, 100, "hole centres over the flat face"), 4.7)
     screw_offsets: tuple[float, ...] = given(
-        Numbers(Number("mm", 0.1, 200, "x"), 1, 8, "clamping screws behind the clamp edge"), (4.1, 14.1)
+        Numbers(Number("mm", 0.1, 200, "x"), 1, 8, "clamping screws behind the clamp edge"), (3.7, 14.5)
     )
     dowel_offsets: tuple[float, ...] = given(
         Numbers(Number("mm", 0.1, 200, "x"), 1, 4, "dowels behind the clamp edge"), (9.1,)
@@ -305,15 +305,12 @@ class Stop:
     """[stop]: the overload stop: a land at each tip under the stop plate."""
 
     land_length: float = given(Number("mm", 0.05, 20, "stop land along the arm, from the tip"), 1.0)
-    yield_fraction: float = given(
-        Number("", 0.1, 0.95, "gap as a fraction of the nominal deflection at yield"), 0.70
-    )
-    tolerance: float = given(Number("mm", 0.001, 0.1, "tolerance of the gap, plus and minus"), 0.015)
+    tolerance: float = given(Number("mm", 0.001, 0.1, "tolerance of the gap, plus and minus"), 0.010)
     gaps: dict[float, float] | None = field(
         default=None,
         metadata={
             "spec": Number("mm", 0.001, 5, "gap by arm length, a table: \"4\" = 0.13"),
-            "derived": "from the estimator: yield_fraction of the deflection at yield, by 0.01 mm",
+            "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, by 0.005 mm",
         },
     )
 
@@ -323,7 +320,10 @@ class Rating:
     """[rating]: loads that the design is rated for."""
 
     force: float = given(Number("N", 1e-6, 1e4, "force asked of each element at its pad"), 2.0)
-    yield_factor: float = given(Number("", 1, 10, "safety factor against yield"), 1.5)
+    yield_factor: float = given(Number("", 1, 10, "safety against yield of the rated force, in use"), 1.5)
+    deflection_factor: float = given(
+        Number("", 1, 10, "safety against yield of the rated deflection, which neither overload nor calibration passes"), 1.2
+    )
     overload_force: float = given(
         Number("N", 1e-6, 1e5, "whole moving weight on one element: the stop must carry it"), 13.04
     )

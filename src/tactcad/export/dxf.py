@@ -1,4 +1,4 @@
-"""The cut file of a wire-cut part, written from its contours and read back.
+"""The cut file of a part that is cut from sheet or plate, written from its contours and read back.
 
 AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities
 follow each contour head to tail; openings come before the outline, as they are cut, since the part drops
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.parts.description import Part
-from tactcad.parts.section import section
+from tactcad.parts.section import cut_section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -56,7 +56,7 @@ class CutFile:
 
 
 def dxf_bytes(part: Part) -> bytes:
-    """The cut file of a wire-cut part; the same bytes in every process, time zone and home."""
+    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and home."""
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing
@@ -66,10 +66,10 @@ def dxf_bytes(part: Part) -> bytes:
         drawing.header["$INSUNITS"] = MILLIMETRES
         drawing.header["$MEASUREMENT"] = METRIC
         drawing.layers.add(LAYER, color=7)
-        outer, openings = section(part)
-        for contour in (*openings, outer):
+        cut = cut_section(part)
+        for contour in (*cut.openings, cut.outer):
             _add(drawing, contour)
-        _set_extents(drawing, outer.box)
+        _set_extents(drawing, cut.outer.box)
         text = io.StringIO(newline="\n")
         drawing.write(text)
     finally:
@@ -104,8 +104,8 @@ def _set_extents(drawing: Drawing, box: tuple[float, float, float, float]) -> No
     drawing.header["$EXTMIN"], drawing.header["$EXTMAX"] = lower, upper
 
 
-def read_dxf(path: str | Path) -> CutFile:
-    """Read a cut file whose entities follow its contours head to tail.
+def read_dxf(file: str | Path | bytes) -> CutFile:
+    """Read a cut file, by its path or as its bytes, whose entities follow its contours head to tail.
 
     Raises ValueError where the file is no DXF, where there is anything but LINE, ARC and CIRCLE, where a
     chain is open, or where entities do not follow each other.
@@ -113,8 +113,9 @@ def read_dxf(path: str | Path) -> CutFile:
     import ezdxf
 
     try:
-        drawing = ezdxf.readfile(path)
-    except (ezdxf.DXFError, OSError) as error:
+        as_text = io.StringIO(file.decode("cp1252")) if isinstance(file, bytes) else None
+        drawing = ezdxf.read(as_text) if as_text else ezdxf.readfile(file)
+    except (ezdxf.DXFError, OSError, UnicodeDecodeError) as error:
         raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
@@ -208,10 +209,10 @@ def _snapped(chain: list[Segment]) -> Contour:
     )
 
 
-def check_dxf(path: str | Path, part: Part) -> list[str]:
-    """What is wrong with a written cut file against the part that it was made from; empty where nothing is."""
+def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
+    """What is wrong with a written cut file (path or bytes) against its part; empty where nothing is."""
     try:
-        file = read_dxf(path)
+        file = read_dxf(written)
     except ValueError as error:
         return [str(error)]
     wrong = []
@@ -226,7 +227,8 @@ def check_dxf(path: str | Path, part: Part) -> list[str]:
     if file.gap > ARC_END_MM:
         wrong.append(f"neighbours are {file.gap:.3g} mm apart")
     wrong += _short_or_double(file)
-    return wrong + _differences(file, *section(part))
+    cut = cut_section(part)
+    return wrong + _differences(file, cut.outer, cut.openings)
 
 
 def _short_or_double(file: CutFile) -> list[str]:

@@ -44,7 +44,7 @@ def geometry(design: Design) -> Record:
 
 def part_record(part: Part, qty: int) -> Record:
     """One part in its own frame: what a manifest says of it, its holes, pockets and contours."""
-    file = isinstance(part.body, ModelFile)
+    file, cut = isinstance(part.body, ModelFile), cut_section(part)
     record = {
         "name": part.name,
         "process": part.process,
@@ -54,7 +54,7 @@ def part_record(part: Part, qty: int) -> Record:
         "mass_g": part.mass,
         "centre_mm": None if file else part.centre,
         "box_mm": None if file else part_box(part),
-        "cut_length_mm": cut_section(part).cut_length if part.process == "wire-cut" else None,
+        "cut_length_mm": cut.cut_length if cut else None,
         "holes": _numbered([_hole(f) for f in part.features if isinstance(f, Hole)] + _round_openings(part)),
         "pockets": _numbered([
             {"name": f.name, "at_mm": f.at, "axis": f.axis, "area_mm2": f.volume / f.depth, "depth_mm": f.depth}

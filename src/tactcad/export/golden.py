@@ -7,18 +7,18 @@ stands elsewhere has none.
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from tactcad.checks.finding import Finding
+from tactcad.design.files import make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 
 from .difference import Change, differences
-from .geometry import Record, contour_of, geometry
+from .geometry import Record, geometry
+from .golden_schema import faults
 
 SCHEMA = "tactcad-golden-1"
 MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
@@ -51,21 +51,11 @@ def _lines(value: Any, indent: str) -> str:
 
 
 def read_golden(path: Path) -> Record:
-    """The record of a golden file. Raises ValueError where it is absent, damaged or of another schema."""
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise ValueError("it is larger than a golden file can be")
-        record = json.loads(path.read_bytes())
-        if not isinstance(record, dict) or record.get("schema") != SCHEMA:
-            raise ValueError(f"its schema is not {SCHEMA}")
-        missing = [k for k in ("design", "revision", "parts", "scenes", "elements") if k not in record]
-        if missing:
-            raise ValueError(f"it has no {', '.join(missing)}")
-        for part in record["parts"].values():
-            for rows in part["contours"]:
-                contour_of(rows)
-    except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        raise ValueError(f"{path} cannot be used: {error}") from None
+    """The record of a golden file. Raises InputError where it is absent, damaged or of another schema."""
+    record = read_json(path, MOST_BYTES, "a golden file")
+    wrong = faults(record, SCHEMA)
+    if wrong:
+        raise InputError(str(path), f"not a golden file: {wrong}", legal="what `make golden` writes")
     return record
 
 
@@ -80,7 +70,7 @@ def check_golden(design: Design, path: Path) -> list[Finding]:
     try:
         old = read_golden(path)
     except ValueError as error:
-        return [_finding("fail", design, str(error))]
+        return [_finding("fail", design, f"the golden file cannot be used: {error}")]
     return judge(old, golden_record(design))
 
 
@@ -153,18 +143,5 @@ def accept(design: Design, path: Path, failures: Sequence[Finding]) -> None:
             f"give the design a new revision letter; {left}"
         )
     if changes != []:
-        _replace(path, golden_bytes(golden_record(design)))
-
-
-def _replace(path: Path, data: bytes) -> None:
-    """All or nothing: written beside the file, then moved over it."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, prefix=f".{path.name}.", delete=False) as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.chmod(stream.name, 0o644)
-        os.replace(stream.name, path)
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written: {error.strerror}") from None
+        make_folder(path.parent)
+        write_whole(path, golden_bytes(golden_record(design)))

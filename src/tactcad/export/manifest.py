@@ -9,8 +9,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from tactcad.design.files import read_bytes, read_json
+from tactcad.design.messages import InputError
+
 NAME = "manifest.json"
 SCHEMA = "tactcad-manifest-1"
+MOST_BYTES = 1_000_000_000  # no file of an export comes near; a pipe or device named in a manifest is not read
 KINDS = ("step-part", "step-assembly", "dxf", "bom", "picture", "drawing", "inspection", "report")
 
 
@@ -28,7 +32,7 @@ class FileRecord:
 @dataclass(frozen=True)
 class PartRecord:
     """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and
-    `section_area_mm2` are the cut file's; None where nothing is wire-cut.
+    `section_area_mm2` are the cut file's; None where there is none.
 
     `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the most that one of the scenes places: an array
     moves from rig to rig; each scene's own count stands in its bill of materials.
@@ -71,14 +75,34 @@ def manifest_bytes(manifest: Manifest) -> bytes:
 def read_manifest(folder: Path) -> Manifest:
     """The manifest of an export's folder. Raises ValueError where it is absent, damaged, or of another schema."""
     try:
-        record = json.loads((folder / NAME).read_bytes())
+        record = read_json(folder / NAME, MOST_BYTES, "a manifest")
         if record.pop("schema") != SCHEMA:
             raise ValueError(f"its schema is not {SCHEMA}")
         files = tuple(FileRecord(**row) for row in record.pop("files"))
         parts = tuple(_part(row) for row in record.pop("parts"))
-        return Manifest(files=files, parts=parts, **record)
-    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+        manifest = Manifest(files=files, parts=parts, **record)
+        _require_kinds(manifest)
+        return manifest
+    except InputError as error:
+        raise ValueError(str(error)) from None
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise ValueError(f"{folder / NAME} cannot be used: {error}") from error
+
+
+def _require_kinds(manifest: Manifest) -> None:
+    """Raise ValueError where text is no text or a number no number."""
+    texts = [manifest.design, manifest.revision, *(value for file in manifest.files for value in vars(file).values())]
+    numbers: list[Any] = []
+    for part in manifest.parts:
+        texts += [part.part_no, part.name, part.process]
+        (x0, y0, z0), (x1, y1, z1) = part.box_mm
+        (x, y, z) = part.centre_mm
+        numbers += [part.qty, part.volume_mm3, part.area_mm2, part.mass_g, x, y, z, x0, y0, z0, x1, y1, z1]
+        numbers += [v for v in (part.cut_length_mm, part.section_area_mm2) if v is not None]
+    if not all(isinstance(text, str) for text in texts):
+        raise ValueError("a name is no text")
+    if not all(isinstance(n, int | float) and not isinstance(n, bool) for n in numbers):
+        raise ValueError("a figure of a part is no number")
 
 
 def _part(row: dict[str, Any]) -> PartRecord:
@@ -113,9 +137,9 @@ def _file_faults(folder: Path, file: FileRecord, parts: set[str]) -> list[str]:
     if file.part_no and file.part_no not in parts:
         wrong.append(f"{file.path}: part {file.part_no!r} is not listed")
     try:
-        same = sha256_of((folder / path).read_bytes()) == file.sha256
-    except OSError as error:
-        return [*wrong, f"{file.path}: {error.strerror}"]
+        same = sha256_of(read_bytes(folder / path, MOST_BYTES, "a file of an export")) == file.sha256
+    except InputError as error:
+        return [*wrong, f"{file.path}: {error.what}"]
     return wrong if same else [*wrong, f"{file.path}: its content has changed"]
 
 

@@ -88,7 +88,7 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
     """
     projector = HLRAlgo_Projector(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*view.eye), gp_Dir(*view.right)))
     if len(shapes) <= EXACT_UP_TO:
-        sharp, smooth = _exact(shapes, projector)
+        sharp, smooth = _lines(exact(shapes, projector))
     else:
         # meshed once a prototype: placed copies share it
         BRepMesh_IncrementalMesh(_compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
@@ -112,13 +112,14 @@ def _boxes(shapes: Sequence[TopoDS_Shape], view: View) -> np.ndarray:
     return found
 
 
-def _exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
+def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
+    """Exact hidden-line removal of the placed shapes, as one compound."""
     algorithm = HLRBRep_Algo()
     algorithm.Add(_compound(shapes))
     algorithm.Projector(projector)
     algorithm.Update()
     algorithm.Hide()
-    return _lines(HLRBRep_HLRToShape(algorithm))
+    return HLRBRep_HLRToShape(algorithm)
 
 
 def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
@@ -132,8 +133,8 @@ def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) 
 
 
 def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
-    sharp = _polylines(result.VCompound()) + _polylines(result.OutLineVCompound())
-    return sharp, _polylines(result.Rg1LineVCompound())
+    sharp = polylines(result.VCompound()) + polylines(result.OutLineVCompound())
+    return sharp, polylines(result.Rg1LineVCompound())
 
 
 def _compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
@@ -198,7 +199,8 @@ def _span(placements: Sequence[Placement], view: View) -> tuple[float, float]:
     return (x1 - x0, y1 - y0)
 
 
-def _polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
+def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
+    """A removal's result as chords in the picture plane, mm."""
     if compound is None or compound.IsNull():
         return []
     BRepLib.BuildCurves3d_s(compound)

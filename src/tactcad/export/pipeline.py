@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "export")
 LIBRARIES = ("build123d", "cadquery-ocp", "ezdxf", "numpy")
+DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
 
 
 class Progress(Protocol):
@@ -52,10 +53,11 @@ class Exported:
 
 def export(
     design: Design, scene_names: Sequence[str], out: str | os.PathLike[str], progress: Progress,
-    pose: Pose | None = None, guides: bool = False, detail: str = "full",
+    pose: Pose | None = None, guides: bool = False, detail: str = "full", drawings: bool = False, draft: bool = False,
 ) -> Exported:
     """Write the scenes of a design to the folder `out`, all or nothing; in another pose than the rest's where
-    given, with the assembly guides where asked for, and at the detail level `full` or `envelope`.
+    given, with the assembly guides and the drawings where asked for (as a draft: marked PRELIMINARY), and at the
+    detail level `full` or `envelope`.
 
     Nothing is written where the folder already holds just this; the rules between fields, which the
     earlier export kept, are tried only where something has to be made. Raises InputError where the
@@ -64,7 +66,9 @@ def export(
     """
     wanted = {"design": design, "scenes": tuple(scene_names)} | ({"pose": pose} if pose else {}) | ({"guides": True} if guides else {})
     wanted |= {"detail": detail} if detail != "full" else {}
-    inputs = inputs_of(wanted, ROOMS, LIBRARIES)
+    sheets = ("draft" if draft else "final") if drawings else ""
+    wanted |= {"drawings": sheets} if drawings else {}
+    inputs = inputs_of(wanted, ROOMS, LIBRARIES + (DRAWN_WITH if drawings else ()))
     if published(out).current is None:
         _refuse_broken(design)  # before a lock, or a folder for it, appears on the disk
     with locked(out, say=progress.line) as place:
@@ -75,7 +79,7 @@ def export(
         _refuse_broken(design)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail)
+        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail, sheets)
 
 
 def _refuse_broken(design: Design) -> None:
@@ -97,12 +101,19 @@ def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
 
 def _rebuild(
     design: Design, scene_names: Sequence[str], out: Path, place: Published, inputs: Inputs,
-    why: tuple[str, ...], progress: Progress, pose: Pose | None, guides: bool, detail: str,
+    why: tuple[str, ...], progress: Progress, pose: Pose | None, guides: bool, detail: str, sheets: str,
 ) -> Exported:
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
 
-    from .products import Shapes, guide_products, part_products, scene_products
+    from .products import (
+        Shapes,
+        assembly_products,
+        drawing_products,
+        guide_products,
+        part_products,
+        scene_products,
+    )
 
     cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
@@ -111,16 +122,21 @@ def _rebuild(
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
     products += [p for s in scenes if guides for p in guide_products(design, s, shapes)]
+    if sheets:
+        products += drawing_products(design, parts, shapes, products, progress.step, sheets == "draft")
+        products += assembly_products(design, scenes, shapes, progress.step, sheets == "draft")
     with new_build(place) as folder:
         made = _write_products(folder, products, cache, progress)
         records = [_record(folder, p, design) for p in products]
         records += _write_bills(folder, design, scenes, records)
+        records += _write_element_tables(folder, design)
         part_records = tuple(_part_record(part, scenes, shapes, cache) for part in parts)
         record = Manifest(design.name, design.design.revision, tuple(records), part_records, inputs.as_json())
         (folder / manifests.NAME).write_bytes(manifests.manifest_bytes(record))
         wrong = manifests.check_manifest(folder)
         if wrong:
             raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
+    cache.trim()
     count = len(records) + 1
     progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")
     return Exported(out, count, made, tuple(shapes.built), why)
@@ -171,6 +187,23 @@ def _write_bills(
     return written
 
 
+def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
+    """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
+    from tactcad.parts.layout import Layout
+
+    from . import inspection, strength
+
+    layout = Layout(design)
+    written = []
+    for path, kind, data in (
+        (inspection.NAME, "inspection", inspection.inspection_bytes(layout)),
+        (strength.NAME, "report", strength.strength_bytes(layout)),
+    ):
+        (folder / path).write_bytes(data)
+        written.append(FileRecord(path, kind, "", design.design.revision, manifests.sha256_of(data)))
+    return written
+
+
 def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cache) -> PartRecord:
     from tactcad.parts.section import cut_section
 
@@ -178,7 +211,7 @@ def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cac
 
     facts = part_facts(part, shapes, cache)
     low, high = facts["box"]
-    cut = cut_section(part) if part.process == "wire-cut" else None
+    cut = cut_section(part)
     return PartRecord(
         part_no=part.part_no,
         name=part.name,

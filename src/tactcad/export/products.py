@@ -6,16 +6,15 @@ Nothing here runs until a file is really needed: the kernel is imported inside t
 from __future__ import annotations
 
 import json
-import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.section import cut_section
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
@@ -25,6 +24,7 @@ from .step_text import Header
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
+    from .drawing.sheets import Written
     from .picture import View
 
 
@@ -50,20 +50,34 @@ class Shapes:
 
     def of(self, part: Part) -> TopoDS_Shape:
         """The part's shape in its own frame."""
+        return self._shape(part, partial(self._built, part))
+
+    def drawn(self, part: Part) -> TopoDS_Shape:
+        """The part's shape for pictures of several parts."""
+        from tactcad.parts.library.screws import for_pictures
+
+        shown = for_pictures(part)
+        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
+
+    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
             from tactcad.solids.bytes import from_bytes
 
             key = f"shape {self.made_by} {digest(part)}"
             # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, partial(self._built, part)))
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
         return self._known[part.part_no]
 
     def _built(self, part: Part) -> bytes:
-        from tactcad.solids.build import build
-        from tactcad.solids.bytes import to_bytes
-
         self.built.append(part.part_no)
-        return to_bytes(build(part).wrapped)
+        return _shape_bytes(part)
+
+
+def _shape_bytes(part: Part) -> bytes:
+    from tactcad.solids.build import build
+    from tactcad.solids.bytes import to_bytes
+
+    return to_bytes(build(part).wrapped)
 
 
 def header(design: Design, name: str, description: str) -> Header:
@@ -72,7 +86,7 @@ def header(design: Design, name: str, description: str) -> Header:
 
 
 def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
-    """STEP, DXF where a wire cuts the part, and a picture where it is made here."""
+    """STEP, DXF where the part is cut from sheet or plate, and a picture where it is made here."""
     head = header(design, part.part_no, part.name)
     revision = design.design.revision
     made = []
@@ -82,7 +96,7 @@ def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
         made.append(Product(path, kind, part.part_no, key, make))
 
     product(f"step/{part.part_no}_{revision}.step", "step-part", lambda: _part_step(part, shapes, head))
-    if part.process == "wire-cut":
+    if cut_section(part) is not None:
         product(f"dxf/{part.part_no}_{revision}.dxf", "dxf", lambda: _part_dxf(part))
     if not part.bought:
         placement = (Placement(part.part_no, part),)
@@ -144,6 +158,111 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     return products
 
 
+def drawing_products(
+    design: Design, parts: Sequence[Part], shapes: Shapes, products: Sequence[Product],
+    say: Callable[[int, int, str], None], draft: bool = False,
+) -> list[Product]:
+    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name.
+
+    The first one that is asked for makes all that the cache has not, side by side.
+    """
+    from .drawing.fonts import font_file
+
+    font_file()  # a missing font is said before anything is made
+    made_here = [part for part in parts if part.process not in ("bought", "reference")]
+    sources = {(p.part_no, p.kind): p for p in products}
+    keys = {
+        part.part_no: digest((
+            "drawing", shapes.made_by, part, [s.key for s in _made_from(part, sources)], design.design, design.tolerance,
+            design.holes, draft,
+        ))
+        for part in made_here
+    }  # fmt: skip
+    drawn: dict[str, Written] = {}
+
+    def drawing(part_no: str) -> Written:
+        if not drawn:
+            missing = [part for part in made_here if any(shapes.cache.get(f"{keys[part.part_no]} {e}") is None for e in ("pdf", "svg"))]
+            drawn.update(_drawings(design, missing, shapes, sources, say, draft))
+        return drawn[part_no]
+
+    revision = design.design.revision
+    return [
+        Product(
+            f"drawings/{part.part_no}_{revision}.{ending}", "drawing", part.part_no, f"{keys[part.part_no]} {ending}",
+            lambda part_no=part.part_no, ending=ending: getattr(drawing(part_no), ending),
+        )
+        for part in made_here for ending in ("pdf", "svg")
+    ]  # fmt: skip
+
+
+def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
+    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
+    from the DXF where there is one."""
+    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
+
+
+def _drawings(
+    design: Design, parts: Sequence[Part], shapes: Shapes, sources: Mapping[tuple[str, str], Product],
+    say: Callable[[int, int, str], None], draft: bool,
+) -> dict[str, Written]:
+    from tactcad.solids.bytes import to_bytes
+
+    from .drawing.notes import MadeFrom
+    from .drawing.sheets import Order, all_written
+    from .manifest import sha256_of
+
+    orders = []
+    for part in parts:
+        files = [
+            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make))) for s in _made_from(part, sources)
+        ]
+        orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
+    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
+
+
+def assembly_products(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+) -> list[Product]:
+    """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
+    keys = {s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft)) for s in scenes}
+    drawn: dict[str, Written] = {}
+
+    def drawing(name: str) -> Written:
+        if not drawn:
+            missing = [s for s in scenes if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))]
+            drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
+        return drawn[name]
+
+    return [
+        Product(
+            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}", "drawing", "", f"{keys[scene.name]} {ending}",
+            lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
+        )
+        for scene in scenes for ending in ("pdf", "svg")
+    ]  # fmt: skip
+
+
+def _assembly_drawings(
+    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
+) -> dict[str, Written]:
+    from tactcad.solids.bytes import to_bytes
+
+    from .bom import bom_rows
+    from .drawing.assembly_file import AssemblyOrder, assembly_written
+    from .drawing.sheets import all_written
+
+    orders = [
+        AssemblyOrder(
+            design, scene, bom_rows(scene, design.design.revision, {}),
+            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}, draft,
+        )
+        for scene in scenes
+    ]  # fmt: skip
+    return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
+
+
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
     """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
@@ -187,10 +306,7 @@ def _part_dxf(part: Part) -> bytes:
     from . import dxf
 
     data = dxf.dxf_bytes(part)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "written.dxf"
-        path.write_bytes(data)
-        wrong = dxf.check_dxf(path, part)
+    wrong = dxf.check_dxf(data, part)
     if wrong:
         raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
     return data
@@ -207,7 +323,7 @@ def _picture(
     eye: View = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing([placed_shape(shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+        return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     picture.check_picture(data, placements, eye)

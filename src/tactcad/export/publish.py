@@ -13,7 +13,6 @@ are numbered, not dated, so that a clock set back changes nothing.
 
 from __future__ import annotations
 
-import errno
 import fcntl
 import os
 import shutil
@@ -24,15 +23,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from tactcad.design.files import absolute, refusal
 from tactcad.design.messages import CheckFailure, InputError
 
 WAIT_SECONDS = 600.0  # a cold export of the largest design takes a fraction of this
 POLL_SECONDS = 0.1
-# what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
-REFUSED_BY_MACHINE = {
-    errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO,
-    errno.EEXIST, errno.ENOTDIR, errno.ENAMETOOLONG, errno.EBUSY, errno.ELOOP, errno.EMFILE, errno.ENFILE,
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -66,7 +61,7 @@ class Published:
 
     def refuse_foreign(self) -> None:
         """Raises InputError where DIR holds anything that was not put there by an export, or lies in one."""
-        for folder in self.link.parent.resolve().parts:
+        for folder in Path(os.path.realpath(self.link.parent)).parts:
             if folder.startswith(".") and folder.endswith(".builds"):
                 raise InputError(str(self.link), "lies inside an earlier export", legal=LEGAL)
         if self.link.is_symlink():
@@ -84,7 +79,7 @@ LEGAL = "a new name, an empty folder, or the folder of an earlier export"
 
 def published(directory: str | os.PathLike[str]) -> Published:
     """Where `directory` would be published; touches nothing. Raises InputError where it has no name."""
-    link = Path(os.path.abspath(directory))
+    link = absolute(directory)
     if not link.name:
         raise InputError(str(directory), "cannot be replaced", legal=LEGAL)
     return Published(link)
@@ -103,13 +98,13 @@ def locked(
     vain. Whatever is raised inside, the earlier export stands.
     """
     place = published(directory)
-    with _in_one_line(place):
+    with in_one_line(place.link):
         place.refuse_foreign()
         place.link.parent.mkdir(parents=True, exist_ok=True)
         handle = os.open(place.lock, os.O_RDWR | os.O_CREAT, 0o666)
     try:
-        with _in_one_line(place):
-            _take(handle, place, wait, say)
+        with in_one_line(place.link):
+            take_lock(handle, place.link, wait, say)
             place.refuse_foreign()  # it may have changed while we waited
             _sweep(place)
         yield place
@@ -123,7 +118,7 @@ def new_build(place: Published) -> Iterator[Path]:
 
     Only inside `locked`. Raises InputError where the machine refuses to write, CheckFailure where the disk is full.
     """
-    with _in_one_line(place):
+    with in_one_line(place.link):
         place.builds.mkdir(exist_ok=True)
         number = 1 + max((n for n in map(_number, place.builds.iterdir()) if n is not None), default=0)
         part, build = place.builds / f"{number}.part", place.builds / str(number)
@@ -133,7 +128,7 @@ def new_build(place: Published) -> Iterator[Path]:
             yield part
             _flush(part)
             part.rename(build)
-            _flush_entry(place.builds)
+            flush_entry(place.builds)
             _switch(place, number)
         except BaseException:
             shutil.rmtree(part, ignore_errors=True)
@@ -152,10 +147,10 @@ def _switch(place: Published, number: int) -> None:
     if not place.link.is_symlink() and place.link.is_dir():
         place.link.rmdir()  # empty: a link cannot be renamed over a folder
     temporary.rename(place.link)
-    _flush_entry(place.link.parent)
+    flush_entry(place.link.parent)
 
 
-def _take(handle: int, place: Published, wait: float, say: Callable[[str], None]) -> None:
+def take_lock(handle: int, target: Path, wait: float, say: Callable[[str], None]) -> None:
     """Take the lock, or wait for whoever has it."""
     until = time.monotonic() + wait
     said = False
@@ -167,11 +162,11 @@ def _take(handle: int, place: Published, wait: float, say: Callable[[str], None]
             holder = os.pread(handle, 100, 0).decode("ascii", "replace").strip() or "unknown"
             if time.monotonic() > until:
                 raise CheckFailure(
-                    f"{place.link}: another export (process {holder}) has been writing it for "
+                    f"{target}: another export (process {holder}) has been writing it for "
                     f"{wait:.0f} s; nothing was changed"
                 ) from None
             if not said:
-                say(f"{place.link}: waiting for another export (process {holder}) to finish")
+                say(f"{target}: waiting for another export (process {holder}) to finish")
                 said = True
             time.sleep(POLL_SECONDS)
     with suppress(OSError):  # a full disk: the number is for the message only
@@ -214,11 +209,11 @@ def _flush(folder: Path) -> None:
     """Everything in the folder is on the disk before its name is."""
     for base, _, names in os.walk(folder):
         for name in names:
-            _flush_entry(Path(base, name))
-        _flush_entry(Path(base))
+            flush_entry(Path(base, name))
+        flush_entry(Path(base))
 
 
-def _flush_entry(path: Path) -> None:
+def flush_entry(path: Path) -> None:
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -227,16 +222,9 @@ def _flush_entry(path: Path) -> None:
 
 
 @contextmanager
-def _in_one_line(place: Published) -> Iterator[None]:
-    """Turn the machine's refusals into the one-line messages of the house."""
+def in_one_line(target: Path) -> Iterator[None]:
+    """Turn the machine's refusals to write `target` into the one-line messages of the house."""
     try:
         yield
     except OSError as error:
-        if error.errno not in REFUSED_BY_MACHINE:
-            raise
-        reason = f"{error.strerror} ({error.filename})" if error.filename else error.strerror
-        if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO):
-            raise CheckFailure(f"{place.link}: {reason}; nothing was changed") from error
-        raise InputError(
-            str(place.link), f"cannot be written: {reason}; nothing was changed", legal="a writable place"
-        ) from error
+        raise refusal(str(target), error) from error

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from tactcad.design.files import read_json
 from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 
 from .difference import Change, differences
 from .dxf import read_dxf
 from .geometry import Record, bill_line, contour_record, geometry
-from .golden import read_golden
+from .golden import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json
 from .manifest import NAME, Manifest, check_manifest, read_manifest
 
@@ -53,13 +54,10 @@ def read_side(source: str) -> Side:
     Raises InputError where it is none of them, or damaged.
     """
     path = Path(source)
-    if path.is_dir():
+    if os.path.isdir(path):  # False too for what is no path
         return _export(source, path.resolve())
     if path.suffix == ".json":
-        try:
-            record = read_golden(path)
-        except ValueError as error:
-            raise InputError(source, f"not a golden file: {error}") from None
+        record = read_golden(path)
         sections = {name: record[name] for name in ("parts", "scenes", "elements")}
         return Side(source, "golden", record["design"], record["revision"], sections)
     design = load(source)
@@ -76,7 +74,7 @@ def _export(source: str, folder: Path) -> Side:
     values = {k.removeprefix("design."): v for k, v in inputs.values.items() if k.startswith("design.")} if inputs else None
     try:
         record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(source, f"not a sound export: {error}") from None
     return Side(source, "export", manifest.design, manifest.revision, record, values and _values(values), folder)
 
@@ -107,7 +105,7 @@ def _exported_bills(folder: Path, manifest: Manifest) -> Record:
     scenes = {}
     for file in manifest.files:
         if file.kind == "bom" and file.path.endswith(".json"):
-            bill = json.loads((folder / file.path).read_bytes())
+            bill = read_json(folder / file.path, MOST_BYTES, "a bill of materials")
             scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
     return scenes
 

@@ -5,18 +5,15 @@ In an assembly the product of a part carries its part number, each instance its 
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from math import isclose
-from pathlib import Path
 
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
-from OCP.Interface import Interface_Static
-from OCP.Message import Message
 from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
@@ -33,6 +30,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.solids.place import location
+from tactcad.solids.step import set_up_writer, silence
 
 from .step_text import Header, canonical
 
@@ -90,28 +88,15 @@ def _rgba(colour: str) -> Quantity_ColorRGBA:
 
 
 def _written(document: TDocStd_Document, header: Header) -> bytes:
-    _silence()
     writer = STEPCAFControl_Writer()
     writer.SetColorMode(True)
     writer.SetNameMode(True)
-    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
-    Interface_Static.SetCVal_s("write.step.unit", "MM")
-    # without parameter curves: planes, cylinders and cones need none, and the file is a third smaller
-    Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)
+    set_up_writer()
     writer.Transfer(document, STEPControl_AsIs)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "kernel.step"
-        if writer.Write(str(path)) != IFSelect_RetDone:
-            raise OSError("the kernel could not write its STEP file to the temporary folder")
-        text = path.read_text("latin-1")
-    return canonical(text, header).encode("latin-1")
-
-
-def _silence() -> None:
-    """The kernel reports every transfer on standard output, which belongs to our own messages."""
-    messenger = Message.DefaultMessenger_s()
-    for printer in list(messenger.Printers()):
-        messenger.RemovePrinter(printer)
+    stream = BytesIO()  # no file: a killed export leaves none behind, and a full temporary folder does not matter
+    if writer.WriteStream(stream) != IFSelect_RetDone:
+        raise CheckFailure(f"{header.name}: the kernel could not write the STEP file")
+    return canonical(stream.getvalue().decode("latin-1"), header).encode("latin-1")
 
 
 # --- reading back ---
@@ -138,15 +123,12 @@ class Assembly:
 
 def read_assembly(data: bytes) -> Assembly:
     """Names, places and volumes in a STEP file. Raises CheckFailure where it cannot be read."""
-    _silence()
+    silence()
     document, tool = _document()
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "written.step"
-        path.write_bytes(data)
-        if reader.ReadFile(str(path)) != IFSelect_RetDone or not reader.Transfer(document):
-            raise CheckFailure("the written STEP file cannot be read back")
+    if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.Transfer(document):
+        raise CheckFailure("the written STEP file cannot be read back")
     free = TDF_LabelSequence()
     tool.GetFreeShapes(free)
     if free.Length() != 1:

@@ -1,9 +1,8 @@
-"""Statics of the rigs: does the cart tip, does the vacuum hold, does the overload stop hold."""
+"""Statics of the rigs: does the cart tip, does the vacuum hold."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import hypot, inf
 
 Point = tuple[float, float]
@@ -47,31 +46,3 @@ def _side(pair: Sequence[Point], point: Point) -> float:
 def holding_force(vacuum: float, area: float) -> float:
     """Force (N) with which a vacuum (kPa below air) holds on an area (mm2): F = p A."""
     return vacuum * 1e-3 * area
-
-
-@dataclass(frozen=True)
-class Stopped:
-    """An element under a load on its pad: what the hinge carries by bending (N), what the stop pushes back (N),
-    and the nominal stresses in the hinge (MPa): by its deflection, and by the shear that the stopped arm leaves it."""
-
-    hinge: float
-    stop: float
-    bending: float
-    shear: float
-
-
-def stopped(
-    stiffness: float, load: float, gap: float, load_arm: float, arm: float, width: float, thickness: float, length: float
-) -> Stopped:
-    """What happens when `load` comes down on one pad (N, mm, N/mm).
-
-    The tip closes its gap at a pad deflection of g L/a, where the hinge carries F_h = K g L/a. The rest F - F_h
-    bears on two supports, hinge and tip: the stop takes (F - F_h) L/a, and the hinge the shear
-    V = (F - F_h)(1 - L/a), which bends a leaf of length l between two stiff ends by V l/2.
-    Stresses are nominal, 6 M/(b t^2), without the fillet's factor.
-    """
-    hinge = min(load, stiffness * gap * load_arm / arm)
-    rest = load - hinge
-    modulus = width * thickness**2 / 6
-    shear = rest * (1 - load_arm / arm)
-    return Stopped(hinge, rest * load_arm / arm, hinge * load_arm / modulus, shear * length / 2 / modulus)

@@ -1,32 +1,54 @@
-"""The hinge while a force larger than it could bear presses its arm onto the overload stop."""
+"""The hinge while a force larger than it could bear presses its arm onto the overload stop.
+
+The stop holds the arm's tip, at `arm` (mm) from the hinge's centre, the force presses at L < arm: from there on the arm
+is a beam on two supports. What the force has beyond the one that closed the stop reaches the hinge in two ways,
+both per newton of it:
+
+  shear   V = 1 - L/arm goes through the hinge
+  turn    theta = c (arm^2 - c^2)/(6 E I arm), c = arm - L, I = b h^3/12: the arm bends between its supports
+"""
 
 from __future__ import annotations
+
+import numpy as np
 
 from . import strain
 from .section import Array, HingeSection
 
 
-def equivalent_force(s: HingeSection, stiffness: Array, arm: Array, beyond: Array) -> Array:
-    """Force (N) at the load line that would stress the fillet as much as `beyond` does on a closed stop.
+def stress_share(s: HingeSection, stiffness: Array, arm: Array) -> Array:
+    """Force at the load line (N) that would stress the fillet as much as one newton beyond does on a closed stop.
 
-    The stop holds the arm's tip, at `arm` (mm) from the hinge's centre, the force presses at L < arm: a beam on
-    two supports. Its share V = F (1 - L/arm) goes through the hinge as shear, which bends the peak's section at
-    its distance w from the centre by V w. The arm bends between its supports, which turns the hinge by
-    F c (arm^2 - c^2)/(6 E I arm), c = arm - L, with I = b h^3/12; the hinge answers with K L^2 times that turn.
-    Divided by L + w, the lever of a force at the load line.
+    Shear bends the peak's section, at its distance w from the hinge's centre, by V w; the hinge answers the turn
+    with K L^2 theta. Divided by L + w, the lever of a force at the load line.
     """
     L, w = s.load_arm, strain.peak_position(s)
-    c = arm - L
-    inertia = s.width * s.arm_height**3 / 12.0
-    turn = beyond * c * (arm**2 - c**2) / (6.0 * s.youngs_modulus * inertia * arm)
-    return (beyond * (1.0 - L / arm) * w + stiffness * L**2 * turn) / (L + w)
+    return ((1.0 - L / arm) * w + stiffness * L**2 * _turn(s, arm)) / (L + w)
 
 
-def largest_closing_force(s: HingeSection, stiffness: Array, arm: Array, overload, yield_strength: float) -> Array:
-    """Force (N) with which the stop may close at most, so that `overload` (N) on it just does not yield the fillet.
+def deflection_share(s: HingeSection, stiffness: Array, arm: Array) -> Array:
+    """Force at the load line (N) that would turn the hinge as much as one newton beyond does: K L theta."""
+    return stiffness * s.load_arm * _turn(s, arm)
 
-    F + e (overload - F) = force at yield, with e the equivalent of one newton; not positive where the shear
-    alone is too much.
+
+def largest_closing_force(s: HingeSection, stiffness: Array, arm: Array, overload, limit: Array) -> Array:
+    """Force (N) with which the stop may close at most, so that `overload` (N) on it neither turns nor stresses the
+    hinge more than `limit` (N) at the free arm's load line does.
+
+    F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone.
     """
-    share = equivalent_force(s, stiffness, arm, 1.0)
-    return (yield_strength / strain.peak_stress(s, 1.0) - share * overload) / (1.0 - share)
+    share = np.maximum(stress_share(s, stiffness, arm), deflection_share(s, stiffness, arm))
+    return (limit - share * overload) / (1.0 - share)
+
+
+def largest_overload(s: HingeSection, stiffness: Array, arm: Array, closing: Array, limit: Array) -> Array:
+    """The overload (N) of `largest_closing_force` for a stop that closes at `closing` (N)."""
+    share = np.maximum(stress_share(s, stiffness, arm), deflection_share(s, stiffness, arm))
+    return (limit - (1.0 - share) * closing) / share
+
+
+def _turn(s: HingeSection, arm: Array) -> Array:
+    """Turn of the arm's end at the hinge, held at the tip, per newton at the load line; rad/N."""
+    c = arm - s.load_arm
+    inertia = s.width * s.arm_height**3 / 12.0
+    return c * (arm**2 - c**2) / (6.0 * s.youngs_modulus * inertia * arm)

@@ -9,8 +9,6 @@ from tactcad.design.materials import Alloy
 from . import ladder, strain
 from .section import Array, HingeSection
 
-SAFETY_AGAINST_YIELD = 1.5  # of the rated force, by the project's rule
-
 
 def yield_force(s: HingeSection, alloy: Alloy) -> Array:
     """Force at which the fillet's surface reaches the yield strength, N."""
@@ -37,9 +35,9 @@ def face_yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
     return face_yield_force(s, alloy) / force
 
 
-def rated_force(s: HingeSection, alloy: Alloy, requested) -> Array:
-    """The lesser of the requested force and yield/1.5, N."""
-    return np.minimum(requested, yield_force(s, alloy) / SAFETY_AGAINST_YIELD)
+def rated_force(s: HingeSection, alloy: Alloy, requested, factor: float) -> Array:
+    """The lesser of the requested force and the force at yield over `factor`, N."""
+    return np.minimum(requested, yield_force(s, alloy) / factor)
 
 
 def elastic(s: HingeSection, alloy: Alloy, force) -> np.ndarray:

@@ -16,17 +16,22 @@ from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
-from .stop_gap import stop_gap
 
 ALUMINIUM = "#c3c8ce"
 
 
-def element(layout: Layout, place: ElementPlace) -> Part:
-    """The element that stands at `place`; equal elements give equal parts with one part number."""
+def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
+    """The element that stands at `place`; equal elements give equal parts with one part number.
+
+    Its stop gap is `gap` mm, if given, instead of the design's.
+    """
     design = layout.design
-    gap = stop_gap(layout, place)
+    if gap is None:
+        from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
+
+        gap = stop_gap(layout, place)
     cut = design.element
-    e, s = place.hinge, design.stop
+    e, s, allowed = place.hinge, design.stop, design.tolerance
     return Part(
         part_no=element_number(design, place),
         name=f"Sensing element, arm {shortest(place.arm)}",
@@ -43,12 +48,14 @@ def element(layout: Layout, place: ElementPlace) -> Part:
             "measure and record the hinge thickness of every element",
         ),
         characteristics=(
-            Characteristic("hinge thickness", e.t, e.t + 0.005, e.t - 0.005, key=True),
+            Characteristic(
+                "hinge thickness", e.t, e.t + allowed.hinge_thickness, e.t - allowed.hinge_thickness, key=True
+            ),
             Characteristic(
                 "pad height over the dowel hole's centre",
                 design.holes.height + cut.pad_height,
-                design.holes.height + cut.pad_height + 0.01,
-                design.holes.height + cut.pad_height - 0.01,
+                design.holes.height + cut.pad_height + allowed.pad_height,
+                design.holes.height + cut.pad_height - allowed.pad_height,
                 key=True,
             ),
             Characteristic("stop gap", gap, gap + s.tolerance, gap - s.tolerance, key=True),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import ladder, strain, strength
-from tactcad.mechanics.stop import equivalent_force
+from tactcad.mechanics.stop import deflection_share, stress_share
 
 from .hinge_section import design_alloy, hinge_section
 from .layout import ElementPlace, Layout
@@ -18,13 +18,25 @@ from .stop_gap import stop_gap
 class Overload:
     """One element under the overload force, its stop's gap as large as the tolerance lets it be.
 
-    Forces in N, stress in MPa at the fillet. `refused` says why the estimator has nothing to say; then the
-    numbers are NaN.
+    gap               mm, tolerance included
+    earliest          N at the pad that close the gap when it is as narrow as the tolerance lets it be
+    closing_force     N at the pad that close this gap
+    stop_force        N that the stop pushes back under the whole load
+    deflection        mm by which the hinge has then turned, at the load line
+    rated_deflection  mm that no hinge may pass
+    stress            MPa at the fillet
+    yield_factor      yield strength over that stress
+    rated_force       N, in use
+    refused           why the estimator has nothing to say; then the numbers are NaN
     """
 
     place: ElementPlace
-    gap: float  # mm, tolerance included
+    gap: float
+    earliest: float
     closing_force: float
+    stop_force: float
+    deflection: float
+    rated_deflection: float
     stress: float
     yield_factor: float
     rated_force: float
@@ -34,19 +46,26 @@ class Overload:
 def overloads(layout: Layout) -> list[Overload]:
     """Every element of the layout, by number."""
     design, places = layout.design, layout.elements
+    load, rating = design.rating.overload_force, design.rating
     s, alloy = hinge_section(layout, places), design_alloy(design)
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
-    arm = np.array([p.arm for p in places])
-    gap = np.array([stop_gap(layout, p) for p in places]) + design.stop.tolerance
+    K, arm, tolerance = known.stiffness, np.array([p.arm for p in places]), design.stop.tolerance
+    gap = np.array([stop_gap(layout, p) for p in places])
     # the rigid arm's lever carries the gap at the tip to the load line
-    closing = np.minimum(known.stiffness * gap * s.load_arm / arm, design.rating.overload_force)
-    beyond = design.rating.overload_force - closing
-    stress = strain.peak_stress(s, closing + equivalent_force(s, known.stiffness, arm, beyond))
-    rated = strength.rated_force(s, alloy, design.rating.force)
-    return [
-        Overload(
-            p, float(gap[i]), float(closing[i]), float(stress[i]), float(alloy.yield_strength / stress[i]),
-            float(np.broadcast_to(rated, s.shape)[i]), str(known.reason[i]),
-        )
-        for i, p in enumerate(places)
-    ]  # fmt: skip
+    earliest = K * (gap - tolerance) * s.load_arm / arm
+    closing = np.minimum(K * (gap + tolerance) * s.load_arm / arm, load)
+    beyond = load - closing
+    stress = strain.peak_stress(s, closing + stress_share(s, K, arm) * beyond)
+    columns = (
+        gap + tolerance,
+        earliest,
+        closing,
+        beyond * s.load_arm / arm,
+        (closing + deflection_share(s, K, arm) * beyond) / K,
+        strength.yield_force(s, alloy) / rating.deflection_factor / K,
+        stress,
+        alloy.yield_strength / stress,
+        strength.rated_force(s, alloy, rating.force, rating.yield_factor),
+    )
+    rows = np.stack([np.broadcast_to(c, s.shape) for c in columns], axis=1)
+    return [Overload(p, *map(float, row), str(why)) for p, row, why in zip(places, rows, known.reason)]

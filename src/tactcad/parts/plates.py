@@ -10,7 +10,7 @@ from .element import dowel_hole_diameter, mounting_holes, rear_corners, sheet_ma
 from .fasteners import Clamping, carrier_screw, clamping
 from .layout import Layout
 from .library.dowels import dowel_diameter
-from .library.screws import METRIC, blind_thread, counterbore_diameter
+from .library.screws import METRIC, TAP_REACH, blind_thread, counterbore_diameter
 from .materials import plate_material
 
 STEEL = Material("1.4301 stainless steel", 7900)
@@ -165,13 +165,14 @@ def _screw_hole(name: str, d: Design, c: Clamping, head: bool, at: Vector, depth
         deep = round(depth - c.head_plate_web, 9)
         counterbore = (counterbore_diameter(d.clamp.screw), deep) if deep > 0 else None
         return Hole(name, at, (0, 0, 1), m.clearance, depth, True, counterbore=counterbore)
-    # from the inner face, where the screw comes in; three diameters are what a tap is given
-    inner, full = (at[0], at[1], depth), min(depth, 3 * m.d)
-    return Hole(name, inner, (0, 0, -1), m.tap_drill, depth, True, thread=d.clamp.screw, thread_depth=full)
+    # from the inner face, where the screw comes in
+    return _tapped(name, d.clamp.screw, (at[0], at[1], depth), (0, 0, -1), depth)
 
 
 def _tapped(name: str, thread: str, at: Vector, axis: Vector, depth: float) -> Hole:
-    return Hole(name, at, axis, METRIC[thread].tap_drill, depth, True, thread=thread, thread_depth=depth)
+    """Drilled through, and tapped from `at` as deep as a tap reaches."""
+    full = min(depth, TAP_REACH * METRIC[thread].d)
+    return Hole(name, at, axis, METRIC[thread].tap_drill, depth, True, thread=thread, thread_depth=full)
 
 
 def _blind_tapped(name: str, thread: str, at: Vector, axis: Vector) -> Hole:

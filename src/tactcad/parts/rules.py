@@ -17,17 +17,25 @@ from .fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
 from .layout import (
     BESIDE_SET_SCREW,
     CARRIER_EDGE,
-    CARRIER_WEB,
     END_PLATE_WEB,
+    HOLE_WEB,
     LEAST_GAP,
     SUNK,
     ElementPlace,
     Layout,
 )
 from .library.dowels import largest_dowel
-from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, engagement
+from .library.screws import (
+    DRILL_REACH,
+    METRIC,
+    SET_SCREW_LENGTHS,
+    TAP_REACH,
+    counterbore_diameter,
+    engagement,
+)
 from .rigs.rules import RIG_RULES
-from .stop_gap import land_room, stop_gap
+from .slivers import no_slivers
+from .stop_gap import land_room, stop_gap, stop_limit
 
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
@@ -46,6 +54,8 @@ def broken_rules(design: Design) -> list[Broken]:
     for name, rule in (RULES | RIG_RULES).items():
         if name in ASK_THE_GAP and any(b.rule in NO_GAP for b in found):
             continue
+        if name in ASK_THE_CONTOUR and found:
+            continue  # there may be none
         for path, what, value, legal in rule(layout):
             found.append(Broken(name, path, what, value, legal))
             break
@@ -204,14 +214,36 @@ def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
             )
 
 
+def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
+    """A gap that the design gives is no wider than the hinge bears; a derived one is made so."""
+    stop = layout.design.stop
+    for p in layout.elements:
+        given = stop.gaps.get(p.arm) if stop.gaps else None
+        widest = stop_limit(layout, p).gap - stop.tolerance
+        if given is not None and given > widest + SAME:
+            yield (
+                f"stop.gaps.{p.arm:g}", f"lets the hinge of element {p.number} pass its rated deflection under "
+                f"{layout.design.rating.overload_force:g} N", given,
+                f"at most {widest:.4g} mm" if widest > stop.tolerance else "leave it out, to have it derived",
+            )
+
+
 def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
+    """The arm moves before its stop closes; what leaves it no gap is the overload or the tolerance."""
     d = layout.design
     for p in layout.elements:
-        gap = stop_gap(layout, p)
-        if gap <= d.stop.tolerance + SAME:
+        gap, limit = stop_gap(layout, p), stop_limit(layout, p)
+        if gap > d.stop.tolerance + SAME:
+            continue
+        if not (d.stop.gaps and p.arm in d.stop.gaps) and 0 < limit.overload < d.rating.overload_force:
+            yield (
+                "rating.overload_force", f"no stop keeps the hinge of element {p.number} within its rated deflection",
+                d.rating.overload_force, f"at most {limit.overload:.4g} N",
+            )
+        else:
             yield (
                 "stop.tolerance", f"the stop of element {p.number} may close before it moves: its gap is {gap:g} mm",
-                d.stop.tolerance, f"less than {gap:g} mm",
+                d.stop.tolerance, f"less than {gap:g} mm" if gap > 0 else "less, or a softer hinge",
             )
 
 
@@ -329,12 +361,16 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     if rear + c.end_plate_margin < around + web - SAME:
         yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + web - rear:g} mm")
     spots = [(x, around) for x in layout.screw_x] + [(x, float(c.dowel) / 2) for x in layout.dowel_x]
+    between = LEAST_GAP if rod else HOLE_WEB
     for (x0, r0), (x1, r1) in combinations(spots, 2):
-        if abs(x0 - x1) < r0 + r1 + LEAST_GAP - SAME:
-            yield ("holes.screw_offsets", "screw heads run into each other or into a dowel", abs(x0 - x1), f"at least {r0 + r1 + LEAST_GAP:g} mm apart")
+        if abs(x0 - x1) < r0 + r1 + between - SAME:
+            yield ("holes.screw_offsets", "screw heads too near each other or a dowel", abs(x0 - x1), f"at least {r0 + r1 + between:g} mm apart")
     first = min(x - r for x, r in spots)
     if first < LEAST_GAP:
         yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {LEAST_GAP:g} mm from the middle line")
+    reach = DRILL_REACH * min(m.clearance if rod else m.tap_drill, float(c.dowel))
+    if c.end_plate_thickness > reach + SAME:
+        yield ("clamp.end_plate_thickness", "too thick for the drills of its holes", c.end_plate_thickness, f"at most {reach:g} mm")
     if c.end_plate_thickness / 2 - m.tap_drill / 2 < END_PLATE_WEB:
         yield ("clamp.end_plate_thickness", "too thin for the carrier's threads", c.end_plate_thickness, f"at least {2 * END_PLATE_WEB + m.tap_drill:g} mm")
 
@@ -361,6 +397,9 @@ def carrier_can_be_screwed(layout: Layout) -> Iterator[Finding]:
     least = engagement(c.mount_thread)
     if c.carrier_thickness < least - SAME:
         yield ("clamp.carrier_thickness", f"too thin for the axis's {c.mount_thread} threads", c.carrier_thickness, f"at least {least:g} mm")
+    most = TAP_REACH * METRIC[c.screw].d
+    if c.carrier_thickness > most + SAME:
+        yield ("clamp.carrier_thickness", f"too thick to be tapped through for {c.screw} set screws", c.carrier_thickness, f"at most {most:g} mm")
 
 
 def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
@@ -405,7 +444,7 @@ def stop_plate_can_be_held(layout: Layout) -> Iterator[Finding]:
 
 
 def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
-    """Screw heads, axis threads and set screws in the carrier leave CARRIER_WEB between them, CARRIER_EDGE around."""
+    """Screw heads, axis threads and set screws in the carrier leave HOLE_WEB between them, CARRIER_EDGE around."""
     c, seat = layout.design.clamp, layout.design.element.seat_length
     spots = [
         ("clamp.carrier_screw_offset", c.carrier_screw_offset, layout.carrier_screw_x, layout.end_plate_y, counterbore_diameter(c.screw) / 2),
@@ -416,7 +455,7 @@ def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
     for (i, a), (j, b), sx, sy in product(enumerate(spots), enumerate(spots), (1, -1), (1, -1)):
         if j < i or (a[2], a[3]) == (sx * b[2], sy * b[3]):
             continue
-        apart, least = hypot(a[2] - sx * b[2], a[3] - sy * b[3]), a[4] + b[4] + CARRIER_WEB
+        apart, least = hypot(a[2] - sx * b[2], a[3] - sy * b[3]), a[4] + b[4] + HOLE_WEB
         if apart < least - SAME:
             path, value = (a if b[0] == "element.seat_length" else b)[:2]
             yield (path, f"holes of the carrier {apart:.3g} mm apart", value, f"at least {least:.3g} mm apart")
@@ -456,6 +495,7 @@ RULES: dict[str, Rule] = {
         ledge_below_rear,
         recess_fits_rear,
         stop_land_above_arm,
+        stop_keeps_rated_deflection,
         stop_gap_above_tolerance,
         stop_land_fits_arm,
         holes_inside_body,
@@ -464,10 +504,15 @@ RULES: dict[str, Rule] = {
         carrier_can_be_screwed,
         stop_plate_can_be_held,
         carrier_holes_apart,
+        no_slivers,
     )
 }
 # Rules whose breach would make later ones fail for the same reason.
 STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
-# Rules that need the stop gap, and those without which there is none: what is no hinge has no stiffness.
-ASK_THE_GAP = frozenset({"stop_gap_above_tolerance", "stop_land_fits_arm"})
+# Rules that need the stop gap or the stiffness, and those without which there is none: what is no hinge has no stiffness.
+ASK_THE_GAP = frozenset(
+    {"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm", "calibration_bends_elastically"}
+)
 NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
+# Rules on contours as drawn, which only a design that keeps the rules before them is sure to have.
+ASK_THE_CONTOUR = frozenset({"no_slivers"})

@@ -2,52 +2,62 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, sqrt
 
-from tactcad.mechanics import ladder
+from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.stop import largest_closing_force
+from tactcad.mechanics.stop import largest_closing_force, largest_overload
 
 from .layout import ElementPlace, HingeShape, Layout
 
-# Gaps are cut to a hundredth: finer steps are below the tolerance that any stop can hold.
-STEP_MM = 0.01
+# Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
+STEP_MM = 0.005
 # The ramp keeps this height of straight edge: none shorter than a wire or the kernel tells from a point.
 STRAIGHT_RAMP = 0.005
+
+
+@dataclass(frozen=True)
+class StopLimit:
+    """What an element's stop must do.
+
+    gap       mm, the widest at the tip that keeps the hinge within its rated deflection, tolerance and all
+    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the hinge
+    """
+
+    gap: float
+    overload: float
 
 
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
-    [stop.gaps] where it names the arm, else yield_fraction of the nominal deflection at yield,
-    carried from the load line to the tip by the rigid arm's lever a/L and rounded to 0.01 mm (below 0.1 mm
-    to 0.001), but no more than there is room for under the ledge, nor than the fillet bears when the overload
-    force has closed the gap with its tolerance. Where no gap could save it, `tactcad check` says so.
-    Nominal yield: 6 F L/(b t^2) = yield strength. Stiffness from the solid rung; beyond the range of its fit from
-    the section integral, which has none and errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as
-    stiff, 1.02 in the median (20 000 random designs).
+    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its rated
+    deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded down.
+    """
+    stop = layout.design.stop
+    if stop.gaps and place.arm in stop.gaps:
+        return stop.gaps[place.arm]
+    widest = min(stop_limit(layout, place).gap - stop.tolerance, land_room(layout, place.hinge))
+    step = STEP_MM if widest >= 10 * STEP_MM else STEP_MM / 10
+    return round(floor(widest / step + 1e-9) * step, 6)
+
+
+def stop_limit(layout: Layout, place: ElementPlace) -> StopLimit:
+    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield of the
+    fillet, carried from the load line to the tip by the rigid arm's lever a/L.
+
+    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and errs to
+    a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
     """
     design = layout.design
-    if design.stop.gaps and place.arm in design.stop.gaps:
-        return design.stop.gaps[place.arm]
-    wanted, bearable = _before_yield(
+    return _limit(
         place.hinge.t, place.hinge.l, place.hinge.r, place.hinge.h, place.arm, place.load_arm, place.body_length,
         design.element.body_height, design.sheet.thickness, design.element.sides == "two",
         design.material.youngs_modulus, design.material.poisson, design.material.yield_strength,
-        design.stop.yield_fraction, design.rating.overload_force,
+        design.rating.deflection_factor, design.rating.overload_force, design.stop.tolerance,
     )
-    most = land_room(layout, place.hinge)
-    spared = bearable - design.stop.tolerance
-    if spared - _step(spared) >= design.stop.tolerance:  # rounded down it is still more than its tolerance
-        most = min(most, spared)
-    step = _step(min(wanted, most))
-    steps = min(round(wanted / step), floor(most / step + 1e-9))
-    return round(steps * step, 6)
-
-
-def _step(gap: float) -> float:
-    return STEP_MM if gap >= 10 * STEP_MM else STEP_MM / 10
 
 
 def land_room(layout: Layout, hinge: HingeShape) -> float:
@@ -61,13 +71,11 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _before_yield(
-    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, fraction, overload
-) -> tuple[float, float]:
-    """The wanted gap, and the one that the overload force closes when the fillet is about to yield; mm at the tip."""
+def _limit(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance) -> StopLimit:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
-    nominal = yield_strength * b * t**2 / (6 * L) / K
-    bearable = float(largest_closing_force(section, K, a, overload, yield_strength)) / K
-    return fraction * nominal * a / L, bearable * a / L
+    rated = yield_strength / strain.peak_stress(section, 1.0) / factor
+    closing = float(largest_closing_force(section, K, a, overload, rated))
+    narrow = K * (2.0 * tolerance + STEP_MM) * L / a
+    return StopLimit(closing / K * a / L, float(largest_overload(section, K, a, narrow, rated)))

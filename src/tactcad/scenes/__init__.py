@@ -9,7 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
-from tactcad.design.messages import InputError
+from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
 from tactcad.parts.rigs.rules import misfit
@@ -54,7 +54,7 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
         if name not in names:
             why = [line for line in left_out(design) if line.startswith(f"scene {name} ")]
             raise InputError(
-                "--scene", why[0] if why else "no such scene in this design", value=name, legal=", ".join(names)
+                "--scene", why[0] if why else "no such scene in this design", value=name, legal=one_of(name, names)
             )
     return tuple(name for name in names if not wanted or name in wanted)
 

@@ -15,7 +15,7 @@ from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.library import dowels, screws
 
 from .array_steps import array_steps
-from .scene import Contact, Placement, Rotation, Scene
+from .scene import UPRIGHT, Contact, Placement, Rotation, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
@@ -28,17 +28,20 @@ AGAINST_Y: Rotation = ROW[1]  # local z runs along -y
 DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
 
 
-def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({})) -> Scene:
+def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `instead` gives other parts by element number, such as one that a rig has pressed.
+    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the stop plate
+    and its set screws are not in place yet, as in the calibration.
     """
     layout = Layout(design)
     build = _Builder(layout, instead)
     build.stack()
     build.plates()
     build.clamping()
-    build.hold_down()
+    build.carrier()
+    if stops:
+        build.stop_plate()
     return Scene(
         "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover),
         steps=array_steps(layout, tuple(p.designator for p in build.placements)),
@@ -108,10 +111,7 @@ class _Builder:
         for first, last in self.ends.values():
             self.touch("EP1", first)
             self.touch("EP2", last)
-        self.place("ST1", plates.stop_plate(layout), (0, 0, layout.ledge), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-        for designator in self.on_ledge:
-            self.touch(designator, "ST1")
-        self.place("CA1", plates.carrier(layout), (0, 0, layout.carrier_bottom), ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+        self.place("CA1", plates.carrier(layout), (0, 0, layout.carrier_bottom), UPRIGHT)
         self.touch("EP1", "CA1")
         self.touch("EP2", "CA1")
 
@@ -145,8 +145,8 @@ class _Builder:
             self.touch(plate, nut)
             self.contacts.append(Contact(rod, nut, "thread"))
 
-    def hold_down(self) -> None:
-        """Carrier screws into the end plates, and set screws that press the stop plate on the ledges."""
+    def carrier(self) -> None:
+        """Carrier screws into the end plates."""
         layout, d = self.layout, self.layout.design
         thread, fixing = d.clamp.screw, carrier_screw(layout)
         first = len([p for p in self.placements if p.designator.startswith("SC")])
@@ -156,6 +156,13 @@ class _Builder:
             name = self.place(f"SC{n}", screws.cap_screw(thread, fixing.length), at, DOWN)
             self.touch(name, "CA1")
             self.contacts.append(Contact(name, "EP1" if sy < 0 else "EP2", "thread"))
+
+    def stop_plate(self) -> None:
+        """The stop plate, and set screws in the carrier that press it on the ledges."""
+        layout, thread = self.layout, self.layout.design.clamp.screw
+        self.place("ST1", plates.stop_plate(layout), (0, 0, layout.ledge), UPRIGHT)
+        for designator in self.on_ledge:
+            self.touch(designator, "ST1")
         length = layout.hold_down.length
         spots = [(side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y]
         for n, (x, y) in enumerate(spots, start=1):

@@ -61,7 +61,9 @@ def array_steps(layout: Layout, designators: tuple[str, ...]) -> tuple[Step, ...
         ),
         step(
             "Stop plate", named("ST"), (0, 0, 0.8 * width),
-            "Wipe ledges and plate. Lay the stop plate on the ledges, ground face down.",
+            ("An array that is still to be calibrated goes to that set-up without stop plate and set screws, its carrier on: the stops would "
+             "close before the end of the travel. Afterwards take the carrier off again. " if d.calibration else "")
+            + "Wipe ledges and plate. Lay the stop plate on the ledges, ground face down.",
         ),
         step(
             "Carrier", (*named("CA"), *carrier_screws), (0, 0, 1.4 * width),

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from math import floor
+
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs import bought, carried
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
 
 from .array import DOWN, array
@@ -42,6 +45,11 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, roller along y: "
         f"lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, set x by the edge of "
         f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
+    )
+    b.step(
+        "Calibrate, then fit the stop plate", (0, 0, 0),
+        _limits(design) + " Afterwards take the array off its mount and the carrier off the array, and go on with the step Stop "
+        "plate of the array's own guide. Zero every signal anew.",
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")
@@ -90,15 +98,15 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
     deflected = (
         {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)} if pose.deflection else {}
     )
-    b.subassembly(array(rig.design, deflected), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
+    b.subassembly(array(rig.design, deflected, stops=False), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
     b.meet(mount, "CA1")
     for x, y in carried.carrier_pattern(rig):
         at = (dx + x, dy + y, z + PLATE - carried.under_carrier_screw(rig))
         b.screw(rig.design.clamp.mount_thread, carried.CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
     b.step(
         "Array on its mount", (0, 0, 120),
-        "On the bench: lay the finished array (its own guide) on the mount with its carrier down, and fix it by four screws "
-        "from below. Leads leave along x, loose.",
+        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would close before the end "
+        "of the travel) on the mount with its carrier down, and fix it by four screws from below. Leads leave along x, loose.",
     )
     for sx, sy in CORNERS:
         at = (dx + sx * STAGE_HOLE, dy + sy * STAGE_HOLE, z + UNDER)
@@ -109,6 +117,20 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
         "whole y travel.",
     )
     b.group(None)
+
+
+def _limits(design: Design) -> str:
+    """What the calibration asks of each arm, and where it would do harm."""
+    c = design.calibration
+    lines, seen = [], set()
+    for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):
+        if not load.refused and load.place.arm not in seen:
+            seen.add(load.place.arm)
+            lines.append(f"arm {load.place.arm:g} carries {load.force:.2f} N and would yield at {floor(load.travel_at_yield * 1e3):g} um")
+    return (
+        f"Nothing protects the elements here: never turn the micrometer beyond {c.travel * 1e3:g} um from first touch."
+        + (f" There {', '.join(lines)}." if lines else "")
+    )
 
 
 def _motions(design: Design, pads, px: float, py: float) -> tuple[Motion, ...]:

@@ -35,7 +35,7 @@ def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
     head = METRIC["M5"].head_height
     for x, y in stand.POST_SCREWS:
         at = (x, rig.post_y + POST[1] / 2 + y, -BASE[1] + head)
-        b.screw("M5", 16.0, at, (0, 0, 1), base, post)
+        b.screw("M5", stand.BASE_SCREW, at, (0, 0, 1), base, post)
     b.step(
         "Stand", (0, 0, 0) if stages else (0, 0, -60),
         "Screw the post on the base plate from below. Before the last turn, check with a square on the upper face "

@@ -17,6 +17,7 @@ from tactcad.parts.rigs.layout import (
     RigLayout,
     pad_middles,
 )
+from tactcad.parts.rigs.moving import trim
 
 from .array import AGAINST_Y, ALONG_Y, array
 from .builder import Builder
@@ -38,8 +39,8 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     post = place_stand(b, rig, stages=False)
     rail = _guide(b, rig, post)
     lift = pose.height - pose.deflection
-    mass = g.moving_weight / STANDARD_GRAVITY * 1e3 - unballasted_mass(rig)
-    top = _moving(b, rig, rail, lift, mass)
+    under, mass = trim(rig)
+    top = _moving(b, rig, rail, lift, under, mass)
     b.group("axis")
     disc = bought.disc_weight(rig)
     z = top
@@ -74,13 +75,6 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
 
 def _array_names(b: Builder) -> list[str]:
     return [p.designator for p in b.placements if p.designator[0] == "E" and p.designator[1:].isdigit()]
-
-
-def unballasted_mass(rig: RigLayout) -> float:
-    """Mass of all that moves with the array, without ballast and weights, g; from the parts."""
-    b = Builder()
-    _moving(b, rig, "RL1", 0.0, 0.0)
-    return sum(p.part.mass for p in b.placements)
 
 
 def moving_mass(scene: Scene) -> float:
@@ -118,8 +112,9 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
     return rail
 
 
-def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, ballast: float) -> float:
-    """All that moves with the array; returns z of the surface that the weights lie on."""
+def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, under: float, ballast: float) -> float:
+    """All that moves with the array, with `ballast` g of ballast, about `under` mm thick; returns z of the surface
+    that the weights lie on."""
     design = rig.design
     b.group("axis")
     front = BAR_FRONT + BAR
@@ -160,7 +155,7 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, ballast: float) 
     for sx in (-1, 1):
         b.screw("M4", 10.0, (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, z - PLATFORM + under), (0, 0, -1), platform, bar)
     b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
-    pin = b.place("PN", carried.pin(rig), (0, 0, z))
+    pin = b.place("PN", carried.pin(rig, under), (0, 0, z))
     b.meet(platform, pin)
     b.screw("M4", 10.0, (0, 0, z - under), (0, 0, 1), platform, pin)
     b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.")

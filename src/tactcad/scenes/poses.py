@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import floor
 
-from tactcad.design.messages import InputError
+from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
-from tactcad.parts.layout import Layout
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 from .scene import Pose
 
@@ -16,9 +16,10 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
     """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
     the way into the sample; the array lifted, without weights, and pressed in."""
     if name == "calibration":
-        return tuple(
-            Pose(element=n, deflection=d) for n, d in enumerate(calibration_deflections(design), start=1)
-        )
+        # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no stiffness
+        free = [design.calibration.travel if load.refused else load.deflection for load in calibration_loads(design)]
+        deflections = [floor(d * 1e3 + 1e-6) / 1e3 for d in free]
+        return tuple(Pose(element=n, deflection=d) for n, d in enumerate(deflections, start=1))
     if name == "sample-stiffness":
         travel = design.sample.travel
         return (Pose(deflection=travel / 2), Pose(deflection=travel), Pose(cart=design.cart.roll / 2, height=1.0))
@@ -26,9 +27,16 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
         return (
             Pose(weights=0),
             Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
-            Pose(deflection=design.sample.travel),
+            *_pressed_in(design),
         )
     return ()
+
+
+def _pressed_in(design: Design) -> tuple[Pose, ...]:
+    """The pads in the sample: by its travel, but no deeper than they stand out of the arms' root fillets."""
+    e = design.element
+    deep = floor(min(design.sample.travel, e.pad_height - e.pad_root_radius) * 1e3 + 1e-6) / 1e3
+    return (Pose(deflection=deep),) if deep > 0 else ()
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
@@ -44,7 +52,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     for text in given:
         key, _, value = text.partition("=")
         if key not in limits:
-            raise InputError("--pose", "unknown key", value=text, legal=", ".join(limits))
+            raise InputError("--pose", "unknown key", value=text, legal=one_of(key, limits))
         low, high = limits[key]
         legal = f"{key} from {low:g} to {high:g}"
         try:
@@ -55,20 +63,3 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
             raise InputError("--pose", "out of range", value=text, legal=legal)
         values[key] = number
     return Pose(**values) if values else None
-
-
-def calibration_deflections(design: Design) -> tuple[float, ...]:
-    """Each element's deflection (mm, to a micrometre) at the calibration's whole travel.
-
-    Gauge and element are springs in series: deflection = travel K_gauge/(K_gauge + K), as far as the
-    overload stop lets it: a micrometre short of gap L/a.
-    """
-    from tactcad.mechanics import ladder  # numpy: only the checks ask for this
-    from tactcad.parts.hinge_section import hinge_section
-    from tactcad.parts.stop_gap import stop_gap
-
-    c, layout = design.calibration, Layout(design)
-    stiffness = ladder.stiffness(hinge_section(layout, layout.elements), "solid")
-    free = [float(c.travel * c.load_cell_stiffness / (c.load_cell_stiffness + k)) for k in stiffness]
-    stops = [stop_gap(layout, p) * p.load_arm / p.arm - 0.001 for p in layout.elements]
-    return tuple(floor(min(a, b) * 1e3 + 1e-6) / 1e3 for a, b in zip(free, stops))

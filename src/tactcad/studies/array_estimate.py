@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.design.materials import Alloy
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.section import Array, HingeSection
@@ -38,7 +37,8 @@ class ElementEstimate:
     goodman_factor: float | None  # at 5e8 cycles between 0 and the force
     yield_force: float  # N
     yield_deflection: float  # mm
-    rated_force: float  # N
+    rated_force: float  # N, in use
+    rated_deflection: float  # mm, never passed: overload and calibration stay below
 
 
 def estimate(layout: Layout, rung: str, force: float | None = None) -> list[ElementEstimate]:
@@ -48,14 +48,18 @@ def estimate(layout: Layout, rung: str, force: float | None = None) -> list[Elem
     """
     design = layout.design
     force = design.rating.force if force is None else force
-    places = layout.elements
-    section, alloy = hinge_section(layout, places), design_alloy(design)
-    if rung in ladder.FINITE_ELEMENTS:
-        K, per_newton = _by_elements(layout, places, section, rung, design.gauge.grid_length)
-    else:
-        K = ladder.stiffness(section, rung)
-        per_newton = _closed_form_strains(section, rung, design.gauge.grid_length)
-    return _estimates(places, section, alloy, np.asarray(K), per_newton, force, design.rating.yield_factor)
+    section = hinge_section(layout, layout.elements)
+    if rung not in ladder.FINITE_ELEMENTS:
+        return estimate_sections(layout, section, rung, force)
+    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length)
+    return _estimates(layout, section, K, per_newton, force)
+
+
+def estimate_sections(layout: Layout, section: HingeSection, rung: str, force: float) -> list[ElementEstimate]:
+    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the elements)
+    instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
+    K = np.asarray(ladder.stiffness(section, rung))
+    return _estimates(layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force)
 
 
 @dataclass(frozen=True)
@@ -111,16 +115,11 @@ def _by_elements(
 
 
 def _estimates(
-    places: tuple[ElementPlace, ...],
-    section: HingeSection,
-    alloy: Alloy,
-    K: Array,
-    per_newton: _PerNewton,
-    force: float,
-    safety: float,
+    layout: Layout, section: HingeSection, K: Array, per_newton: _PerNewton, force: float
 ) -> list[ElementEstimate]:
+    alloy, rating = design_alloy(layout.design), layout.design.rating
     rows = []
-    for i, place in enumerate(places):
+    for i, place in enumerate(layout.elements):
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
@@ -130,7 +129,7 @@ def _estimates(
             ElementEstimate(
                 number=place.number,
                 arm=place.arm,
-                load_arm=place.load_arm,
+                load_arm=float(section.load_arm[i]),
                 stiffness=float(K[i]),
                 stiffness_ratio=float(K.max() / K[i]),
                 force=force,
@@ -144,7 +143,8 @@ def _estimates(
                 goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
                 yield_force=yield_force,
                 yield_deflection=yield_force / float(K[i]),
-                rated_force=min(force, yield_force / safety),
+                rated_force=min(force, yield_force / rating.yield_factor),
+                rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
             )
         )
     return rows

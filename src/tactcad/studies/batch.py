@@ -5,15 +5,16 @@ from __future__ import annotations
 import csv
 import io
 import math
-import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.files import read_text, write_whole
+from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
+
+from .csv_table import records
 
 REQUIRED = (
     "hinge_thickness",
@@ -30,6 +31,7 @@ REQUIRED = (
 OPTIONAL = {"pad_height": 0.0, "friction": 0.0}
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"
+MOST_BYTES = 200_000_000  # a million designs and more
 ADDED = ("stiffness", "model", "valid", "reason")
 
 
@@ -40,7 +42,7 @@ def estimate_file(source: str | Path, target: str | Path, rung: str) -> tuple[in
     """
     header, rows, section = read_table(Path(source))
     stiffness, reasons = estimate_rows(section, rung)
-    _write(Path(target), header, rows, stiffness, reasons, rung)
+    write_whole(target, _table_bytes(header, rows, stiffness, reasons, rung))
     return sum(not r for r in reasons), len(rows)
 
 
@@ -64,7 +66,7 @@ def estimate_rows(section: HingeSection, rung: str) -> tuple[list[float], list[s
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     """Header, rows as text, and the section of arrays. Raises InputError where the table is malformed."""
-    lines = _lines(path)
+    lines = records(str(path), read_text(path, MOST_BYTES, "a table of designs (CSV)"))
     if not lines:
         raise InputError(f"{path}:1:1", "the file is empty", legal="a header line of column names")
     header = [name.strip() for name in lines[0][1]]
@@ -80,26 +82,6 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
             )
         rows.append((number, row))
     return header, [row for _, row in rows], _section(path, header, rows)
-
-
-def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    """(line number, fields) of every record."""
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise InputError(str(path), f"cannot be read ({error.strerror})") from None
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{path}:{line}:1", "is not UTF-8 text") from None
-    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    records, before = [], 0
-    try:
-        for record in reader:
-            records.append((before + 1, record))
-            before = reader.line_num
-    except csv.Error as error:
-        raise InputError(f"{path}:{before + 1}:1", f"is not CSV ({error})") from None
-    return records
 
 
 def _check_header(path: Path, header: list[str]) -> None:
@@ -148,41 +130,17 @@ def _side(path: Path, line: int, column: int, text: str) -> str:
     side = text.strip()
     if side not in SIDES:
         raise InputError(
-            f"{path}:{line}:{column + 1}", "unknown notch form", value=text, legal=", ".join(SIDES)
+            f"{path}:{line}:{column + 1}", "unknown notch form", value=text, legal=one_of(side, SIDES)
         )
     return side
 
 
-def _write(
-    path: Path,
-    header: list[str],
-    rows: list[list[str]],
-    stiffness: list[float],
-    reasons: list[str],
-    rung: str,
-) -> None:
-    """The whole file or none: written beside it, then moved into its place."""
-    temporary = None
-    try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", newline="", dir=path.parent, prefix=f".{path.name}.", delete=False
-        ) as file:
-            temporary = file.name
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([*header, *ADDED])
-            for row, value, reason in zip(rows, stiffness, reasons):
-                writer.writerow(
-                    [*row, "" if reason else repr(value), rung, "false" if reason else "true", reason]
-                )
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
-    except OSError as error:
-        if temporary and os.path.exists(temporary):
-            os.unlink(temporary)
-        raise InputError(str(path), f"cannot be written ({error.strerror})") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _table_bytes(
+    header: list[str], rows: list[list[str]], stiffness: list[float], reasons: list[str], rung: str
+) -> bytes:
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([*header, *ADDED])
+    for row, value, reason in zip(rows, stiffness, reasons):
+        writer.writerow([*row, "" if reason else repr(value), rung, "false" if reason else "true", reason])
+    return text.getvalue().encode()

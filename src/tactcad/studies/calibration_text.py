@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from math import inf, isfinite
-from pathlib import Path
 
 import numpy as np
 
+from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.studies.calibration import ElementCalibration, Estimate
-from tactcad.studies.csv_table import Field, refuse_duplicates
+from tactcad.studies.csv_table import LARGEST_FILE, Field, refuse_duplicates
 from tactcad.studies.csv_table import read as read_table
 from tactcad.studies.grasp import Sensitivity
 from tactcad.studies.report import plain
@@ -155,25 +153,6 @@ def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
     return "\n".join(lines) + "\n"
 
 
-def write(path: str, text: str) -> None:
-    """All or nothing: beside its place first, then moved. Raises CheckFailure where the disk refuses."""
-    place = Path(os.path.abspath(path))
-    try:
-        handle, part = tempfile.mkstemp(prefix=f".{place.name}.", suffix=".part", dir=place.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as out:
-                out.write(text)
-            os.chmod(part, 0o644)
-            os.replace(part, place)
-        except OSError:
-            os.unlink(part)
-            raise
-    except OSError as error:
-        raise CheckFailure(
-            f"{path}: cannot be written: {error.strerror or error}; nothing was changed"
-        ) from None
-
-
 def read(path: str) -> Sensitivity:
     """A calibration from CSV or JSON, as `to_csv` and `to_json` write it; a table without uncertainties
     counts as exact.
@@ -208,8 +187,8 @@ def read(path: str) -> Sensitivity:
 
 
 def _from_json(path: str) -> Sensitivity:
+    data = read_json(path, LARGEST_FILE, "a calibration")
     try:
-        data = json.loads(Path(path).read_text("utf-8"))
         elements = data["elements"]
         if data.get("schema") != SCHEMA:
             raise KeyError("schema")
@@ -225,15 +204,15 @@ def _from_json(path: str) -> Sensitivity:
             ]
             for e in elements
         ]
-        values = np.array(columns, dtype=float)
-    except OSError as error:
-        raise InputError(path, f"cannot be read: {error.strerror}") from None
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}") from None
-    except (KeyError, TypeError, ValueError, AttributeError, UnicodeDecodeError):
+        values = np.array(columns, dtype=float).reshape(-1, 7)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError(
             path, "not a calibration by tactcad calibrate --json", legal=f"schema {SCHEMA}"
         ) from None
+    if not len(values):
+        raise InputError(path, "a calibration of no element", legal="one element at least")
+    if not (np.isfinite(values[:, 0]).all() and (values[:, 0] >= 1).all() and (values[:, 0] % 1 == 0).all()):
+        raise InputError(path, "an element's number is none", value=values[:, 0].tolist(), legal="whole numbers from 1")
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
         raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")

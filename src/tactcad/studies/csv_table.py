@@ -7,12 +7,14 @@ order and unknown ones are left alone.
 from __future__ import annotations
 
 import csv
+import io
 from dataclasses import dataclass
 from math import inf, isfinite
 from pathlib import Path
 
 import numpy as np
 
+from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
 
 LARGEST_FILE = 50_000_000  # bytes; a calibration of 10 000 elements is 15 MB
@@ -131,22 +133,25 @@ def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each onc
         seen[key] = i
 
 
-def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
+def records(shown: str, text: str, delimiter: str = ",") -> list[tuple[int, list[str]]]:
+    """Every record of CSV text (line ends within quotes belong to it) with the line it begins on.
+
+    Raises InputError where it is no CSV.
+    """
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    found, before = [], 0
     try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise InputError(
-                shown, "file too large", value=path.stat().st_size, legal=f"up to {LARGEST_FILE} bytes"
-            )
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        raise InputError(f"{shown}:{line}:1", "not UTF-8 text") from None
-    except OSError as error:
-        raise InputError(shown, f"cannot be read: {error.strerror}") from None
+        for record in reader:
+            found.append((before + 1, record))
+            before = reader.line_num
+    except csv.Error as error:
+        raise InputError(f"{shown}:{before + 1}:1", f"not CSV: {error}") from None
+    return found
+
+
+def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
     found = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if "\x00" in line:
-            raise InputError(f"{shown}:{number}:1", "a NUL character: not a text file")
+    for number, line in enumerate(read_text(path, LARGEST_FILE, "readings (CSV)").splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
             found.append((number, [field.strip() for field in _split(line, f"{shown}:{number}:1")]))
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Callable, Sequence
 from importlib import resources
@@ -12,12 +13,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tactcad.design.files import read_text, write_whole
+from tactcad.design.messages import InputError
 from tactcad.fem.plane import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.solid import solve_solid
 from tactcad.fem.surface import face_strain
 from tactcad.mechanics.section import HingeSection
 
+MOST_BYTES = 20_000_000  # the shipped samples take a quarter of one
 Columns = dict[str, NDArray[np.float64]]
 
 # The box over which the closed forms promise their error (mm; Poisson's ratio).
@@ -201,17 +205,21 @@ def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Col
 
 def write(columns: Columns, path: Path) -> None:
     """One line a design, eight digits."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(columns)
-        for row in zip(*columns.values()):
-            writer.writerow("" if math.isnan(v) else f"{v:.8g}" for v in row)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    for row in zip(*columns.values()):
+        writer.writerow("" if math.isnan(v) else f"{v:.8g}" for v in row)
+    write_whole(path, text.getvalue().encode())
 
 
 def load(path: Path | Traversable) -> Columns:
-    """The columns that `write` wrote."""
-    rows = list(csv.DictReader(path.read_text("utf-8").splitlines()))
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+    """The columns that `write` wrote. Raises InputError where the file is something else."""
+    rows = list(csv.DictReader(read_text(path, MOST_BYTES, "samples that `tactcad fit` wrote (CSV)").splitlines()))
+    try:
+        return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
+    except (IndexError, TypeError, ValueError) as error:
+        raise InputError(str(path), f"not the samples of an earlier fit: {error}", legal="what `tactcad fit` wrote") from None
 
 
 def shipped() -> dict[str, Columns]:

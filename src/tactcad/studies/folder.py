@@ -7,15 +7,15 @@ one step where the system can (Linux's renameat2), else moved aside first and ba
 from __future__ import annotations
 
 import ctypes
-import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable
 from pathlib import Path
 
-from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.files import absolute, read_json, refusal
+from tactcad.design.messages import InputError
 
+MOST_BYTES = 100_000_000  # a report takes two
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
 
 
@@ -23,11 +23,11 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
     """Make `out` a folder of exactly these files; their names may have one folder in them.
 
     `out` may be missing, empty, or an earlier report (a report.json of that schema beside files of these
-    kinds only). Raises InputError where it is something else, CheckFailure where the disk refuses; then
-    `out` is as before.
+    kinds only). Raises InputError where it is something else or may not be written, CheckFailure where there is no
+    room; then `out` is as before.
     """
-    out = Path(os.path.abspath(out))
-    require_ours(out, files, schema)
+    out = absolute(out)
+    refuse_foreign(out, {Path(name).suffix for name in files}, schema)
     part = None
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -38,16 +38,14 @@ def replace(out: Path, files: dict[str, bytes], schema: str) -> None:
             (part / name).write_bytes(content)
         _move(part, out)
     except OSError as error:
-        raise CheckFailure(
-            f"{out}: cannot be written: {error.strerror or error}; nothing was changed"
-        ) from None
+        raise refusal(str(out), error) from error
     finally:
         if part is not None:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def require_ours(out: Path, names: Iterable[str], schema: str) -> None:
-    """Raise InputError unless `out` is missing, empty, or an earlier report with files of the names' endings."""
+def refuse_foreign(out: Path, endings: set[str], schema: str) -> None:
+    """Raises InputError where `out` is neither missing nor empty nor an earlier report of such files."""
     if not os.path.lexists(out):
         return
     if out.is_symlink() or not out.is_dir():
@@ -55,12 +53,11 @@ def require_ours(out: Path, names: Iterable[str], schema: str) -> None:
             str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report"
         )
     there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    endings = {Path(name).suffix for name in names}
     if not there:
         return
     try:
-        ours = json.loads((out / "report.json").read_text("utf-8")).get("schema") == schema
-    except (OSError, ValueError, AttributeError):
+        ours = read_json(out / "report.json", MOST_BYTES, "a report").get("schema") == schema
+    except (InputError, AttributeError):
         ours = False
     foreign = [name for name in there if Path(name).suffix not in endings]
     if not ours or foreign:

@@ -6,12 +6,13 @@ the bearing face at z = 0, the screw pointing along +z.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
 
-from ..description import Extrusion, Material, Part, Pocket, Purchase, Revolution, drill_point_height
+from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution, drill_point_height
 
 STAINLESS = Material("stainless steel A2-70", 7900)
 STAINLESS_SET = Material("stainless steel A2-21H", 7900)
@@ -64,6 +65,9 @@ SET_SCREW_LENGTHS = {
 
 # Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
 ENGAGED = 1.5
+# Full thread in diameters, and drilled depth in diameters, that taps and drills reach (usual advice).
+TAP_REACH = 3.0
+DRILL_REACH = 10.0
 
 
 def engagement(thread: str) -> float:
@@ -131,6 +135,28 @@ def set_screw(thread: str, length: float) -> Part:
     )
 
 
+def for_pictures(part: Part) -> Part:
+    """A screw or rod as thin as its tapped hole, a hair less; any other part as it is.
+
+    Hidden-line removal takes parts as not meeting: a thread that reaches into the material around its hole leaves
+    ticks on the faces that it pierces.
+    """
+    match = _THREADED.match(part.part_no)
+    if not match:
+        return part
+    m = METRIC[match[1]]
+    thin = m.tap_drill / 2 - 0.02
+    if isinstance(part.body, Extrusion):
+        body = replace(part.body, outer=circle((0, 0), 2 * thin))
+    else:
+        points = (s.start for s in part.body.profile)
+        body = _revolved([(r if r > m.d / 2 else min(r, thin), z) for r, z in points])
+    return replace(part, part_no=f"{part.part_no}-drawn", body=body)
+
+
+_THREADED = re.compile(r"(?:ISO4762|ISO4026|DIN976-1)-(M[\d.]+)x")
+
+
 def nut(thread: str) -> Part:
     """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along +z."""
     m = METRIC[thread]
@@ -139,7 +165,10 @@ def nut(thread: str) -> Part:
         name=f"Hexagon nut {thread}",
         process="bought",
         material=STAINLESS,
-        body=Extrusion(_hexagon(m.nut), m.nut_height, (circle((0, 0), m.tap_drill),)),
+        body=Extrusion(_hexagon(m.nut), m.nut_height),
+        features=(
+            Hole("thread", (0, 0, 0), (0, 0, 1), m.tap_drill, m.nut_height, True, thread=thread, thread_depth=m.nut_height),
+        ),
         colour="#8a8d91",
         purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
         spares=2,

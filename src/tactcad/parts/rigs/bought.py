@@ -25,6 +25,7 @@ ALUMINIUM = Material("aluminium", 2700)
 STEEL = Material("steel", 7850)
 PIN = 8.0  # of the weight platform, mm
 SHAFT = 6.0  # M6
+FITTING_RADIUS = 4.0  # the hose fitting's shoulder
 BRASS = Material("brass, nickel plated", 8500)
 GAUGE_THREADS = (-20.0, 20.0)  # of the gauge's back, from the middle of its plate, mm
 
@@ -194,7 +195,7 @@ def disc_weight(rig: RigLayout) -> Part:
 def hose_fitting() -> Part:
     """Barbed fitting M5 for soft hose of 4 mm bore: axis z, thread below z = 0, shoulder at z = 0."""
     profile = chain([
-        (1.2, -4.0), (2.5, -4.0), (2.5, 0), (4.0, 0), (4.0, 5.0), (2.0, 5.0), (2.5, 9.0), (2.0, 13.0), (1.2, 13.0),
+        (1.2, -4.0), (2.5, -4.0), (2.5, 0), (FITTING_RADIUS, 0), (FITTING_RADIUS, 5.0), (2.0, 5.0), (2.5, 9.0), (2.0, 13.0), (1.2, 13.0),
     ])
     return Part(
         part_no="FITTING-M5-HOSE4-barb",

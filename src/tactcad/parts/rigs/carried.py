@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import ceil
 
-from tactcad.contour import circle, rectangle
+from tactcad.contour import Contour, circle, rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..library.screws import METRIC
+from ..library.screws import METRIC, tapped_depth
 from .bought import PIN, disc_weight
 from .bought import STEEL as WEIGHT_STEEL
 from .cart import COLOUR, plate_alloy
@@ -77,7 +77,7 @@ def array_mount(rig: RigLayout) -> Part:
 
 def foot(rig: RigLayout) -> Part:
     """Plate on the array's carrier, with the bar at its back edge. z = 0 is the carrier's side."""
-    x = round(rig.array.mount_x + METRIC[rig.design.clamp.mount_thread].head / 2 + 2.0, 3)
+    x = round(max(rig.array.mount_x + METRIC[rig.design.clamp.mount_thread].head / 2, BAR_WIDTH / 2) + 2.0, 3)
     y = round(rig.design.clamp.mount_pitch_y / 2 + METRIC[rig.design.clamp.mount_thread].head / 2 + 2.0, 3)
     mount = rig.design.clamp.mount_thread
     features: list[Feature] = [
@@ -143,9 +143,11 @@ def platform(rig: RigLayout) -> Part:
     )
 
 
-def pin(rig: RigLayout) -> Part:
-    """Pin that centres the weights, as high as their stack; M4 thread in its foot."""
-    height = 5.0 * ceil((round(rig.design.grasping.weights) * disc_weight(rig).body.thickness + 9.0) / 5.0)
+def pin(rig: RigLayout, under: float = 0.0) -> Part:
+    """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its foot."""
+    stack = round(rig.design.grasping.weights) * disc_weight(rig).body.thickness
+    thread = tapped_depth("M4") + 1.0  # in its foot, and the floor over it
+    height = 5.0 * ceil(max(stack + max(9.0, under + 1.0), thread) / 5.0)
     return Part(
         part_no=f"{rig.design.name}-weight-pin",
         name="Weight pin",
@@ -160,11 +162,11 @@ def pin(rig: RigLayout) -> Part:
 
 def ballast(rig: RigLayout, mass: float) -> Part:
     """Disc under the weights that brings the moving mass to the paper's; `mass` in g, thickness to 0.01 mm."""
-    outer, bore = circle((0, 0), rig.design.grasping.weight_diameter), circle((0, 0), PIN + 0.5)
-    thickness = round(mass / ((outer.area - bore.area) * WEIGHT_STEEL.density * 1e-6), 2)
+    outer, bore = _disc(rig)
+    thickness = round(ballast_thickness(rig, mass), 2)
     return Part(
         part_no=f"{rig.design.name}-ballast",
-        name="Trim ballast",
+        name=f"Trim ballast, disc {rig.design.grasping.weight_diameter:g} x {thickness:g} mm",
         process="turned",
         material=WEIGHT_STEEL,
         body=Extrusion(outer, thickness, (bore,)),
@@ -172,3 +174,14 @@ def ballast(rig: RigLayout, mass: float) -> Part:
         finish="as turned; weighed with all that moves, and thinned until that is right",
         notes=("break edges 0.5",),
     )
+
+
+def ballast_thickness(rig: RigLayout, mass: float) -> float:
+    """Thickness (mm) of a ballast of that mass (g)."""
+    outer, bore = _disc(rig)
+    return mass / ((outer.area - bore.area) * WEIGHT_STEEL.density * 1e-6)
+
+
+def _disc(rig: RigLayout) -> tuple[Contour, Contour]:
+    """Outline and bore of the ballast: the weights'."""
+    return circle((0, 0), rig.design.grasping.weight_diameter), circle((0, 0), PIN + 0.5)

@@ -24,6 +24,7 @@ PLATE_SCREW = ("M4", 12.0, 5.6)  # thread, length, plate under its sunk head: 6.
 GAUGE_SIZE = (66.0, 36.0, 230.0)  # force gauge along x, y, z
 GAUGE_SHAFT = 10.0  # free length of its M6 shaft
 TIP = 18.0  # tip on that shaft, to where it touches
+TIP_LAND = 2.0  # how far the flat tip's land stands out of its body
 TIP_GAP = 1.0  # tip to the gauge's housing
 BASE = (200.0, 12.0)  # base plate along x, thickness
 POST = (60.0, 20.0)  # post along x, y

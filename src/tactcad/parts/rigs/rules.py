@@ -7,16 +7,18 @@ rig takes this design's array: one that does not fit costs the design that scene
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import pi, tan
+from math import hypot, pi, tan
 
 from tactcad.mechanics.rigs import holding_force, tipping_margin
 
 from ..broken import Broken
-from ..layout import Layout
+from ..layout import HOLE_WEB, Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
-from .carried import CARRIER_SCREW, under_carrier_screw
+from .bought import FITTING_RADIUS
+from .calibration_loads import calibration_loads
+from .carried import BAR_MIDDLE, BAR_SCREW_X, CARRIER_SCREW, under_carrier_screw
 from .layout import (
     BAR,
     BAR_FRONT,
@@ -26,13 +28,16 @@ from .layout import (
     GROOVE_WALL,
     RAIL_HEIGHT,
     STAGE_HOLE,
+    TIP_LAND,
     RigLayout,
     pad_middles,
 )
+from .moving import ballast_range
 
 SAME = 1e-9
 WALL = 0.8  # least material beside an axle's hole, mm; as for free-standing aluminium walls
 LEAST_TIPPING = 2.0  # mm that any load on the sample stays inside the wheels; chosen: a badly centred sample
+ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
 LEAST_AIR = 0.5  # between things that pass each other, mm
 
 Finding = tuple[str, str, object, str]
@@ -63,7 +68,7 @@ def axles_fit_plate(layout: Layout) -> Iterator[Finding]:
     if c.length < end - SAME:
         yield ("cart.wheel_base", "axles too near the plate's ends", c.wheel_base, f"at most {c.length - 2 * around:g} mm")
     apart = abs(c.wheel_base / 2 - rig.holder_screw)
-    least = m.clearance / 2 + METRIC["M3"].tap_drill / 2 + LEAST_AIR
+    least = (m.clearance + METRIC["M3"].d) / 2 + HOLE_WEB
     if apart < least - SAME:
         yield ("cart.wheel_base", "axles meet the holder's screws", c.wheel_base, f"at least {least:g} mm beside {rig.holder_screw:g} mm")
 
@@ -184,6 +189,19 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
             yield ("calibration.axis_travel", f"vertical axis rests {rest:+.3g} mm off its middle", c.axis_travel, f"at least {need:.4g} mm")
 
 
+def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
+    """No hinge yields at the end of the travel: in this set-up there is no stop plate."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    for load in calibration_loads(layout.design):
+        if c.travel > load.travel_at_yield:  # not where the estimator does not reach
+            yield (
+                "calibration.travel", f"the hinge of element {load.place.number} yields before its end", c.travel,
+                f"at most {load.travel_at_yield:.4g} mm",
+            )
+
+
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.calibration is None:
@@ -200,6 +218,11 @@ def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     if not 2.0 - SAME <= under <= FOOT + SAME:
         low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
         yield ("clamp.carrier_thickness", f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads", d.clamp.carrier_thickness, f"from {low:g} to {high:g} mm")
+    least = counterbore_diameter(d.clamp.mount_thread) + HOLE_WEB
+    if d.clamp.mount_pitch_y < least - SAME:
+        yield ("clamp.mount_pitch_y", "heads of the screws into the carrier run into each other", d.clamp.mount_pitch_y, f"at least {least:g} mm")
+    if 2 * layout.mount_x < least - SAME:
+        yield ("clamp.carrier_screw_offset", "heads of the screws into the carrier run into the other row's", d.clamp.carrier_screw_offset, f"at least {d.clamp.carrier_screw_offset + 2 * least - 4 * layout.mount_x:g} mm")
 
 
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
@@ -211,7 +234,10 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
     if length is None or length > most + SAME:
         yield ("calibration.roller", f"no standard pin covers a pad and clears its neighbours: shortest {length} mm", size, f"a pin from {d.sheet.thickness:g} to {most:g} mm long")
-    if dowel_diameter(size) / 2 > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
+    out = dowel_diameter(size) / 2
+    if d.calibration.travel > out - ROLLER_OUT + SAME:
+        yield ("calibration.travel", "the roller's holder would come down on the neighbouring pads", d.calibration.travel, f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}")
+    if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
         yield ("calibration.roller", "roller touches the facing pad", size, "a thinner one")
 
 
@@ -240,6 +266,23 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
         yield ("clamp.mount_pitch_y", "bar stands on the carrier's screws", d.clamp.mount_pitch_y, f"at most {2 * (BAR_FRONT - head - 0.2):g} mm")
 
 
+def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
+    yield from _apart_from(layout, STAGE_HOLE, STAGE_HOLE, "the stage's screws in the array mount")
+
+
+def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
+    yield from _apart_from(layout, BAR_SCREW_X, BAR_MIDDLE, "the bar's screws in the foot")
+
+
+def _apart_from(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:
+    """The carrier's pattern of threads against M4 screws at (x, y): a web between their counterbores."""
+    c = layout.design.clamp
+    apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
+    least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB
+    if apart < least - SAME:
+        yield ("clamp.mount_pitch_y", f"screws into the carrier run into {what}: {apart:.3g} mm apart", c.mount_pitch_y, f"at least {least:g} mm apart")
+
+
 def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
     g = layout.design.grasping
     if g is None:
@@ -249,6 +292,36 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
         yield ("grasping.weight_diameter", "weights rub on the guide", g.weight_diameter, f"at most {2 * free:g} mm")
     if g.weights != round(g.weights):
         yield ("grasping.weights", "not a whole number", g.weights, "0, 1, 2 ...")
+
+
+def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
+    wanted = layout.design.grasping.moving_weight
+    try:
+        low, high = ballast_range(RigLayout(layout.design))
+    except (AttributeError, ValueError):
+        return  # parts that cannot be drawn: the design is refused for that
+    if low <= wanted <= high:
+        return
+    legal = f"from {low:.4g} to {high:.4g} N" if low < high else "fewer or larger weights: their stack is too high"
+    yield ("grasping.moving_weight", "no ballast under the weights brings what moves to it", wanted, legal)
+
+
+def tip_land_clears_sample(layout: Layout) -> Iterator[Finding]:
+    s = layout.design.sample
+    if s is None:
+        return
+    most = min(TIP_LAND, s.thickness / 2)
+    if s.travel > most + SAME:
+        yield ("sample.travel", "deeper than the tip's land is high, or than half the sample", s.travel, f"at most {most:g} mm")
+
+
+def port_clears_cart(layout: Layout) -> Iterator[Finding]:
+    rig, h = RigLayout(layout.design), layout.design.holder
+    if not rig.has_cart or rig.cart.width <= rig.holder_side + SAME:
+        return
+    free = rig.holder_body - rig.port_depth - FITTING_RADIUS
+    if free < LEAST_AIR - SAME:
+        yield ("holder.floor", "hose fitting meets the cart plate", h.floor, f"at least {h.floor + LEAST_AIR - free:g} mm")
 
 
 def pads_on_sample(layout: Layout) -> Iterator[Finding]:
@@ -272,14 +345,22 @@ RIG_RULES: dict[str, Rule] = {
         seal_fits_holder,
         holder_can_be_screwed,
         screws_clear_sample,
+        port_clears_cart,
+        tip_land_clears_sample,
         axis_reaches_contact,
+        calibration_bends_elastically,
         weights_clear_guide,
     )
 }
 
 FITS: dict[str, tuple[Rule, ...]] = {
-    "calibration": (stages_reach_pads, mount_clears_carrier, carrier_screws_fit, roller_clears_neighbours),
-    "grasping": (pads_on_sample, carrier_screws_fit, bar_clears_screws, rail_is_long_enough),
+    "calibration": (
+        stages_reach_pads, mount_clears_carrier, carrier_screws_fit, mount_holes_apart, roller_clears_neighbours,
+    ),
+    "grasping": (
+        pads_on_sample, carrier_screws_fit, bar_clears_screws, foot_holes_apart, rail_is_long_enough,
+        ballast_trims_moving_weight,
+    ),
 }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import ceil, hypot
+
 from tactcad.contour import Corner, circle, rectangle, rounded_polygon
 
 from ..description import Characteristic, Extrusion, Feature, Hole, Part, Pocket
@@ -10,9 +12,11 @@ from ..library.screws import METRIC
 from .bought import GAUGE_THREADS, rail_holes
 from .cart import COLOUR, STEEL, plate_alloy
 from .holes import sunk, tapped_blind, tapped_through
-from .layout import BASE, PLATE, PLATE_SCREW, POST, RISER_PITCH, STAGE_HOLE, TIP, RigLayout
+from .layout import BASE, PLATE, PLATE_SCREW, POST, RISER_PITCH, STAGE_HOLE, TIP, TIP_LAND, RigLayout
 
 POST_SCREWS = tuple((sx * 20.0, sy * 5.0) for sx in (-1, 1) for sy in (-1, 1))  # from the post's middle
+BASE_SCREW = 16.0  # M5 through the base plate into the post, head sunk
+BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 0.5
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 GAUGE_SCREW_X, GAUGE_SCREW_Z = 40.0, 20.0  # gauge plate on axis plate: outside the gauge's width
 
@@ -49,7 +53,8 @@ def post(rig: RigLayout) -> Part:
     features: list[Feature] = [
         tapped_through("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
     ]
-    features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0)) for px, py in POST_SCREWS]
+    # the base plate's screws reach 9 mm in, more than the usual blind thread has
+    features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS]
     return Part(
         part_no=f"{rig.design.name}-post",
         name="Post",
@@ -105,7 +110,8 @@ def _upright(rig: RigLayout, number: str, name: str, features: list[Feature]) ->
 def flat_tip(rig: RigLayout) -> Part:
     """Tip for the sample: a land of one pad's size under a round body. z = 0 is the land, the thread from the top."""
     d = rig.design
-    a, b, body = d.element.pad_length / 2, d.sheet.thickness / 2, 10.0
+    a, b = d.element.pad_length / 2, d.sheet.thickness / 2
+    body = max(10.0, float(ceil(2 * hypot(a, b) + 1.0)))  # 0.5 mm around the land's corners
     around = circle((0, 0), body)
     return Part(
         part_no=f"{d.name}-tip-flat",
@@ -114,7 +120,7 @@ def flat_tip(rig: RigLayout) -> Part:
         material=STEEL,
         body=Extrusion(around, TIP),
         features=(
-            Pocket("around_land", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, 2.0, (rectangle(-a, -b, a, b),)),
+            Pocket("around_land", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, TIP_LAND, (rectangle(-a, -b, a, b),)),
             _shaft_thread(),
         ),
         colour="#565d66",

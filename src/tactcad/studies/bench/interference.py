@@ -6,10 +6,12 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
+from tactcad.parts.description import Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
@@ -78,59 +80,78 @@ def count_wrong(found: list[str], true: list[str]) -> dict[str, int]:
     return {"wrong": wrong, "missed": missed, "false": false, "others": wrong - missed - false}
 
 
-def kernel_verdict(pair: tuple[Placement, Placement], shapes: dict) -> str:
-    """As `tactcad check` finds it: the kernel's distance, and its common solid where that is none."""
-    from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting
+@dataclass
+class Prepared:
+    """What each way of judging makes once a part, by part number: the kernel's shape with its box and its faces' boxes,
+    and closed meshes by angular tolerance."""
 
-    found = meeting(*pair, shapes)
+    shapes: dict = field(default_factory=dict)
+    boxes: dict = field(default_factory=dict)
+    faces: dict = field(default_factory=dict)
+    meshes: dict = field(default_factory=dict)
+
+    def add(self, part: Part, angular: tuple[float, ...], meshing: dict[float, list[float]]) -> None:
+        from tactcad.solids.build import build
+        from tactcad.solids.measure import bounding_box
+        from tactcad.solids.mesh import triangles
+        from tactcad.solids.mesh_overlap import closed
+        from tactcad.solids.near import Faces
+
+        number = part.part_no
+        if number in self.shapes:
+            return
+        shape = self.shapes[number] = build(part).wrapped
+        self.boxes[number], self.faces[number] = bounding_box(shape), Faces(shape)
+        for a in angular:
+            self.meshes[number, a] = _timed(meshing.setdefault(a, []), lambda a=a: closed(triangles(shape, LINEAR, a)))
+
+
+def kernel_verdict(pair: tuple[Placement, Placement], made: Prepared) -> str:
+    """As `tactcad check` finds it: the kernel's distance, and its common solid where that is none."""
+    from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting, placed_box
+
+    boxes = tuple(placed_box(p, made.boxes[p.part.part_no]) for p in pair)
+    found = meeting(pair, boxes, made.shapes, made.faces)
     return "overlap" if found.overlap > OVERLAP_MM3 else "touch" if found.distance < TOUCH_MM else "clear"
 
 
-def mesh_verdict(pair: tuple[Placement, Placement], meshes: dict) -> str:
+def mesh_verdict(pair: tuple[Placement, Placement], made: Prepared, angular: float) -> str:
     """By the same limits from what the triangles share, and from their distance."""
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM
     from tactcad.solids.mesh_overlap import meeting, placed
 
-    a, b = (placed(meshes[p.part.part_no], p.origin, p.rotation) for p in pair)
+    a, b = (placed(made.meshes[p.part.part_no, angular], p.origin, p.rotation) for p in pair)
     overlap, gap = meeting(a, b, 10 * TOUCH_MM)
     return "overlap" if overlap > OVERLAP_MM3 else "touch" if gap < TOUCH_MM else "clear"
 
 
 def _compared(plan: Plan, name: str, pairs: list[tuple[tuple, str | None]], angular: tuple[float, ...]) -> list[dict]:
     """A row by the kernel and one by each tolerance; on every pair all of them in turn."""
-    from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
-    from tactcad.solids.mesh_overlap import closed
-
-    methods = ["kernel", *(f"meshes, {a:g} rad" for a in angular)]
-    verdicts, seconds = {m: [] for m in methods}, {m: [] for m in methods}
-    meshing: dict[str, list[float]] = {m: [] for m in methods}
-    shapes: dict = {}
-    meshes: dict[str, dict] = {m: {} for m in methods}
-    true = []
+    ways: list[float | None] = [None, *angular]  # None: the kernel
+    verdicts, seconds = {w: [] for w in ways}, {w: [] for w in ways}
+    meshing: dict[float, list[float]] = {}
+    made, true = Prepared(), []
     for n, (pair, verdict) in enumerate(pairs):
         if n % 20 == 0:
             plan.say(f"{name}: {n} of {len(pairs)}")
         if verdict is not None:  # every known pair has parts of its own
-            shapes, meshes = {}, {m: {} for m in methods}
+            made = Prepared()
         for p in pair:
-            number = p.part.part_no
-            if number not in shapes:
-                shapes[number] = build(p.part).wrapped
-                for m, a in zip(methods[1:], angular):
-                    meshes[m][number] = _timed(meshing[m], lambda: closed(triangles(shapes[number], LINEAR, a)))  # noqa: B023
-        for m in methods:
-            judge = (lambda: kernel_verdict(pair, shapes)) if m == "kernel" else (lambda: mesh_verdict(pair, meshes[m]))  # noqa: B023
-            verdicts[m].append(_timed(seconds[m], judge))
-        true.append(verdict or verdicts["kernel"][-1])
-    return [
-        {"pairs": name, "by": m, "angular": a, "count": len(pairs)}
-        | (count_wrong(verdicts[m], true) if m != "kernel" or pairs[0][1] else {})
-        | {"seconds": float(np.mean(seconds[m])), "median": float(np.median(seconds[m]))}
-        | {"time ratio": float(np.mean(seconds[m]) / np.mean(seconds["kernel"]))}
-        | ({"meshing": float(np.mean(meshing[m]))} if meshing[m] else {})
-        for m, a in zip(methods, (None, *angular))
-    ]
+            made.add(p.part, angular, meshing)
+        for w in ways:
+            judge = partial(kernel_verdict, pair, made) if w is None else partial(mesh_verdict, pair, made, w)
+            verdicts[w].append(_timed(seconds[w], judge))
+        true.append(verdict or verdicts[None][-1])
+    rows = []
+    for w in ways:
+        row = {"pairs": name, "by": "kernel" if w is None else f"meshes, {w:g} rad", "angular": w, "count": len(pairs)}
+        if w is not None or pairs[0][1]:  # the kernel is not held against itself
+            row |= count_wrong(verdicts[w], true)
+        row |= {"seconds": float(np.mean(seconds[w])), "median": float(np.median(seconds[w]))}
+        row["time ratio"] = row["seconds"] / float(np.mean(seconds[None]))
+        row["meshing"] = None if w is None else float(np.mean(meshing[w]))
+        rows.append(row)
+    return rows
 
 
 def _timed(into: list[float], action: Callable):

@@ -58,7 +58,7 @@ def cases(plan: Plan) -> list[Case]:
 def measure(plan: Plan) -> dict:
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     fine = truth.of_run(plan)
-    count = plan.of(2, 4, 20)
+    count = plan.of(2, 4, 12)
     known = zip(truth.sections(fine), fine["plane_stiffness"] * fine["width"], truth.solid_stiffness(fine))
     designs = [
         (reference_shape(one), float(one.poisson), float(one.width), flat, solid)

@@ -26,6 +26,7 @@ BENCHMARKS = {
     "scaling": ("scaling", True),
     "element": ("element", True),
     "export": ("export_times", True),
+    "sheets": ("sheets", True),
 }
 
 

@@ -1,0 +1,30 @@
+"""The calibration has no stop plate: does any hinge pass its rated deflection at the end of the travel?"""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.parts.element import element_number
+from tactcad.parts.rigs.calibration_loads import calibration_loads
+
+from .finding import Finding
+
+
+def check_calibration(design: Design) -> list[Finding]:
+    """Fail where the travel would make a hinge yield, flag where it passes the rated deflection, with the travel that does not.
+
+    An element whose strength the estimator cannot tell is flagged by the strength check.
+    """
+    found = []
+    for load in calibration_loads(design):
+        if load.refused or load.deflection <= load.rated_deflection:
+            continue
+        severity = "fail" if design.calibration.travel > load.travel_at_yield else "flag"
+        who = f"{load.place.designator} ({element_number(design, load.place)})"
+        message = (
+            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated for {load.rated_deflection:.4g}: "
+            f"calibrate it to {load.travel_at_rated:.4g} mm of travel"
+        )
+        found.append(
+            Finding("calibration", severity, who, (load.place.hinge_x, load.place.hinge.t / 2), load.deflection, load.rated_deflection, message)
+        )
+    return found

@@ -1,0 +1,159 @@
+"""The one way in which files named by users are read, and single files written.
+
+Reading: regular files of bounded size only, so that a pipe, a device or a huge file named by mistake neither
+hangs the command nor fills the memory. Writing: the whole file under its name, or none.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import stat
+import tempfile
+from contextlib import suppress
+from math import isfinite
+from pathlib import Path
+from typing import Any, NoReturn
+
+from .messages import CheckFailure, InputError, shortened
+
+# what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
+NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
+REFUSED_BY_MACHINE = NO_ROOM | {
+    errno.EACCES, errno.EPERM, errno.EROFS, errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENOENT, errno.ENAMETOOLONG,
+    errno.EBUSY, errno.ELOOP, errno.EMFILE, errno.ENFILE, errno.EINVAL,
+}  # fmt: skip
+
+
+def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
+    """All bytes of a regular file; `kind` says in messages what was expected ("a design file (TOML)").
+
+    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than `most_bytes`,
+    or may not be read.
+    """
+    shown = str(path)
+    if "\0" in shown:
+        raise InputError(shown, "cannot be read: a NUL in its name", legal=kind)
+    try:
+        handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # without waiting for a pipe's writer
+        with open(handle, "rb") as stream:
+            state = os.fstat(handle)
+            if not stat.S_ISREG(state.st_mode):
+                raise InputError(shown, "cannot be read: not a file", legal=kind)
+            # a file may say less than it gives, as those of /proc do
+            data = stream.read(most_bytes + 1) if state.st_size <= most_bytes else None
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(shown, "cannot be read: no such file", legal=kind) from None
+    except IsADirectoryError:
+        raise InputError(shown, "cannot be read: not a file", legal=kind) from None
+    except OSError as error:
+        raise InputError(shown, f"cannot be read: {error.strerror}", legal=kind) from None
+    if data is None or len(data) > most_bytes:
+        raise InputError(shown, "larger than such a file can be", legal=f"{kind} of at most {most_bytes} bytes")
+    return data
+
+
+def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
+    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes) where
+    it is not UTF-8.
+    """
+    data = read_bytes(path, most_bytes, kind)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        # error.object is what stands behind the mark
+        before = error.object[: error.start]
+        line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
+        found = error.object[error.start : error.end]
+        raise InputError(f"{path}:{line}:{column}", "is not UTF-8 text", value=found, legal=f"{kind} in UTF-8") from None
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        raise InputError(f"{path}:{line}:1", "a NUL character: not a text file", legal=kind)
+    return text
+
+
+def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
+    """The value of a JSON file. Raises InputError, with line and column where it is not JSON.
+
+    NaN and infinities, which JSON has not, are refused too.
+    """
+    text = read_text(path, most_bytes, f"{kind} (JSON)")
+    try:
+        return json.loads(text, parse_constant=_no_number, parse_float=_finite)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}", legal=kind) from None
+    except RecursionError:
+        raise InputError(str(path), "nested too deeply", legal=kind) from None
+    except ValueError as error:  # NaN, or an integer of thousands of digits
+        raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    return value if isfinite(value) else _no_number(text)
+
+
+def _no_number(text: str) -> NoReturn:
+    raise ValueError(f"{shortened(text)} is no number")
+
+
+def write_whole(path: str | Path, data: bytes) -> None:
+    """Let `path` be a file of these bytes in one step: written beside it, flushed, then moved over it.
+
+    A link is followed; its folder must be there. Raises InputError where the place cannot be written to,
+    CheckFailure where there is no room; what was there before is then unchanged.
+    """
+    try:
+        place = Path(os.path.realpath(path))
+        if os.path.lexists(place) and not place.is_file():
+            raise InputError(str(path), "not a file; nothing was changed", legal="a new name, or a file to replace")
+        handle, part = tempfile.mkstemp(prefix=f".{place.name[:100]}.", suffix=".part", dir=place.parent)
+        try:
+            with open(handle, "wb") as stream:
+                stream.write(data)
+                stream.flush()
+                os.fsync(handle)
+            os.chmod(part, 0o666 & ~_umask())
+            os.replace(part, place)
+        except BaseException:
+            with suppress(OSError):
+                os.unlink(part)
+            raise
+    except OSError as error:
+        raise refusal(str(path), error) from error
+
+
+def absolute(path: str | Path) -> Path:
+    """The path from the root. Raises InputError where the folder that it starts from is gone."""
+    try:
+        return Path(os.path.abspath(path))
+    except OSError as error:
+        raise refusal(str(path), error) from error
+
+
+def make_folder(path: str | Path) -> None:
+    """Let there be a folder of that name. Raises as `write_whole` does."""
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise refusal(str(path), error) from error
+
+
+def refusal(where: str, error: OSError) -> InputError | CheckFailure:
+    """The house's message for what the machine refused to write: CheckFailure where there is no room.
+
+    Raises `error` again where it is nothing that a machine refuses.
+    """
+    if error.errno not in REFUSED_BY_MACHINE:
+        raise error
+    reason = f"{error.strerror} ({error.filename})" if error.filename else error.strerror
+    if error.errno in NO_ROOM:
+        return CheckFailure(f"{where}: cannot be written: {reason}; nothing was changed")
+    return InputError(where, f"cannot be written: {reason}; nothing was changed", legal="a writable place")
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,33 @@
+"""TOML text from strangers: parsed, or refused with where and why, and never slowly."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+from .messages import InputError
+
+# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes minutes for keys
+# of many thousand names, so they are refused before it sees them.
+# Possessive, hence linear in the length of the text; 16 names are few enough to parse at once.
+_LONG_KEY = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){16}"""
+)
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not TOML."""
+    text = text.replace("\r\n", "\n")
+    long = _LONG_KEY.search(text)
+    if long:
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(f"{where}:{line}", "a key of too many names", value=long.group(), legal="names joined by at most 3 dots")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(where, f"is not TOML: {error}") from None
+    except RecursionError:
+        raise InputError(where, "nested too deeply", legal="tables at most 3 deep") from None
+    except ValueError as error:  # an impossible date, or an integer of thousands of digits
+        raise InputError(where, f"is not TOML: {error}") from None

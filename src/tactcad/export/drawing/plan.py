@@ -1,0 +1,181 @@
+"""What a part's sheet shows, before it has a scale: views, dimensions and where they stand, callouts, notes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from tactcad.parts.description import Characteristic, Part, Vector
+
+from .ink import Point
+from .measure import Measure, Values
+
+Side = Literal["top", "bottom", "left", "right"]
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """One authored dimension: its value is what its rows measure, all the same.
+
+    `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number shown, of
+    a part modelled at `modelled` (deviation of the model from that number). `key` is the number of the
+    key characteristic that it states, 0 for none.
+    """
+
+    name: str
+    rows: tuple[Measure, ...]
+    sign: str = ""
+    unit: str = ""
+    limits: tuple[float, float] | None = None
+    modelled: float = 0.0
+    fit: str = ""
+    key: int = 0
+    counted: bool = True
+
+    def value(self, values: Values) -> float:
+        """mm or degrees. Raises ValueError where the rows differ: the features are not equal."""
+        measured = [row.of(values) for row in self.rows]
+        if max(measured) - min(measured) > 1e-6:
+            raise ValueError(f"{self.name}: features of {measured} are shown as equal")
+        return round(measured[0] - self.modelled, 9)
+
+    def text(self, values: Values) -> str:
+        """As it stands on the sheet: "4× ⌀3.4", "0.25 ±0.005", "⌀3.012 +0.006/0"."""
+        count = f"{len(self.rows)}× " if len(self.rows) > 1 and self.counted else ""
+        exact = self.limits is not None
+        return f"{count}{self.sign}{number(self.value(values), exact)}{self.unit}{self.tolerance}"
+
+    @property
+    def tolerance(self) -> str:
+        if self.limits is None:
+            return f" {self.fit}" if self.fit else ""
+        upper, lower = (round(v, 9) for v in self.limits)
+        if upper == -lower:
+            return f" ±{number(upper, True)}"
+        return f" {_signed(upper)}/{_signed(lower)}"
+
+
+def number(value: float, exact: bool = False) -> str:
+    """Shortest text: up to four decimals as they are (six where exact), otherwise rounded to three."""
+    shown = round(value, 6)
+    if not exact and abs(shown - round(shown, 4)) > 1e-9:
+        shown = round(shown, 3)
+    text = f"{shown:.6f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def _signed(value: float) -> str:
+    return f"{'+' if value > 0 else ''}{number(value, True)}"
+
+
+def characteristic(c: Characteristic, rows: tuple[Measure, ...], key: int = 0, sign: str = "") -> Dimension:
+    """The dimension that states a characteristic of the part, with its limits."""
+    limits = (c.upper - c.nominal, c.lower - c.nominal)
+    return Dimension(c.name, rows, sign, limits=limits, key=key)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A dimension line on a side of the view; its extension lines start at p and q (mm of the part, in the view)."""
+
+    dimension: Dimension
+    side: Side
+    p: Point
+    q: Point
+
+
+@dataclass(frozen=True)
+class Across:
+    """A dimension line across a thin web or slot, arrows from outside, its text beyond q: from p to q in the view."""
+
+    dimension: Dimension
+    p: Point
+    q: Point
+    past: float = 0.0  # mm of the part from q that the line runs before the text may stand
+
+
+@dataclass(frozen=True)
+class Running:
+    """Running dimensions along a side from one origin (ISO 129-1): each stop with its dimension, None for the origin."""
+
+    side: Side
+    stops: tuple[tuple[Dimension | None, Point], ...]
+
+
+@dataclass(frozen=True)
+class Callout:
+    """Texts at the end of a leader that points at one of the targets: circles, or points (radius 0), or arcs that are
+    entered from their centre (`inside`). `dimensions` are those that the lines state."""
+
+    lines: tuple[str, ...]
+    targets: tuple[tuple[Point, float], ...]
+    dimensions: tuple[Dimension, ...] = ()
+    spans: tuple[tuple[float, float], ...] = ()  # of arcs: start and end angle, degrees, a target each
+    datum: str = ""
+    boxed: str = ""  # a key characteristic's number
+    dot: bool = False
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A datum triangle somewhere on an edge of the view, its letter `away` from it (unit vector on the paper)."""
+
+    letter: str
+    start: Point
+    end: Point
+    away: Point
+
+
+@dataclass(frozen=True)
+class View:
+    """One view: eye and up in the part's frame, its box in the view's own mm, and what is written on it.
+
+    A `window` cuts out what a detail shows; its letter is the view's `label`, and it is drawn as large as
+    `room` (mm of paper) lets, but no smaller than `least` : 1.
+    """
+
+    name: str
+    eye: Vector
+    up: Vector
+    box: Box
+    hidden: bool = True
+    label: str = ""
+    window: Box | None = None
+    room: tuple[float, float] = (0.0, 0.0)
+    least: float = 0.0
+    linears: tuple[Linear, ...] = ()
+    across: tuple[Across, ...] = ()
+    runnings: tuple[Running, ...] = ()
+    callouts: tuple[Callout, ...] = ()
+    datums: tuple[Datum, ...] = ()
+    centres: tuple[tuple[Point, float], ...] = ()  # circles that carry centre lines
+    threads: tuple[tuple[Point, float], ...] = ()  # seen along their axis: middle, nominal diameter
+    axes: tuple[tuple[Point, Point], ...] = ()  # other centre lines
+
+    @property
+    def right(self) -> Vector:
+        (ux, uy, uz), (ex, ey, ez) = self.up, self.eye
+        return (uy * ez - uz * ey, uz * ex - ux * ez, ux * ey - uy * ex)
+
+    @property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """Every dimension that this view carries."""
+        stops = [d for running in self.runnings for d, _ in running.stops if d]
+        called = [d for callout in self.callouts for d in callout.dimensions]
+        return (*(s.dimension for s in self.linears), *(s.dimension for s in self.across), *stops, *called)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
+
+    part: Part
+    values: dict[str, float]
+    conventions: tuple[Measure, ...]
+    views: tuple[View, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        return tuple(d for view in self.views for d in view.dimensions)

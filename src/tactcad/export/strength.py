@@ -1,0 +1,52 @@
+"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload force."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+
+from tactcad.mechanics import ladder, strength
+from tactcad.parts.element import element_number
+from tactcad.parts.hinge_section import design_alloy, hinge_section
+from tactcad.parts.layout import Layout
+from tactcad.parts.overload import overloads
+
+NAME = "strength.csv"
+COLUMNS = (
+    "design", "revision", "element", "part_no", "alloy", "yield_strength_MPa", "arm_mm", "stiffness_N_per_mm",
+    "rated_force_N", "yield_force_N", "yield_factor_at_rated", "goodman_factor_at_rated", "overload_force_N",
+    "largest_stop_gap_mm", "stop_closes_at_N", "hinge_deflection_at_overload_mm", "rated_deflection_mm",
+    "fillet_stress_at_overload_MPa", "yield_factor_at_overload", "not_known_because",
+)  # fmt: skip
+
+
+def strength_bytes(layout: Layout) -> bytes:
+    """The summary (RFC 4180, UTF-8), rows by element number, by the rung `solid`; four significant digits.
+
+    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element its
+    figures are blank and the last column says why.
+    """
+    design, places = layout.design, layout.elements
+    section, alloy = hinge_section(layout, places), design_alloy(design)
+    stiffness = ladder.evaluate(section, ladder.DEFAULT_RUNG).stiffness
+    yields = strength.yield_force(section, alloy)
+    states = overloads(layout)
+    rated = np.array([state.rated_force for state in states])
+    goodman = strength.goodman_factor(section, alloy, rated)
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(COLUMNS)
+    for i, (place, state) in enumerate(zip(places, states)):
+        figures = (
+            stiffness[i], state.rated_force, yields[i], yields[i] / state.rated_force, goodman[i],
+            design.rating.overload_force, state.gap, state.closing_force, state.deflection,
+            state.rated_deflection, state.stress, state.yield_factor,
+        )  # fmt: skip
+        writer.writerow((
+            design.name, design.design.revision, place.designator, element_number(design, place),
+            alloy.name, f"{alloy.yield_strength:g}", f"{place.arm:g}",
+            *("" if state.refused else f"{float(value):.4g}" for value in figures), state.refused,
+        ))  # fmt: skip
+    return text.getvalue().encode()

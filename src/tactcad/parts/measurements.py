@@ -1,0 +1,78 @@
+"""What is measured on every numbered element as cut: the part's own characteristics, and what the estimator takes in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .description import Characteristic
+from .element import element, element_number
+from .layout import ElementPlace, Layout
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One dimension of one element, mm. `enters` is the field of HingeSection that it sets, "" where none."""
+
+    name: str
+    nominal: float
+    lower: float
+    upper: float
+    key: bool
+    enters: str
+    where: str
+    how: str
+
+
+# By name: the field of HingeSection, where the dimension is taken, and with what.
+MICROSCOPE = "measuring microscope, 0.001 or better"
+WAYS = {
+    "hinge thickness": (
+        "hinge_thickness", "thinnest place between the hinge's two faces (mean of both edges of the sheet)", MICROSCOPE
+    ),
+    "pad height over the dowel hole's centre": (
+        "", "pad face over the centre of the dowel hole, square to the flat face",
+        "coordinate measuring machine, or height gauge over a pin in the dowel hole",
+    ),
+    "stop gap": ("", "stop land below the ledge, square to the flat face", MICROSCOPE),
+    "slot length": ("hinge_length", "between the slot's two walls, along the arm", MICROSCOPE),
+    "load arm": ("load_arm", "middle of the slot to middle of the pad's face, along the arm", MICROSCOPE),
+    "arm height": ("arm_height", "arm's back over its flat face, beside the slot", "micrometer or measuring microscope, 0.002"),
+    "sheet thickness": ("width", "across the element, on arm and body beside the slot", "micrometer, 0.002"),
+}  # fmt: skip
+AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance asks for")
+
+
+def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurement, ...]]]:
+    """Every element by number: its place, its part number, and what to measure on it: its part's characteristics,
+    then what only the estimator needs."""
+    known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
+    found = []
+    for place in layout.elements:
+        part_no = element_number(layout.design, place)
+        if part_no not in known:
+            own = element(layout, place).characteristics
+            named = {c.name for c in own}
+            rest = [c for c in _estimators(layout, place) if c.name not in named]
+            known[part_no] = tuple(_measurement(c) for c in (*own, *rest))
+        found.append((place, part_no, known[part_no]))
+    return found
+
+
+def _estimators(layout: Layout, place: ElementPlace) -> tuple[Characteristic, ...]:
+    design, tolerance = layout.design, layout.design.tolerance
+    return tuple(
+        Characteristic(name, nominal, nominal + spread, nominal - spread)
+        for name, nominal, spread in (
+            ("slot length", place.hinge.l, tolerance.hinge_length),
+            ("load arm", place.load_arm, tolerance.load_arm),
+            ("arm height", place.hinge.h, tolerance.arm_height),
+            ("sheet thickness", design.sheet.thickness, tolerance.sheet_thickness),
+        )
+    )
+
+
+def _measurement(c: Characteristic) -> Measurement:
+    # to a nanometre: 0.25 - 0.005 is a binary fraction
+    values = (round(value, 6) for value in (c.nominal, c.lower, c.upper))
+    enters, where, how = WAYS.get(c.name, AS_DRAWN)
+    return Measurement(c.name, *values, c.key, enters, where, how)

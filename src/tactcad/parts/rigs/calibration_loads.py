@@ -1,0 +1,52 @@
+"""What the calibration's whole travel asks of every element, the stop plate off."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tactcad.design.tree import Design
+
+from ..layout import ElementPlace, Layout
+
+
+@dataclass(frozen=True)
+class CalibrationLoad:
+    """One element at the end of calibration.travel.
+
+    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g + K).
+
+    deflection        mm at the pad
+    force             N
+    rated_deflection  mm that the hinge may give way
+    travel_at_rated   mm of the micrometer that reach it
+    travel_at_yield   mm of the micrometer at which the fillet yields
+    refused           why the estimator has nothing to say; then the numbers are NaN
+    """
+
+    place: ElementPlace
+    deflection: float
+    force: float
+    rated_deflection: float
+    travel_at_rated: float
+    travel_at_yield: float
+    refused: str = ""
+
+
+def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
+    """Every element, by number."""
+    from tactcad.mechanics import ladder, strength  # numpy: only checks and guides ask for this
+
+    from ..hinge_section import design_alloy, hinge_section
+
+    c, layout = design.calibration, Layout(design)
+    s = hinge_section(layout, layout.elements)
+    known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
+    yields = strength.yield_force(s, design_alloy(design))
+    loads = []
+    for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.reason, yields):
+        share = c.load_cell_stiffness / (c.load_cell_stiffness + K)
+        rated = at_yield / design.rating.deflection_factor / K
+        deflection = c.travel * share
+        figures = (deflection, K * deflection, rated, rated / share, at_yield / K / share)
+        loads.append(CalibrationLoad(place, *map(float, figures), str(why)))
+    return tuple(loads)

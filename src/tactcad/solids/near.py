@@ -1,0 +1,68 @@
+"""The faces of a shape that come near a box, and how near two sets of faces come to each other."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Builder
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
+
+from tactcad.parts.description import Vector
+from tactcad.scenes.scene import Placement
+
+from .explore import subshapes
+from .place import location
+
+
+class Faces:
+    """A shape's faces, and a box (n, 2, 3) around each in the shape's own frame, mm; the kernel's boxes are a
+    little too large, never too small."""
+
+    def __init__(self, shape: TopoDS_Shape) -> None:
+        self.faces = subshapes(shape, TopAbs_FACE)
+        self.boxes = np.array([_box(face) for face in self.faces])
+
+
+def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) -> TopoDS_Compound | None:
+    """The faces, placed, whose boxes come within `reach` mm of a box (2, 3) of the scene; None where none does."""
+    low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
+    near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
+    if not len(near):
+        return None
+    compound, make = TopoDS_Compound(), BRep_Builder()
+    make.MakeCompound(compound)
+    for i in near:
+        make.Add(compound, faces.faces[i])
+    return compound.Located(location(place.origin, place.rotation))
+
+
+def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
+    """Distance in mm, infinite where one has nothing, and a point of the first where it is taken."""
+    if first is None or second is None:
+        return inf, (0.0, 0.0, 0.0)
+    found = BRepExtrema_DistShapeShape(first, second)
+    point = found.PointOnShape1(1)
+    return found.Value(), (point.X(), point.Y(), point.Z())
+
+
+def boxed(boxes: np.ndarray, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
+    """Least and largest corner (..., 2, 3) of boxes (mm) turned and moved.
+
+    The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
+    """
+    boxes = np.asarray(boxes)
+    middle, half = boxes.mean(axis=-2), (boxes[..., 1, :] - boxes[..., 0, :]) / 2
+    there, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
+    return np.stack([there - reach, there + reach], axis=-2)
+
+
+def _box(face: TopoDS_Shape) -> list[list[float]]:
+    box = Bnd_Box()
+    BRepBndLib.Add_s(face, box, False)
+    low, high = box.CornerMin(), box.CornerMax()
+    return [[low.X(), low.Y(), low.Z()], [high.X(), high.Y(), high.Z()]]

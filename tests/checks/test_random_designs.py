@@ -1,0 +1,75 @@
+"""Designs drawn over the whole legal range: each is refused by a named rule, or passes every check.
+
+Seeds and counts stand at the end of pytest's output. A design is the number of its draw: `raw_table(number, ...)`.
+"""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from random import SystemRandom
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+from random_designs import Counts, as_toml, raw_table
+from sound_designs import LEGAL
+
+pytestmark = pytest.mark.cad
+
+CI_SEED = 20261121
+NIGHTLY_SEED = int(os.environ.get("TACTCAD_SEED", SystemRandom().randrange(10**9)))
+
+
+def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> Counts:
+    """Judge that many designs; one that is neither refused nor passes does not keep the others from their turn."""
+    counts = Counts()
+
+    # no shrinking: each example is a whole check, and a failing one says itself what is wrong
+    @seed(start)
+    @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate])
+    @given(st.integers(0, 2**48))
+    def each(number):
+        counts.judge(f"design {number}", raw_table(number, row_lengths, rigs))
+
+    each()
+    return counts
+
+
+def test_twenty_designs_drawn_over_the_whole_legal_range(record_property):
+    counts = draw(20, CI_SEED, (1, 2, 3), rigs=0.15)
+    record_property("random designs", f"seed {CI_SEED}, {counts}")
+    assert counts.failed == []
+    assert counts.drawn >= 20 and 2 * counts.accepted >= counts.drawn
+
+
+@pytest.mark.nightly
+def test_a_thousand_designs_drawn_over_the_whole_legal_range(record_property):
+    counts = draw(1000, NIGHTLY_SEED, (1, 2, 3, 5, 8), rigs=0.5)
+    record_property("random designs", f"seed {NIGHTLY_SEED} (TACTCAD_SEED), {counts}")
+    assert counts.failed == []
+    assert counts.drawn >= 1000 and 2 * counts.accepted >= counts.drawn
+    assert set(counts.scenes) == {"array", "calibration", "sample-stiffness", "grasping"}
+
+
+def test_draws_reach_over_every_fields_range():
+    """Of 6000 drawn files, each field's least and largest value lie in its range's lowest and highest tenth, by the
+    logarithm where the range spans decades."""
+    seen: dict[str, list[float]] = {}
+    for number in range(6000):
+        for section, fields in raw_table(number, (1, 2, 3, 5), 0.5).items():
+            for name, value in fields.items():
+                if f"{section}.{name}" in LEGAL:
+                    seen.setdefault(f"{section}.{name}", []).append(value)
+    assert set(seen) == set(LEGAL) - {"stop.gaps"}
+    for path, values in seen.items():
+        low, high = LEGAL[path].low, LEGAL[path].high
+        near = (high / low) ** 0.1 if 0 < 10 * low < high else None
+        assert min(values) <= (low * near if near else low + (high - low) / 10), path
+        assert max(values) >= (high / near if near else high - (high - low) / 10), path
+
+
+def test_a_drawn_design_is_written_as_toml_and_read_back_the_same():
+    for number in range(200):
+        tree = raw_table(number, (1, 2, 3), 0.5)
+        assert tomllib.loads(as_toml(tree)) == tree

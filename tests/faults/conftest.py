@@ -1,0 +1,45 @@
+"""Undisturbed exports of two designs, made once, that all faults are held against."""
+
+from __future__ import annotations
+
+import shutil
+import time
+
+import pytest
+from command_line import Bench, assert_sound, assert_tidy, contents, environment, one_by_one, tactcad_run
+
+
+@pytest.fixture(scope="session")
+def bench(tmp_path_factory) -> Bench:
+    folder = tmp_path_factory.mktemp("bench")
+    texts = {"A": one_by_one(4.0, "A"), "B": one_by_one(5.0, "B")}
+    files, env = {}, environment(folder, PYTHONHASHSEED="0")
+    seconds = 0.0
+    for name, text in texts.items():
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+        start = time.monotonic()
+        done = tactcad_run("export", f"{name}.toml", "--out", f"{name}/out", cwd=folder, env=env)
+        seconds = seconds or time.monotonic() - start
+        assert done.returncode == 0, done.stderr.decode()
+        assert_sound(folder / name / "out")
+        assert_tidy(folder / name / "out", folder)
+        files[name] = contents(folder / name / "out")
+    assert files["A"] != files["B"] and len(files["A"]) > 20
+    return Bench(folder, texts, files, folder / "cache", seconds)
+
+
+@pytest.fixture
+def work(bench, tmp_path):
+    """A folder with the designs A.toml and B.toml, and a warm cache of its own."""
+    bench.write_designs(tmp_path)
+    shutil.copytree(bench.cache, tmp_path / "cache")
+    return tmp_path
+
+
+@pytest.fixture
+def exported(bench, work):
+    """That folder with A exported to exports/out."""
+    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
+    assert done.returncode == 0, done.stderr.decode()
+    assert contents(work / "exports" / "out") == bench.files["A"]
+    return work

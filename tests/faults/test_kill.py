@@ -1,0 +1,88 @@
+"""`tactcad export` killed with SIGKILL at random moments spread over its whole run: all or nothing, and no litter."""
+
+from __future__ import annotations
+
+import os
+import random
+import secrets
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from command_line import MODULE, assert_sound, assert_tidy, contents, environment, tactcad_run
+
+# TACTCAD_SEED repeats a run's moments.
+SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
+
+
+def killed_after(seconds: float, *arguments: str, cwd: Path, env: dict[str, str]) -> bool:
+    """Whether the kill came before the end."""
+    with subprocess.Popen([*MODULE, *arguments], cwd=cwd, env=env, stderr=subprocess.DEVNULL) as process:
+        try:
+            process.wait(timeout=seconds)
+        except subprocess.TimeoutExpired:
+            process.kill()
+    return process.returncode == -9
+
+
+def kill_exports(bench, folder: Path, kills: int) -> None:
+    """Exports of A and B in turn into one folder, each killed once and then done again.
+
+    Two in three start with a cold cache, so that kills fall into the kernel's work too, the others with what is there.
+    """
+    chance = random.Random(SEED)
+    out, env = folder / "exports" / "out", environment(folder)
+    bench.write_designs(folder)
+    shutil.copytree(bench.cache, folder / "cache")
+    standing, early = None, 0
+    for turn in range(kills):
+        wanted = "AB"[turn % 2]
+        cold = turn % 3 != 2
+        if cold:
+            shutil.rmtree(folder / "cache", ignore_errors=True)
+        moment = (chance.random() + turn) / kills * bench.seconds * (1.0 if cold else 0.4)
+        arguments = ("export", f"{wanted}.toml", "--out", "exports/out")
+        early += killed_after(moment, *arguments, cwd=folder, env=env)
+        if os.path.lexists(out):
+            assert_sound(out)
+            found = contents(out)
+            assert found in ([bench.files[wanted]] + ([bench.files[standing]] if standing else []))
+        else:
+            assert standing is None
+        done = tactcad_run(*arguments, cwd=folder, env=env)
+        assert done.returncode == 0, done.stderr.decode()
+        assert contents(out) == bench.files[wanted]
+        assert_tidy(out, folder)
+        standing = wanted
+    print(f"seed {SEED}: {kills} kills, {early} before the end of the run, over {bench.seconds:.1f} s")
+    assert early >= kills / 2, f"seed {SEED}: only {early} of {kills} kills came before the end"
+
+
+def test_killed_at_five_random_moments(bench, tmp_path):
+    kill_exports(bench, tmp_path, 5)
+
+
+@pytest.mark.nightly
+def test_killed_at_fifty_random_moments(bench, tmp_path):
+    kill_exports(bench, tmp_path, 50)
+
+
+def test_killed_among_others_that_wait(bench, work):
+    """The lock goes with its process: those who wait for a killed export take over."""
+    env = environment(work)
+    arguments = ("--out", "exports/out")
+    with subprocess.Popen([*MODULE, "export", "A.toml", *arguments], cwd=work, env=env | {"TACTCAD_CACHE": str(work / "cold")},
+                          stderr=subprocess.DEVNULL) as first:  # fmt: skip
+        lock = work / "exports" / ".out.lock"
+        until = time.monotonic() + 60
+        while not (lock.exists() and lock.read_text()) and time.monotonic() < until:
+            time.sleep(0.01)
+        with subprocess.Popen([*MODULE, "export", "B.toml", *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True) as waiting:
+            assert "waiting for another export" in waiting.stderr.readline()
+            first.kill()
+            waiting.communicate(timeout=120)
+    assert waiting.returncode == 0
+    assert contents(work / "exports" / "out") == bench.files["B"]
+    assert_tidy(work / "exports" / "out", work)

@@ -1,0 +1,381 @@
+"""Every check broken once, in a copy of the source: does a test fail?
+
+    python tests/mutation/mutants.py                   all of them, as a table; exit status 1 where one survives
+    python tests/mutation/mutants.py brep rules        those whose name holds one of these words
+    python tests/mutation/mutants.py --list            what there is, and which tests it is tried on
+
+What there is to break is read off the syntax tree, by name and never by line, so that a new check is in the table by being
+written. Kinds of mutation:
+
+finding   a module of checks says everything but findings of one name
+rule      a rule between fields of a design finds nothing
+gate      one statement of a gate that reads a written file back, or holds a file against its model, says nothing
+call      a check or gate is not called where it should be
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import copy
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SOURCE, TESTS = ROOT / "src", ROOT / "tests"
+SECONDS = 900  # for the tests of one mutant
+
+# Names of findings that no literal in the source spells out, by module and expression.
+SPELT_OUT = {
+    ("checks/brep.py", "f'tiny-{name}'"): ("tiny-edge", "tiny-face"),
+}
+# Functions that make findings under a name that they are given.
+PASS_ON = {"Finding", "fail", "flag", "_finding", "_about"}
+GATE = re.compile(r"^_?check_|fault|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$")
+# Functions of export/ that raise CheckFailure and are no gates.
+NO_GATES = {
+    "compose", "font_file", "_glyph", "prism_plan", "closed", "side_view", "must", "largest_fitting", "part_plan", "all_written", "_cell",
+    # above: a sheet that cannot be laid out, told before anything is written
+    "take_lock",  # another export takes too long
+    "changes_against",  # a golden file that cannot be read
+    "_written",  # the kernel says itself that it failed
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One mutation: what it breaks, in which module, and how the module's tree changes."""
+
+    kind: str
+    module: str  # path below src/tactcad
+    name: str
+    change: Callable[[ast.Module], ast.Module]
+
+    @property
+    def label(self) -> str:
+        return f"{self.kind} {self.module.removesuffix('.py')}: {self.name}"
+
+    def source(self) -> str:
+        """The module's text, mutated. Raises AssertionError where nothing changed."""
+        tree = ast.parse((SOURCE / "tactcad" / self.module).read_text(encoding="utf-8"))
+        before = ast.unparse(tree)
+        after = ast.unparse(ast.fix_missing_locations(self.change(copy.deepcopy(tree))))
+        assert after != before, f"{self.label}: nothing changed"
+        compile(after, self.module, "exec")
+        return after
+
+
+# --- findings by name ---
+
+WITHOUT = '''
+def _without(function):
+    import functools, inspect
+    if inspect.isgeneratorfunction(function):
+        @functools.wraps(function)
+        def wrapped(*args, **kwargs):
+            return (f for f in function(*args, **kwargs) if getattr(f, "check", f[0] if isinstance(f, tuple) else "") != {name!r})
+    else:
+        @functools.wraps(function)
+        def wrapped(*args, **kwargs):
+            return [f for f in function(*args, **kwargs) if f.check != {name!r}]
+    return wrapped
+for _name, _function in list(globals().items()):
+    if callable(_function) and getattr(_function, "__module__", "") == __name__ and any(
+        kind in str(getattr(_function, "__annotations__", {{}}).get("return", "")) for kind in ("[Finding]", "[Raw]")
+    ):
+        globals()[_name] = _without(_function)
+'''
+
+
+def findings() -> Iterator[Mutant]:
+    for path in [*sorted((SOURCE / "tactcad" / "checks").glob("*.py")), SOURCE / "tactcad" / "export" / "golden.py"]:
+        module = path.relative_to(SOURCE / "tactcad").as_posix()
+        for name in sorted(names_of_findings(module, ast.parse(path.read_text(encoding="utf-8")))):
+            yield Mutant("finding", module, name, lambda tree, name=name: _appended(tree, WITHOUT.format(name=name)))
+
+
+def _appended(tree: ast.Module, text: str) -> ast.Module:
+    tree.body += ast.parse(text).body
+    return tree
+
+
+def names_of_findings(module: str, tree: ast.Module) -> set[str]:
+    """Every name under which the module reports. Raises AssertionError where one cannot be told from the source."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in PASS_ON and node.args:
+            names |= _spelt(module, node.args[0])
+        elif isinstance(node, ast.Yield) and isinstance(node.value, ast.Tuple) and len(node.value.elts) == 5:
+            names |= _spelt(module, node.value.elts[0])
+        elif isinstance(node, ast.For) and isinstance(node.iter, ast.Tuple):
+            for row in node.iter.elts:  # rows of a table whose first column is the name
+                if isinstance(row, ast.Tuple) and isinstance(node.target, ast.Tuple) and node.target.elts[0].id == "check":
+                    names |= _spelt(module, row.elts[0])
+    return names
+
+
+def _spelt(module: str, node: ast.expr) -> set[str]:
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return {node.value} - {"fail", "flag"}
+    if isinstance(node, ast.Name | ast.Attribute):
+        return set()  # handed on: it is spelt out where it is made
+    expression = ast.unparse(node)
+    assert (module, expression) in SPELT_OUT, f"{module}: which findings does {expression} name? add it to SPELT_OUT"
+    return set(SPELT_OUT[module, expression])
+
+
+# --- rules between fields ---
+
+
+def rules() -> Iterator[Mutant]:
+    for module, tables in (("parts/rules.py", ("RULES",)), ("parts/rigs/rules.py", ("RIG_RULES", "FITS"))):
+        tree = ast.parse((SOURCE / "tactcad" / module).read_text(encoding="utf-8"))
+        functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+        for node in tree.body:
+            target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0] if isinstance(node, ast.Assign) else None
+            if isinstance(target, ast.Name) and target.id in tables:
+                used = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
+                for name in sorted(used & functions):
+                    yield Mutant("rule", module, name, lambda tree, name=name: _silent(tree, name))
+
+
+def _silent(tree: ast.Module, name: str) -> ast.Module:
+    (function,) = [n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == name]
+    function.body = ast.parse("return\nyield").body
+    return tree
+
+
+# --- gates, statement by statement ---
+
+
+def gates() -> Iterator[Mutant]:
+    for path in sorted((SOURCE / "tactcad" / "export").rglob("*.py")):
+        module = path.relative_to(SOURCE / "tactcad").as_posix()
+        for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
+            if not GATE.search(function.name):
+                continue
+            for n, statement in enumerate(_statements(function)):
+                if _silenced(statement, function) is not None:
+                    text = f"{function.name}: {_short(statement)}"
+                    yield Mutant("gate", module, text, lambda tree, f=function.name, n=n: _without_statement(tree, f, n))
+
+
+def unknown_gates() -> list[str]:
+    """Functions of export/ that refuse what they find, and that no mutation here would silence."""
+    called = {name: re.compile(wanted) for name, wanted in CALLERS.items()}
+    found = []
+    for path in sorted((SOURCE / "tactcad" / "export").rglob("*.py")):
+        module = path.relative_to(SOURCE / "tactcad").as_posix()
+        for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
+            raises = any(isinstance(n, ast.Raise) and n.exc and "CheckFailure" in ast.unparse(n.exc) for n in ast.walk(function))
+            known = GATE.search(function.name) or function.name in NO_GATES
+            calls_one = module in called and any(_uncalled(s, called[module].pattern) for s in _statements(function))
+            if raises and not known and not calls_one:
+                found.append(f"{module}: {function.name}")
+    return found
+
+
+def _functions(tree: ast.Module) -> list[ast.FunctionDef]:
+    return [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+
+
+def _statements(function: ast.FunctionDef) -> list[ast.stmt]:
+    """Simple statements of the function, in the order of its text."""
+    simple = (ast.Raise, ast.Expr, ast.AugAssign, ast.Assign, ast.Return)
+    return sorted((n for n in ast.walk(function) if isinstance(n, simple)), key=lambda n: (n.lineno, n.col_offset))
+
+
+def _silenced(statement: ast.stmt, function: ast.FunctionDef) -> list[ast.stmt] | None:
+    """What the statement becomes when it says nothing; None where it says nothing as it is."""
+    silence = '""' if function.returns and ast.unparse(function.returns) == "str" else "[]"
+    if isinstance(statement, ast.Raise) and statement.exc is not None:
+        return ast.parse("pass").body
+    if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Yield | ast.YieldFrom):
+        return ast.parse("yield from ()").body
+    if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
+        return ast.parse("pass").body if re.search(r"^(wrong|found|faults)\.append$|^_?check_", ast.unparse(statement.value.func)) else None
+    if isinstance(statement, ast.AugAssign) and isinstance(statement.op, ast.Add) and ast.unparse(statement.target) == "wrong":
+        return ast.parse("pass").body
+    if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) in ("wrong", "short", "double"):
+        return None if ast.unparse(statement.value) == "[]" else ast.parse(f"{ast.unparse(statement.targets[0])} = []").body
+    if isinstance(statement, ast.Return) and function.returns and ast.unparse(function.returns) in ("str", "list[str]"):
+        text = ast.unparse(statement.value)
+        if text in ("wrong", "''", "[]") or text.startswith("wrong + "):
+            kept = "wrong" if text.startswith("wrong + ") else None
+            return ast.parse(f"return {kept}").body if kept else None
+        return ast.parse(f"return {'wrong' if 'wrong' in text else silence}").body
+    return None
+
+
+def _short(statement: ast.stmt) -> str:
+    text = " ".join(ast.unparse(statement).split())
+    return text if len(text) <= 90 else text[:87] + "..."
+
+
+class _Replaced(ast.NodeTransformer):
+    def __init__(self, old: ast.stmt, new: list[ast.stmt]) -> None:
+        self.old, self.new = old, new
+
+    def visit(self, node: ast.AST):
+        return self.new if node is self.old else self.generic_visit(node)
+
+
+def _without_statement(tree: ast.Module, name: str, n: int) -> ast.Module:
+    (function,) = [f for f in _functions(tree) if f.name == name]
+    statement = _statements(function)[n]
+    return _Replaced(statement, _silenced(statement, function)).visit(tree)
+
+
+# --- calls ---
+
+CALLERS = {
+    "checks/run.py": r"^report\.run$",
+    "cli/check.py": r"^report\.run$",
+    "export/pipeline.py": r"^(manifests\.)?check_|^bom\.check_",
+    "export/products.py": r"^(dxf|picture)\.check_|^_compare_box$",
+    "export/step.py": r"^_check_(part|scene)$",
+    "export/drawing/sheets.py": r"_faults$",
+    "export/release/make.py": r"^check_archive$|_faults$",
+}
+
+
+def calls() -> Iterator[Mutant]:
+    for module, wanted in CALLERS.items():
+        tree = ast.parse((SOURCE / "tactcad" / module).read_text(encoding="utf-8"))
+        found = 0
+        for function in _functions(tree):
+            if GATE.search(function.name) and not function.name == "_measured":
+                continue  # its statements are mutants already
+            for n, statement in enumerate(_statements(function)):
+                if _uncalled(statement, wanted) is not None:
+                    found += 1
+                    text = f"{function.name}: {_short(statement)}"
+                    yield Mutant("call", module, text, lambda tree, f=function.name, n=n, w=wanted: _without_call(tree, f, n, w))
+        assert found, f"{module} calls no check: where have its calls gone?"
+
+
+def _uncalled(statement: ast.stmt, wanted: str) -> list[ast.stmt] | None:
+    value = getattr(statement, "value", None)
+    if not isinstance(value, ast.Call) or not re.search(wanted, ast.unparse(value.func)):
+        return None
+    if isinstance(statement, ast.Expr):
+        return ast.parse("pass").body
+    if isinstance(statement, ast.Assign):
+        return ast.parse(f"{ast.unparse(statement.targets[0])} = []").body
+    return None
+
+
+def _without_call(tree: ast.Module, name: str, n: int, wanted: str) -> ast.Module:
+    (function,) = [f for f in _functions(tree) if f.name == name]
+    statement = _statements(function)[n]
+    return _Replaced(statement, _uncalled(statement, wanted)).visit(tree)
+
+
+def every() -> list[Mutant]:
+    """All mutants, those of one label numbered."""
+    found, seen = [], {}
+    for make in (findings, rules, gates, calls):
+        for m in make():
+            seen[m.label] = seen.get(m.label, 0) + 1
+            found.append(m if seen[m.label] == 1 else Mutant(m.kind, m.module, f"{m.name} ({seen[m.label]})", m.change))
+    return found
+
+
+# --- which tests ---
+
+# Tests of what a module does that do not import it, because they go through the command or the whole export.
+ALSO = {
+    "checks/run.py": ("tests/checks/test_check_report.py",),
+    "cli/check.py": ("tests/export/test_golden.py", "tests/checks/test_check_report.py"),
+    "export/pipeline.py": ("tests/export/test_pipeline.py", "tests/faults/test_machine.py"),
+    "export/products.py": ("tests/export/test_pipeline.py",),
+    "export/golden_schema.py": ("tests/export/test_golden.py", "tests/faults/test_other_files.py"),
+    "export/manifest.py": ("tests/export/test_manifest.py", "tests/faults/test_other_files.py"),
+}
+
+
+def tests_of(mutant: Mutant) -> list[str]:
+    """Test files that concern it, those that name it first: they import its module, or stand in ALSO."""
+    dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
+    package, _, last = dotted.rpartition(".")
+    imports = re.compile(rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b|from {re.escape(package)} import .*\b{last}\b)", re.M)
+    chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
+    word = mutant.name.split(":")[0]
+    for path in sorted(TESTS.rglob("test_*.py")):
+        text = path.read_text(encoding="utf-8")
+        if path.parent == Path(__file__).parent or not (imports.search(text) or path.relative_to(ROOT).as_posix() in chosen):
+            continue
+        chosen[path.relative_to(ROOT).as_posix()] = text.count(word)
+    return sorted(chosen, key=lambda name: -chosen[name])
+
+
+# --- running ---
+
+
+@dataclass(frozen=True)
+class Outcome:
+    mutant: Mutant
+    failed: str  # the first test that failed, "" where the mutant survived
+
+
+def run(mutant: Mutant) -> Outcome:
+    """The tests that concern it on a copy of the source with the mutant in it."""
+    with tempfile.TemporaryDirectory(prefix="mutant-") as name:
+        folder = Path(name)
+        for part in ("src", "tests", "hardware", "exports/golden", "benchmarks", "packaging"):
+            shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copy(ROOT / "pyproject.toml", folder)
+        (folder / "src" / "tactcad" / mutant.module).write_text(mutant.source(), encoding="utf-8")
+        env = {**os.environ, "PYTHONPATH": str(folder / "src"), "PYTHONDONTWRITEBYTECODE": "1", "TMPDIR": str(folder / "tmp")}
+        (folder / "tmp").mkdir()
+        done = subprocess.run(
+            [sys.executable, "-m", "pytest", "-x", "-q", "-m", "not nightly", "-p", "no:cacheprovider", "--no-header", *tests_of(mutant)],
+            cwd=folder, env=env, capture_output=True, text=True, check=False, timeout=SECONDS,
+        )  # fmt: skip
+        failed = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", done.stdout, re.MULTILINE)
+        if done.returncode == 1 and failed:
+            return Outcome(mutant, failed.group(1).removeprefix("tests/"))
+        assert done.returncode == 0, f"{mutant.label}: the tests did not run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        return Outcome(mutant, "")
+
+
+def run_all(mutants: list[Mutant], workers: int, say: Callable[[Outcome], None]) -> list[Outcome]:
+    outcomes = []
+    with ThreadPoolExecutor(workers) as pool:
+        for outcome in pool.map(run, mutants):
+            say(outcome)
+            outcomes.append(outcome)
+    return outcomes
+
+
+def line(outcome: Outcome) -> str:
+    return f"{outcome.mutant.label}  |  {outcome.failed or 'SURVIVED: no test failed'}"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("words", nargs="*", help="only mutants whose label holds one of these")
+    parser.add_argument("--list", action="store_true", help="print them and their tests, run nothing")
+    parser.add_argument("--workers", type=int, default=2)
+    args = parser.parse_args()
+    mutants = [m for m in every() if not args.words or any(w in m.label for w in args.words)]
+    if args.list:
+        for m in mutants:
+            print(f"{m.label}  |  {' '.join(tests_of(m))}")
+        return 0
+    outcomes = run_all(mutants, args.workers, lambda o: print(line(o), flush=True))
+    survived = [o for o in outcomes if not o.failed]
+    print(f"{len(outcomes)} checks broken, one at a time: a test failed for {len(outcomes) - len(survived)}")
+    return 1 if survived else 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,45 @@
+"""The table of mutations is complete, each changes something and has tests; nightly, a test fails for each."""
+
+from __future__ import annotations
+
+import ast
+import os
+
+import mutants
+import pytest
+
+
+def test_every_check_is_in_the_table():
+    """What reports, what refuses a design and what reads a file back: all of it has a mutation, and each has tests."""
+    every = mutants.every()
+    labels = [m.label for m in every]
+    assert len(set(labels)) == len(labels)
+    assert not mutants.unknown_gates()
+    from tactcad.parts.rigs.rules import FITS, RIG_RULES
+    from tactcad.parts.rules import RULES
+
+    in_table = {m.name for m in every if m.kind == "rule"}
+    assert in_table == {*RULES, *RIG_RULES, *(rule.__name__ for rules in FITS.values() for rule in rules)}
+    modules = {m.module for m in every if m.kind == "finding"}
+    for path in (mutants.SOURCE / "tactcad" / "checks").glob("*.py"):
+        makes = "Finding(" in path.read_text(encoding="utf-8") and path.name not in ("finding.py", "report.py")
+        assert (f"checks/{path.name}" in modules) == makes, path.name
+    assert not [m.label for m in every if not mutants.tests_of(m)]
+
+
+def test_every_mutant_is_another_program():
+    for mutant in mutants.every():
+        mutant.source()
+
+
+def test_a_name_that_cannot_be_told_is_noticed():
+    """A finding whose name is put together at run time has to be spelt out in the table."""
+    tree = ast.parse("def check(part):\n    yield Finding('new-' + part.kind, 'fail')")
+    with pytest.raises(AssertionError, match="add it to SPELT_OUT"):
+        mutants.names_of_findings("checks/new.py", tree)
+
+
+@pytest.mark.nightly
+def test_a_test_fails_for_every_broken_check():
+    outcomes = mutants.run_all(mutants.every(), os.cpu_count() or 1, lambda o: print(mutants.line(o), flush=True))
+    assert not [o.mutant.label for o in outcomes if not o.failed]

@@ -1,0 +1,286 @@
+"""`tactcad release` on a design of one element: what is in the zip, when there is none, and that every fault in one is found."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from variants import HARDWARE
+
+import tactcad
+from tactcad.cli.main import main
+from tactcad.export.release.archive import archive_bytes
+from tactcad.export.release.readme import DRAFT, Contents
+from tactcad.export.release.verify import check_archive
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene
+
+pytestmark = pytest.mark.cad
+
+TEXT = re.sub(  # the paper's array cut down to one element, without rigs
+    r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "",
+    (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
+).replace('name = "macro-array"', 'name = "tiny"').replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")  # fmt: skip
+REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
+NAME = f"tiny-{REVISION}.zip"
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """A folder with hardware/tiny.toml and its golden file."""
+    folder = tmp_path_factory.mktemp("project")
+    (folder / "hardware").mkdir()
+    (folder / "hardware" / "tiny.toml").write_text(TEXT)
+    assert main(["golden", str(folder / "hardware" / "tiny.toml")]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def two_releases(project, tmp_path_factory):
+    """The same design released by two processes that share nothing but the code."""
+    made = []
+    for seed, zone in (("1", "Pacific/Auckland"), ("4242", "America/St_Johns")):
+        home = tmp_path_factory.mktemp(f"home-{seed}")
+        shutil.copytree(project, home / "project")
+        environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")} | {
+            "PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "HOME": str(home), "TZ": zone, "PYTHONHASHSEED": seed,
+            "TACTCAD_CACHE": str(home / "cache"), "TMPDIR": str(home),
+        }  # fmt: skip
+        run = subprocess.run(
+            [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"], cwd=home / "project", env=environment,
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert run.returncode == 0, run.stderr
+        assert sorted(p.name for p in (home / "project" / "exports" / "releases").iterdir()) == [NAME]
+        made.append(home)
+    return made
+
+
+@pytest.fixture(scope="module")
+def released(two_releases):
+    return two_releases[0] / "project" / "exports" / "releases" / NAME
+
+
+@pytest.fixture(scope="module")
+def files(released):
+    with zipfile.ZipFile(released) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+@pytest.fixture(scope="module")
+def contents(project):
+    design = load(project / "hardware" / "tiny.toml")
+    return Contents(design, [make_scene(design, "array")], (), (), False)
+
+
+def test_two_processes_write_equal_bytes(two_releases):
+    first, second = ((home / "project" / "exports" / "releases" / NAME).read_bytes() for home in two_releases)
+    assert first == second
+
+
+def test_nothing_in_it_names_the_machine(two_releases, files):
+    host = re.compile(rb"\b%b\b" % re.escape(os.uname().nodename.encode()))
+    for name, data in files.items():
+        for trace in (str(two_releases[0]), str(two_releases[0].parent), "/home", "/root"):
+            assert trace.encode() not in data, f"{trace} in {name}"
+        # the sheets' streams are packed: a short host name stands in them by chance
+        assert name.endswith(".pdf") or not host.search(data), name
+
+
+def test_what_is_in_it(files):
+    assert list(files)[0] == "README.txt" and list(files)[-1] == "MANIFEST.sha256"
+    assert list(files)[1:-1] == sorted(list(files)[1:-1])
+    assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(files)
+    listed = dict(line.split("  ")[::-1] for line in files["MANIFEST.sha256"].decode().splitlines())
+    assert listed == {n: hashlib.sha256(d).hexdigest() for n, d in files.items() if n != "MANIFEST.sha256"}
+
+
+def test_the_bill_and_the_folders_agree(files):
+    rows = list(csv.DictReader(io.StringIO(files["bom.csv"].decode(), newline="")))
+    made = [row for row in rows if row["make_buy"] == "make"]
+    assert {row["file"] for row in made} <= set(files) and len(made) == 7
+    readme = files["README.txt"].decode()
+    for row in made:  # what to make, how many, of what
+        assert re.search(rf"^  {row['part_no']} +{row['qty']} +{re.escape(row['material'])} ", readme, flags=re.M), row
+
+
+def test_the_readme_answers_a_shops_questions(files):
+    text = files["README.txt"].decode("ascii")
+    assert text.splitlines()[0] == f"tiny, revision {REVISION}: Macro tactile array 2 x 5"
+    assert max(map(len, text.splitlines())) <= 110
+    for said in ("hinge thickness: 0.25 mm, 0.245 to 0.255", "do not tumble", "ISO 2768-1:1989-m", "7075-T6", "sha256sum -c"):
+        assert said in " ".join(text.split())
+    for name in files:  # every file is accounted for
+        assert name.split("/")[0] + ("/" if "/" in name else "") in text or name == "README.txt" or name.startswith("bom")
+    assert "PRELIMINARY" not in text
+
+
+# every fault in a zip is found
+
+
+def _swap(files: dict[str, bytes], name: str, old: bytes, new: bytes) -> dict[str, bytes]:
+    assert old in files[name], (name, old)
+    return {**files, name: files[name].replace(old, new)}
+
+
+ELEMENT = f"tiny-element-a5mm_{REVISION}"
+R = REVISION.encode()
+TAMPERED = {
+    "cut file of another size": lambda f: _swap(f, f"dxf/{ELEMENT}.dxf", b"\n8.0\n", b"\n8.1\n"),
+    "cut file in inches": lambda f: _swap(f, f"dxf/{ELEMENT}.dxf", b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n1\n"),
+    "cut file of another part": lambda f: {**f, f"dxf/{ELEMENT}.dxf": f[f"dxf/tiny-blank_{REVISION}.dxf"]},
+    "cut file missing": lambda f: {n: d for n, d in f.items() if n != f"dxf/{ELEMENT}.dxf"},
+    "cut file of nothing": lambda f: {**f, f"dxf/other_{REVISION}.dxf": f[f"dxf/{ELEMENT}.dxf"]},
+    "cut file of another revision": lambda f: {**f, "dxf/tiny-element-a5mm_ZZ.dxf": f[f"dxf/{ELEMENT}.dxf"]},
+    "header of another revision": lambda f: _swap(f, f"step/{ELEMENT}.step", b"'revision " + R + b"'", b"'revision ZZ'"),
+    "assembly of another revision": lambda f: _swap(f, f"step/tiny-array_{REVISION}.step", b"'revision " + R + b"'", b"'revision ZZ'"),
+    "solid missing": lambda f: {n: d for n, d in f.items() if n != f"step/{ELEMENT}.step"},
+    "assembly in a part's file": lambda f: {**f, f"step/{ELEMENT}.step": f[f"step/tiny-array_{REVISION}.step"]},
+    "instance missing": lambda f: _swap(f, f"step/tiny-array_{REVISION}.step", b"=NEXT_ASSEMBLY_USAGE_OCCURRENCE('E1'", b"=NEXT_ASSEMBLY_USAGE('E1'"),
+    "bill of another revision": lambda f: _swap(f, "bom.csv", b"tiny-stop-plate," + R, b"tiny-stop-plate,ZZ"),
+    "bill with another quantity": lambda f: _swap(f, "bom.csv", b"tiny-stop-plate," + R + b",1", b"tiny-stop-plate," + R + b",2"),
+    "bill with another file": lambda f: _swap(f, "bom.csv", b"dxf/" + ELEMENT.encode(), b"dxf/" + ELEMENT.encode() + b"x"),
+    "bill missing": lambda f: {n: d for n, d in f.items() if n != "bom.csv"},
+    "inspection sheet of another revision": lambda f: _swap(f, "inspection.csv", b"tiny," + R, b"tiny,ZZ"),
+    "strength summary of another design": lambda f: _swap(f, "strength.csv", b"\ntiny,", b"\nlarge,"),
+    "README of another revision": lambda f: _swap(f, "README.txt", b"tiny, revision " + R, b"tiny, revision ZZ"),
+    "README of a draft": lambda f: {**f, "README.txt": f["README.txt"] + DRAFT.encode() + b"\r\n"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", TAMPERED)
+def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path):
+    own = {n: d for n, d in files.items() if n != "MANIFEST.sha256"}
+    path = tmp_path / "a.zip"
+    path.write_bytes(archive_bytes(own, "2026-11-21"))
+    assert check_archive(path, contents) == []
+    path.write_bytes(archive_bytes(TAMPERED[fault](own), "2026-11-21"))
+    assert check_archive(path, contents)
+
+
+def test_damage_is_found_anywhere(released, contents, tmp_path):
+    """A bit turned in the middle of every entry, and the file cut off."""
+    data = released.read_bytes()
+    path = tmp_path / "a.zip"
+    with zipfile.ZipFile(released) as archive:
+        places = [(e.filename, e.header_offset + 30 + len(e.filename) + e.compress_size // 2) for e in archive.infolist()]
+    for name, at in places:
+        path.write_bytes(data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
+        assert check_archive(path, contents), name
+    path.write_bytes(data[: len(data) // 2])
+    assert check_archive(path, contents)
+
+
+# when nothing is released
+
+
+def release(project: Path, capsys, *arguments: str, design: str = TEXT) -> tuple[int, str, str, set[str]]:
+    """Status, standard output and error, and what then lies in the folder of releases."""
+    (project / "hardware" / "tiny.toml").write_text(design)
+    status = main(["release", str(project / "hardware" / "tiny.toml"), "--out", str(project / "out"), *arguments])
+    out, err = capsys.readouterr()
+    there = {p.name for p in (project / "out").iterdir()} if (project / "out").exists() else set()
+    return status, out, err, there
+
+
+@pytest.fixture
+def copy(project, tmp_path):
+    shutil.copytree(project, tmp_path / "p")
+    return tmp_path / "p"
+
+
+WIDER = TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
+BY_GOLDEN = {
+    "other geometry under the same revision": (WIDER, "other geometry than its golden file"),
+    "a revision not taken up": (TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'), "`make golden` takes it up"),
+}
+
+
+@pytest.mark.parametrize("case", BY_GOLDEN)
+def test_what_the_golden_file_does_not_have_is_refused_and_an_older_zip_left(case, copy, capsys):
+    design, said = BY_GOLDEN[case]
+    (copy / "out").mkdir()
+    (copy / "out" / NAME).write_bytes(b"older")
+    status, out, err, there = release(copy, capsys, design=design)
+    assert status == 1 and said in err and "nothing was written" in err and out == ""
+    assert there == {NAME} and (copy / "out" / NAME).read_bytes() == b"older"
+
+
+def test_without_a_golden_file_a_design_in_hardware_is_refused(copy, capsys):
+    shutil.rmtree(copy / "exports")
+    status, _, err, there = release(copy, capsys)
+    assert status == 1 and "make golden" in err and there == set()
+
+
+COARSE = "wire_diameter = 0.25", "wire_diameter = 0.60"  # its corners are wider than the fillets
+
+
+@pytest.fixture
+def coarse_shop(tmp_path):
+    from tactcad.checks.shop import DEFAULT
+
+    path = tmp_path / "coarse.toml"
+    path.write_text(DEFAULT.read_text().replace(*COARSE))
+    return path
+
+
+def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys):
+    (copy / "out").mkdir()
+    (copy / "out" / NAME).write_bytes(b"older")
+    status, _, err, there = release(copy, capsys, "--shop", str(coarse_shop))
+    assert status == 1 and "wire" in err and there == {NAME}
+    status, out, _, there = release(copy, capsys, "--shop", str(coarse_shop), "--draft", "--json")
+    record = json.loads(out)
+    assert status == 0 and record["draft"] and record["failures"]
+    assert there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == b"older"
+    with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
+        readme = archive.read("README.txt").decode()
+    assert DRAFT in readme.splitlines()[:5]
+    flat = " ".join(readme.split())
+    assert all(" ".join(failure.split()) in flat for failure in record["failures"])
+
+
+def test_a_design_outside_hardware_has_no_golden_file_and_is_released(tmp_path, capsys):
+    (tmp_path / "tiny.toml").write_text(TEXT)
+    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert [p.name for p in (tmp_path / "out").iterdir()] == [NAME]
+    capsys.readouterr()
+    # again, over it: the same; then over another one, which is named
+    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert "replaces" not in capsys.readouterr().err
+    (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))
+    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    out, err = capsys.readouterr()
+    assert "replaces an earlier one" in err and "bom.csv" in json.loads(out)["replaced"]
+
+
+def test_what_does_not_read_back_is_not_published(copy, capsys, monkeypatch):
+    """A zip damaged between writing and reading: the older one stays, no part file is left."""
+    from tactcad.export.release import make
+
+    monkeypatch.setattr(make, "archive_bytes", lambda files, date: archive_bytes(files, date)[:-500])
+    (copy / "out").mkdir()
+    (copy / "out" / NAME).write_bytes(b"older")
+    status, _, err, there = release(copy, capsys)
+    assert status == 1 and "does not hold" in err and there == {NAME} and (copy / "out" / NAME).read_bytes() == b"older"
+
+
+def test_bad_input_is_refused_before_any_work(copy, tmp_path, capsys):
+    for arguments, named in (
+        (("--shop", str(tmp_path / "none.toml")), "none.toml"), (("--shop", str(copy / "hardware" / "tiny.toml")), "unknown field"),
+    ):
+        status, out, err, there = release(copy, capsys, *arguments)
+        assert status == 2 and named in err and err.count("\n") == 1 and out == "" and there == set()
+    assert main(["release", str(tmp_path / "none.toml"), "--out", str(copy / "out")]) == 2
+    status, _, err, there = release(copy, capsys, design=TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5"))
+    assert status == 2 and there == set()

@@ -1,0 +1,104 @@
+"""The rigs of a sound design: cart, vacuum holder, sample, calibration and grasping set-ups that keep every rule."""
+
+from __future__ import annotations
+
+from math import ceil, cos, pi
+
+from sound_designs import DRILL_REACH, WALL, Draw, as_table
+
+from tactcad.design.load import from_table
+from tactcad.parts.library.bearings import BEARINGS
+from tactcad.parts.library.orings import GROOVE_DEPTH, GROOVE_WIDTH, INSIDE
+from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
+from tactcad.parts.rigs.layout import RigLayout
+from tactcad.parts.rigs.moving import ballast_range
+
+M3, M5 = METRIC["M3"], METRIC["M5"]
+# The stand: the post's front behind the sensor's axis, and the guide's front before it (mm, docs/rigs.md).
+POST_FRONT, GUIDE_FRONT = 58.0, 27.5
+CARRIAGE = 28.9
+
+
+def sound_rigs(d: Draw) -> None:
+    """Tables of the rigs for the array that `d` has drawn: all, or the calibration alone."""
+    both = not d.once_in(4)
+    if both:
+        _cart(d)
+        _grasping(d)
+    _calibration(d, d.table["sample.travel"] if both else 0.0)
+
+
+def _cart(d: Draw) -> None:
+    """From the sample outwards: suction holes, plenum, seal, screws, cart, wheels."""
+    bearing = BEARINGS[d.put("cart.bearing", d.choice(*BEARINGS))]
+    axle = METRIC[f"M{bearing.d:g}"]
+    lengths = CAP_SCREW_LENGTHS[f"M{bearing.d:g}"]
+    plain = 2 * axle.d + 12  # the threaded part of ISO 4762
+    shim = d.number("cart.shim", high=lengths[-1] - plain - bearing.B)
+    shank = next(n for n in lengths if n - plain >= shim + bearing.B - 1e-9)
+    widest = 2 * (POST_FRONT - 0.5 - 2 * shim - bearing.B - axle.head_height)
+
+    # sample and holder; the port's thread wants a flat wall of the octagonal plenum
+    covered = 2 * max(d.far_x, d.far_y)
+    side = d.number("sample.side", max(20.0, covered), min(widest - 2 * 7.5 - 1, 75.0))
+    across = d.number("holder.vacuum_diameter", 17.8, min(side - 2, 60.0))
+    corner = min(5.0, across / 5)
+    around = 2 * ((across / 2 - corner) / cos(pi / 8) + corner + 1.0)
+    groove = min(v for v in INSIDE.values() if v >= around) + 2 * GROOVE_WIDTH
+    beside = max((groove / 2 + M3.clearance / 2 + 1) / 2**0.5 + 4, groove / 2 + 1, across / 2 + 5, side / 2 + 7)
+    margin = d.number("holder.margin", beside - side / 2, min((widest - side) / 2, 40 + (across - side) / 2))
+    holder = side + 2 * margin
+
+    # lid, body, and the screw through both into the cart plate
+    hole = d.number("holder.hole_diameter", 0.5, min(5.0, (across - 1) / 4))
+    rings = d.put("holder.rings", float(d.choice(*range(1, 1 + max(1, min(d.most_rings, int((across - 2 * hole) / 2 / (hole + 0.51))))))))
+    holes = 1 + 3 * rings * (rings + 1)
+    vacuum = d.number("holder.vacuum")
+    d.number("holder.pull", high=holes * pi * hole**2 / 4 * vacuum * 1e-3)
+    plenum = d.number("holder.plenum_depth", GROOVE_DEPTH + 1 + M5.d / 2 + M5.tap_drill / 2 + 0.9, min(16.0, 8 * corner))
+    floor = d.number("holder.floor", 1.5, 22 - plenum)
+    lid = d.number("holder.lid_thickness", M3.head_height + 2, min(DRILL_REACH * hole, 28.0 - plenum - floor))
+    body = plenum + floor + lid - M3.head_height
+    fixing = min(n for n in CAP_SCREW_LENGTHS["M3"] if n - body >= 4.5)
+
+    # cart plate: axles inside it, holder's screws beside them
+    z, around = bearing.D / 2, axle.clearance / 2 + WALL
+    clearance = d.number("cart.clearance", high=z - around)
+    d.number("cart.thickness", max(z + around - clearance, fixing - body), 25.0)
+    deep = shank - 2 * shim - bearing.B + 1 + 2 * axle.pitch + axle.tap_drill
+    d.number("cart.width", max(holder, 2 * deep), widest)
+    screw = holder / 2 - 4
+    apart = axle.clearance / 2 + M3.d / 2 + 0.51
+    outside = side / 2 + 2
+    inner = screw - apart
+    if inner > outside and d.once_in(2):
+        base = d.number("cart.wheel_base", 2 * outside, 2 * inner)
+    else:
+        base = d.number("cart.wheel_base", 2 * max(outside, screw + apart), 250.0)
+    d.number("cart.length", max(holder, base + 2 * around))
+    d.number("sample.travel", high=min(2.0, d.number("sample.thickness") / 2))
+    for section in ("cart", "holder", "sample"):
+        d.rest(section)
+
+
+def _grasping(d: Draw) -> None:
+    lift = d.number("grasping.lift", high=150.0)
+    d.put("grasping.rail_length", 20.0 * d.choice(*range(ceil((lift + CARRIAGE + 13) / 20), 13)))
+    diameter = d.number("grasping.weight_diameter", 20.0, 2 * (GUIDE_FRONT - 0.5))
+    steel = 7.85e-3 * pi * (diameter**2 - 8.5**2) / 4  # g for a mm of disc
+    d.put("grasping.weights", float(d.choice(0, 1, 2, 3, 5, 10)))
+    d.number("grasping.weight", steel * 1.0 * 9.81e-3, steel * 8 * 9.81e-3)
+    # the array's own weight takes the parts to tell
+    d.put("grasping.moving_weight", 10.0)
+    if not d.once_in(10):
+        low, high = ballast_range(RigLayout(from_table(as_table(d.table))))
+        d.number("grasping.moving_weight", low, high)
+
+
+def _calibration(d: Draw, into_sample: float) -> None:
+    travel = d.number("calibration.travel", high=min(0.9, d.elastic))
+    retract = d.number("calibration.retract", high=40.0)
+    d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
+    d.number("calibration.stage_travel", max(d.far_x, d.far_y))
+    d.put("calibration.roller", d.choice("2", "2.5", "3"))
+    d.rest("calibration")
