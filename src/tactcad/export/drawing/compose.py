@@ -13,7 +13,7 @@ from .fonts import width
 from .ink import CENTRE, THIN, Arc, Item, Point, Sheet, Stroke, Text, box, moved
 from .layout import bounds, layout_faults
 from .paper import Paper, frame
-from .plan import Box, Plan, View
+from .plan import Box, Callout, Plan, View
 from .scale import SERIES, factor, shown
 from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
 
@@ -102,6 +102,13 @@ def _attempt(
             # a letter that several views offer stands on the first of them that has room
             if not lettered.get(edge.letter):
                 lettered[edge.letter] = board.datum(edge, factor(d.scale), places[d.view.name])
+    for d in drawn:
+        for edge in d.view.datums:
+            if not lettered[edge.letter]:  # by words at the end of a leader
+                spots = [((edge.start[0] + s * (edge.end[0] - edge.start[0]), edge.start[1] + s * (edge.end[1] - edge.start[1])), 0.0)
+                         for s in (0.5, 0.25, 0.75)]
+                said = Callout((f"datum {edge.letter}",), tuple(spots))
+                lettered[edge.letter] = board.callout(said, factor(d.scale), places[d.view.name])
     if not all(lettered.values()):
         return None, [f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place"]
     for d in drawn:

@@ -215,7 +215,7 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
         callouts.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
     if rough := re.search(r"Ra [\d.]+", part.finish):
         callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
-    lettered = Datum("A", (xb, face), (window[2], face), (0.0, -1.0))
+    lettered = Datum("A", (window[0] if one else xb, face), (window[2], face), (0.0, -1.0))
     return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=(lettered,))
 
 
