@@ -82,14 +82,18 @@ def test_a_tiny_face_is_seen():
 
 
 def test_a_solid_that_passes_through_itself_is_seen():
-    """A tube bent so tightly that its ends cross: each face is good, and two of them meet."""
+    part, solid = bent_tube()
+    assert "self-intersection" in {f.check for f in check_brep(part, solid.wrapped)}
+
+
+def bent_tube():
+    """A tube bent so tightly that its ends cross: each face is good, and two of them meet. And a part of its volume."""
     from build123d import Plane, Rectangle, Solid, Spline
 
     path = Spline((0, 0, 0), (20, 0, 0), (20, 20, 0.2), (10, 20, 0), (10, -10, 0))
     profile = Plane(path @ 0, z_dir=path % 0) * Rectangle(2, 2)
     solid = Solid.sweep(profile.face(), path)
-    found = check_brep(replace(BLOCK, body=Extrusion(rectangle(0, 0, 1, 1), solid.volume)), solid.wrapped)
-    assert "self-intersection" in {f.check for f in found}
+    return replace(BLOCK, body=Extrusion(rectangle(0, 0, 1, 1), solid.volume)), solid
 
 
 def test_another_volume_is_seen(shape):
@@ -98,6 +102,10 @@ def test_another_volume_is_seen(shape):
 
 
 def test_an_invalid_solid_is_seen():
+    assert "brep-valid" in [f.check for f in check_brep(BLOCK, bow_tie().wrapped)]
+
+
+def bow_tie():
     """A face whose wire crosses itself, extruded: the kernel builds it and calls it invalid."""
     from build123d import Solid
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
@@ -109,8 +117,7 @@ def test_an_invalid_solid_is_seen():
         polygon.Add(gp_Pnt(x, y, 0))
     polygon.Close()
     face = BRepBuilderAPI_MakeFace(polygon.Wire()).Face()
-    bow_tie = Solid(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 5)).Shape())
-    assert "brep-valid" in [f.check for f in check_brep(BLOCK, bow_tie.wrapped)]
+    return Solid(BRepPrimAPI_MakePrism(face, gp_Vec(0, 0, 5)).Shape())
 
 
 # --- read back from STEP ---

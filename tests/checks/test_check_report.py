@@ -69,3 +69,41 @@ def test_one_design_alone_that_is_refused_is_bad_input(tmp_path, capsys):
     refused.write_text("[design]\nname = 1\n")
     assert main(["check", str(refused)]) == 2
     assert "design.name" in capsys.readouterr().err
+
+
+def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypatch):
+    """Which checks `tactcad check` calls, and on what, with every check and the kernel's work replaced by a note of the call."""
+    from tactcad.checks import run
+    from tactcad.scenes import make_scene, scene_names
+    from tactcad.scenes.poses import poses
+
+    calls = set()
+
+    def note(name):
+        def check(*args):
+            calls.update((name, getattr(a, "part_no", None) or getattr(a, "name", "")) for a in args[:1])
+            return []
+
+        return check
+
+    for name in vars(run).copy():
+        if name.startswith("check_"):
+            monkeypatch.setattr(run, name, note(name))
+    monkeypatch.setattr(run, "build", lambda part: SimpleNamespace(wrapped=part))
+    names = scene_names(macro)
+    report = run.run_checks(macro, names)
+    scenes = [make_scene(macro, name) for name in names]
+    posed = [make_scene(macro, name, pose) for name in names for pose in poses(macro, name)]
+    parts = {p.part_no: p for s in scenes for p in s.parts}
+    assert len(scenes) == 4 and len(posed) > 10
+    expected = {(check, macro.name) for check in ("check_strength", "check_clearance", "check_calibration")}
+    for number, part in parts.items():
+        expected |= {("check_brep", number), ("check_mesh", number)}
+        expected |= {("check_wirecut", number)} if part.process == "wire-cut" else set()
+        expected |= {("check_machining", number)} if part.process in ("milled", "turned", "ground") else set()
+    expected |= {("check_interference", s.name) for s in scenes} | {("check_motions", s.name) for s in scenes if s.motions}
+    expected |= {("check_moving_weight", macro.name)}
+    assert calls == expected
+    assert report.runs["configurations"] == len(posed) and report.runs["interference"] == len(scenes)
+    assert report.runs["build"] == len(parts | {p.part_no: p for s in posed for p in s.parts})
+    assert report.runs["scenes left out"] == 1

@@ -9,6 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from tactcad.checks.finding import Finding
 from tactcad.checks.interference import TOUCH_MM, check_interference, near_pairs, relative
 from tactcad.contour import circle, rectangle
 from tactcad.parts.description import Extrusion, Hole, Material, Part
@@ -35,15 +36,22 @@ TAPPED = block("TAPPED", 10, 10, 10, Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, 10, 
 PIN = pin("PIN", 4.0, 20.0)
 
 
-def checks(placements, contacts=()) -> list[tuple[str, str]]:
+def found(placements, contacts=()) -> list[Finding]:
     scene = Scene("test", tuple(placements), tuple(contacts))
-    shapes = {part.part_no: build(part).wrapped for part in scene.parts}
-    return [(f.check, f.part) for f in check_interference(scene, shapes)]
+    return check_interference(scene, {part.part_no: build(part).wrapped for part in scene.parts})
+
+
+def checks(placements, contacts=()) -> list[tuple[str, str]]:
+    return [(f.check, f.part) for f in found(placements, contacts)]
 
 
 def two(first: Part, second: Part, origin, rotation=UPRIGHT, kind: str = "") -> list[tuple[str, str]]:
+    return [(f.check, f.part) for f in findings_of(first, second, origin, rotation, kind)]
+
+
+def findings_of(first: Part, second: Part, origin, rotation=UPRIGHT, kind: str = "") -> list[Finding]:
     placements = [Placement("A", first), Placement("B", second, origin, rotation)]
-    return checks(placements, [Contact("A", "B", kind)] if kind else [])
+    return found(placements, [Contact("A", "B", kind)] if kind else [])
 
 
 CASES = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from variants import variant
 
+from tactcad.checks.finding import Finding
 from tactcad.checks.interference import check_interference
 from tactcad.checks.motion import check_motions
 from tactcad.contour import circle, rectangle
@@ -32,16 +33,20 @@ def scene(obstacle: Part, at, start, end, contacts=()) -> Scene:
     )
 
 
-def findings(s: Scene) -> list[str]:
+def found(s: Scene) -> list[Finding]:
     full = {p.part_no: build(p).wrapped for p in s.parts}
-    return [f.message for f in check_motions(s, full, {p.part_no: build(envelope(p)).wrapped for p in s.parts})]
+    return check_motions(s, full, {p.part_no: build(envelope(p)).wrapped for p in s.parts})
+
+
+def findings(s: Scene) -> list[str]:
+    return [f.message for f in found(s)]
 
 
 def test_a_foil_between_the_ends_is_met():
     """It is free at both ends and in the middle of the way: poses would not show it."""
     s = scene(FOIL, (0, 0, 13.3), (0, 0, 0), (0, 0, 20))
-    (found,) = findings(s)
-    assert "B1 (block) and O1 (foil) meet at 56 % of the motion 'way'" in found  # 13.3 - 2 over 20
+    (message,) = findings(s)
+    assert "B1 (block) and O1 (foil) meet at 56 % of the motion 'way'" in message  # 13.3 - 2 over 20
 
 
 def test_past_the_foil_is_free():
@@ -58,8 +63,8 @@ def test_through_a_window_the_true_shape_decides():
 def test_sliding_on_a_face_is_free_and_cutting_into_it_is_not():
     touch = (Contact("B1", "O1", "touch"),)
     assert findings(scene(WINDOW, (0, 4, 2), (0, 0, 0), (3, 0, 0), touch)) == []
-    (found,) = findings(scene(WINDOW, (0, 4, 2), (0, 0, 0), (0, 0, 0.5), touch))
-    assert "cut into each other" in found
+    (message,) = findings(scene(WINDOW, (0, 4, 2), (0, 0, 0), (0, 0, 0.5), touch))
+    assert "cut into each other" in message
 
 
 def test_undeclared_sliding_is_a_collision():

@@ -1,0 +1,239 @@
+"""For every check one deliberately bad part, from the tests of that check: what is wrong with it, and what is found.
+
+docs/checks.md is written from this (benchmarks/checks_table.py), and tests/checks/test_checks_table.py holds it complete.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from variants import variant
+
+from tactcad.checks.finding import Finding
+
+# the bad parts stand where they are tested
+sys.path += [str(Path(__file__).parent / folder) for folder in ("checks", "rigs")]
+
+
+@dataclass(frozen=True)
+class Bad:
+    """`run` is the name under which `tactcad check` times the check; `what` the bad part; `find` what is said of it."""
+
+    run: str
+    what: str
+    find: Callable[[], list[Finding]]
+    test: str
+
+
+def strength(**changes) -> list[Finding]:
+    from tactcad.checks.strength import check_strength
+
+    return check_strength(variant({path.replace("__", "."): value for path, value in changes.items()}))
+
+
+def clearance() -> list[Finding]:
+    from tactcad.checks.clearance import check_clearance
+
+    return check_clearance(variant({"array.row_pitch": 2.2, "array.row_arms": [[4], [4]]}))
+
+
+def calibration() -> list[Finding]:
+    from tactcad.checks.calibration import check_calibration
+
+    return check_calibration(variant({"calibration.travel": 0.2}))
+
+
+def brep(shape: Callable, part=None) -> list[Finding]:
+    from test_brep_and_mesh import BLOCK
+
+    from tactcad.checks.brep import check_brep
+
+    return check_brep(part or BLOCK, shape().wrapped)
+
+
+def two_boxes():
+    from build123d import Box, Compound, Pos
+
+    return Compound([Box(1, 1, 1).solid(), Pos(5, 0, 0) * Box(1, 1, 1).solid()])
+
+
+def five_faces():
+    from build123d import Box, Shell, Solid
+    from test_brep_and_mesh import _solid_of
+
+    return Solid(_solid_of(Shell(Box(10, 8, 5).faces()[:5]).wrapped))
+
+
+def bow_tie():
+    from test_brep_and_mesh import bow_tie
+
+    return bow_tie()
+
+
+def stepped(step: float, thickness: float) -> list[Finding]:
+    from test_brep_and_mesh import BLOCK
+
+    from tactcad.contour import chain
+    from tactcad.parts.description import Extrusion
+    from tactcad.solids.build import build
+
+    contour = chain([(0, 0), (10, 0), (10, 4), (10 + step, 4), (10 + step, 8), (0, 8)])
+    part = replace(BLOCK, body=Extrusion(contour, thickness))
+    return brep(lambda: build(part), part)
+
+
+def bent_tube() -> list[Finding]:
+    from test_brep_and_mesh import bent_tube
+
+    part, solid = bent_tube()
+    return brep(lambda: solid, part)
+
+
+def too_thick() -> list[Finding]:
+    from test_brep_and_mesh import BLOCK
+
+    from tactcad.parts.description import Extrusion
+    from tactcad.solids.build import build
+
+    return brep(lambda: build(BLOCK), replace(BLOCK, body=Extrusion(BLOCK.body.outer, 5.00001, BLOCK.body.openings)))
+
+
+def triangles(spoil: Callable) -> list[Finding]:
+    import trimesh
+    from test_brep_and_mesh import BLOCK, soup
+
+    from tactcad.checks.mesh import check_triangles
+    from tactcad.solids.build import build
+
+    vertices, faces = soup(build(BLOCK).wrapped)
+    return check_triangles("BLOCK", trimesh.Trimesh(vertices, spoil(faces), process=False))
+
+
+def scaled() -> list[Finding]:
+    from test_brep_and_mesh import BLOCK, soup
+
+    from tactcad.checks import mesh
+    from tactcad.solids.build import build
+
+    kept = mesh.triangles
+    mesh.triangles = lambda s, a, b: (soup(s)[0] * 1.02, soup(s)[1])
+    try:
+        return mesh.check_mesh(BLOCK, build(BLOCK).wrapped)
+    finally:
+        mesh.triangles = kept
+
+
+def wirecut(case: str) -> list[Finding]:
+    import test_wirecut as t
+
+    from tactcad.checks.wirecut import check_wirecut
+
+    bad = t.CASES[case][0] if case in t.CASES else t.part(t.block(web=0.25, kind="slot"))
+    return check_wirecut(bad, t.SHOP)
+
+
+def machining(rule: str) -> list[Finding]:
+    import test_machining as t
+
+    from tactcad.checks.machining import check_machining
+
+    return check_machining(t.CASES[rule][0][0], t.USUAL)
+
+
+def interference(case: str) -> list[Finding]:
+    import test_interference as t
+
+    return t.findings_of(*t.CASES[case][1])
+
+
+def motion() -> list[Finding]:
+    import test_motion as t
+
+    return t.found(t.scene(t.FOIL, (0, 0, 13.3), (0, 0, 0), (0, 0, 20)))
+
+
+def moving_weight() -> list[Finding]:
+    from tactcad.checks.moving_weight import check_moving_weight
+    from tactcad.scenes import make_scene
+
+    light = variant({"grasping.moving_weight": 2.0})
+    return check_moving_weight(light, make_scene(light, "grasping"))
+
+
+def unbuildable() -> list[Finding]:
+    from test_brep_and_mesh import BLOCK
+
+    from tactcad.checks import run
+    from tactcad.solids.build import SolidError
+
+    def refuse(part):
+        raise SolidError(f"{part.part_no}: the kernel calls the solid invalid")
+
+    kept = run.build
+    run.build = refuse
+    try:
+        return run._built(BLOCK, {})
+    finally:
+        run.build = kept
+
+
+def left_out() -> list[Finding]:
+    from tactcad.checks.run import _left_out
+
+    return _left_out(variant({"grasping.moving_weight": 500.0}))
+
+
+def golden() -> list[Finding]:
+    from tactcad.export.golden import golden_record, judge
+
+    return judge(golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1})))
+
+
+BREP = "tests/checks/test_brep_and_mesh.py"
+MACHINING = {
+    "mill-corner": "a pocket with sharp corners", "mill-groove": "a groove of 0.9 mm", "mill-floor": "a floor of 0.7 mm",
+    "drill-diameter": "a hole of 0.4 mm", "drill-depth": "a hole 10.1 diameters deep", "drill-floor": "0.7 mm under a blind hole",
+    "counterbore": "0.7 mm left under a screw's head", "thread-depth": "a thread 3.03 diameters deep",
+    "thread-run-out": "0.9 mm between full thread and drilled depth", "hole-wall": "a hole 0.7 mm from the side",
+    "hole-web": "two holes 0.7 mm apart", "turn-slender": "a shaft 12.2 diameters long", "turn-wall": "a ring of 0.25 mm",
+}  # fmt: skip
+WIRECUT = {
+    "closed chain": "an arc that ends 2 nm off its circle", "simple contour": "a bow tie", "openings inside": "an opening over the edge",
+    "inside corner": "a radius of 0.149 mm", "slot width": "a throat of 0.299 mm", "wall": "a fin of 0.799 mm", "hinge": "a hinge of 0.25 mm",
+    "start hole": "a round opening of 0.499 mm",
+}  # fmt: skip
+BAD: dict[str, Bad] = {
+    "overload": Bad("strength", "a gap of 0.2 mm over the 4 mm arm", lambda: strength(stop__gaps={"4": 0.2}), "tests/checks/test_strength_check.py"),
+    "rated-force": Bad("strength", "the shipped arms of 6 mm and more", strength, "tests/checks/test_strength_check.py"),
+    "strength": Bad(
+        "strength", "a hinge 3 mm long and 0.02 mm thin",
+        lambda: strength(element__hinge_length=3.0, element__hinge_thickness=0.02, stop__gaps=dict.fromkeys("45678", 0.1)),
+        "tests/checks/test_strength_check.py",
+    ),
+    "clearance": Bad("clearance", "rows 2.2 mm apart", clearance, "tests/checks/test_clearance.py"),
+    "calibration": Bad("calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"),
+    "build": Bad("build", "a part that the kernel calls invalid", unbuildable, BREP),
+    "one-solid": Bad("brep", "two boxes", lambda: brep(two_boxes), BREP),
+    "brep-valid": Bad("brep", "a prism over a bow tie", lambda: brep(bow_tie), BREP),
+    "shell-closed": Bad("brep", "a box without one face", lambda: brep(five_faces), BREP),
+    "tiny-edge": Bad("brep", "a step of 0.5 um", lambda: stepped(5e-4, 5.0), BREP),
+    "tiny-face": Bad("brep", "a ledge of 0.9 um2", lambda: stepped(9e-4, 0.001), BREP),
+    "self-intersection": Bad("brep", "a bar swept through itself", bent_tube, BREP),
+    "volume": Bad("brep", "a block 10 nm thicker than its solid", too_thick, BREP),
+    "mesh-watertight": Bad("mesh", "a triangle missing", lambda: triangles(lambda f: f[1:]), BREP),
+    "mesh-winding": Bad("mesh", "every triangle turned", lambda: triangles(lambda f: f[:, ::-1]), BREP),
+    "mesh-volume": Bad("mesh", "a mesh 2 % too large", scaled, BREP),
+    "mesh-area": Bad("mesh", "the same", scaled, BREP),
+    **{name: Bad("wire-cut", what, lambda name=name: wirecut(name), "tests/checks/test_wirecut.py") for name, what in WIRECUT.items()},
+    **{name: Bad("machining", what, lambda name=name: machining(name), "tests/rigs/test_machining.py") for name, what in MACHINING.items()},
+    "overlap": Bad("interference", "cubes 1 um into each other", lambda: interference("overlap of a thousandth"), "tests/checks/test_interference.py"),
+    "undeclared-touch": Bad("interference", "cubes face to face", lambda: interference("faces touch, not declared"), "tests/checks/test_interference.py"),
+    "contact": Bad("interference", "cubes 0.1 mm apart that should touch", lambda: interference("declared, but apart"), "tests/checks/test_interference.py"),
+    "motion": Bad("motion", "a foil of 10 um in the way", motion, "tests/rigs/test_motion.py"),
+    "moving-weight": Bad("moving weight", "2 N asked for", moving_weight, "tests/rigs/test_rig_statics.py"),
+    "scene": Bad("scenes left out", "500 N asked for, ballast of 2.9 m", left_out, "tests/checks/test_found_designs.py"),
+    "golden": Bad("golden", "a sheet of 2.9 mm, same revision", golden, "tests/export/test_golden.py"),
+}

@@ -1,0 +1,60 @@
+"""docs/checks.md has every check that the code can report, with the message that its bad part really gets."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from bad_parts import BAD
+
+ROOT = Path(__file__).parents[2]
+sys.path += [str(ROOT / "benchmarks"), str(ROOT / "tests" / "mutation")]
+
+
+def names_in_code() -> set[str]:
+    import mutants
+
+    return {m.name for m in mutants.findings()}
+
+
+def test_every_check_in_the_code_has_its_bad_part():
+    assert set(BAD) == names_in_code()
+    for name, bad in BAD.items():
+        assert (ROOT / bad.test).is_file(), name
+
+
+# Bad parts that are the shipped array with a value changed: its next revision changes the numbers, not the words.
+OF_THE_SHIPPED = {"strength", "clearance", "calibration travel", "moving weight", "scenes left out", "golden"}
+
+
+@pytest.mark.cad
+def test_the_table_says_what_the_checks_say():
+    """Where this fails, run `python benchmarks/checks_table.py` and read what it changes."""
+    import checks_table
+
+    text = checks_table.DOCUMENT.read_text(encoding="utf-8")
+    now = checks_table.renewed(text, checks_table.known_times(text))
+
+    def comparable(document: str) -> list[str]:
+        run, lines = "", []
+        for line in document.splitlines():
+            run = (line.split(" | ")[0].strip("| ") or run) if line.startswith("| ") else ""
+            lines.append(re.sub(r"[0-9.]+", "#", line) if run in OF_THE_SHIPPED else line)
+        return lines
+
+    assert comparable(now) == comparable(text)
+
+
+def test_every_timed_check_has_its_times():
+    """What `tactcad check` times stands in the table, with a time on the array, the rigs, or the largest scene."""
+    import checks_table
+
+    times = checks_table.known_times(checks_table.DOCUMENT.read_text(encoding="utf-8"))
+    assert set(times) == {bad.run for bad in BAD.values()}
+    assert all(any(cell not in ("", "-") for cell in cells) for cells in times.values())
+    source = ast.parse((ROOT / "src" / "tactcad" / "checks" / "run.py").read_text(encoding="utf-8"))
+    timed = {n.args[0].value for n in ast.walk(source) if isinstance(n, ast.Call) and ast.unparse(n.func) == "report.run"}
+    assert timed - {"configurations"} == set(times) - {"golden"}
