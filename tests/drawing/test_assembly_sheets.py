@@ -160,6 +160,7 @@ def test_notes_give_torques_and_the_pads_procedure(assembly):
         assert "E4 arm 8" in text and "E10 arm 7" in text
 
 
+@pytest.mark.parametrize("assembly", ["array"], indirect=True)
 def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     design, scene, rows, _, sheets = assembly
     number, revision = f"{design.name}-{scene.name}", design.design.revision
@@ -175,12 +176,14 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     assert any("parts list" in f for f in faults(sheets, [*rows, replace(rows[-1], item=99, part_no="NEW")]))
 
 
+@pytest.mark.parametrize("assembly", ["array"], indirect=True)
 def test_a_draft_is_marked_on_every_page(assembly):
     pages = pdf_runs(pdf_bytes([preliminary(sheet) for sheet in assembly[4]], "x", "y"))
     assert all(page.count("PRELIMINARY") == 1 for page in pages)
     assert all("PRELIMINARY" not in page for page in pdf_runs(pdf_bytes(assembly[4], "x", "y")))
 
 
+@pytest.mark.parametrize("assembly", ["array"], indirect=True)
 def test_one_svg_holds_all_sheets_below_each_other(assembly):
     from xml.etree import ElementTree
 

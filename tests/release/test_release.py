@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import zipfile
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,9 @@ from variants import HARDWARE
 
 import tactcad
 from tactcad.cli.main import main
+from tactcad.export.drawing import assembly_file
+from tactcad.export.drawing.gate import pdf_runs
+from tactcad.export.release import verify
 from tactcad.export.release.archive import archive_bytes
 from tactcad.export.release.readme import DRAFT, Contents
 from tactcad.export.release.verify import check_archive
@@ -46,29 +50,26 @@ def project(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def two_releases(project, tmp_path_factory):
-    """The same design released by two processes that share nothing but the code."""
-    made = []
-    for seed, zone in (("1", "Pacific/Auckland"), ("4242", "America/St_Johns")):
-        home = tmp_path_factory.mktemp(f"home-{seed}")
-        shutil.copytree(project, home / "project")
-        environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")} | {
-            "PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "HOME": str(home), "TZ": zone, "PYTHONHASHSEED": seed,
-            "TACTCAD_CACHE": str(home / "cache"), "TMPDIR": str(home),
-        }  # fmt: skip
-        run = subprocess.run(
-            [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"], cwd=home / "project", env=environment,
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        assert run.returncode == 0, run.stderr
-        assert sorted(p.name for p in (home / "project" / "exports" / "releases").iterdir()) == [NAME]
-        made.append(home)
-    return made
+def home(project, tmp_path_factory):
+    """Where a fresh process that shares nothing with this one but the code has released the design."""
+    home = tmp_path_factory.mktemp("home")
+    shutil.copytree(project, home / "project")
+    environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")} | {
+        "PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "HOME": str(home), "TZ": "Pacific/Auckland", "PYTHONHASHSEED": "4242",
+        "TACTCAD_CACHE": str(home / "cache"), "TMPDIR": str(home),
+    }  # fmt: skip
+    run = subprocess.run(
+        [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"], cwd=home / "project", env=environment,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert sorted(p.name for p in (home / "project" / "exports" / "releases").iterdir()) == [NAME]
+    return home
 
 
 @pytest.fixture(scope="module")
-def released(two_releases):
-    return two_releases[0] / "project" / "exports" / "releases" / NAME
+def released(home):
+    return home / "project" / "exports" / "releases" / NAME
 
 
 @pytest.fixture(scope="module")
@@ -83,15 +84,10 @@ def contents(project):
     return Contents(design, [make_scene(design, "array")], (), (), False)
 
 
-def test_two_processes_write_equal_bytes(two_releases):
-    first, second = ((home / "project" / "exports" / "releases" / NAME).read_bytes() for home in two_releases)
-    assert first == second
-
-
-def test_nothing_in_it_names_the_machine(two_releases, files):
+def test_nothing_in_it_names_the_machine(home, files):
     host = re.compile(rb"\b%b\b" % re.escape(os.uname().nodename.encode()))
     for name, data in files.items():
-        for trace in (str(two_releases[0]), str(two_releases[0].parent), "/home", "/root"):
+        for trace in (str(home), str(home.parent), "/home", "/root"):
             assert trace.encode() not in data, f"{trace} in {name}"
         # the sheets' streams are packed: a short host name stands in them by chance
         assert name.endswith(".pdf") or not host.search(data), name
@@ -100,6 +96,9 @@ def test_nothing_in_it_names_the_machine(two_releases, files):
 def test_what_is_in_it(files):
     assert list(files)[0] == "README.txt" and list(files)[-1] == "MANIFEST.sha256"
     assert list(files)[1:-1] == sorted(list(files)[1:-1])
+    sheets = {n for n in files if n.startswith("pdf/")}
+    made = {n for n in files if n.startswith("step/tiny-")}  # one sheet a part made, one drawing a scene
+    assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made}
     assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(files)
     listed = dict(line.split("  ")[::-1] for line in files["MANIFEST.sha256"].decode().splitlines())
     assert listed == {n: hashlib.sha256(d).hexdigest() for n, d in files.items() if n != "MANIFEST.sha256"}
@@ -133,6 +132,30 @@ def _swap(files: dict[str, bytes], name: str, old: bytes, new: bytes) -> dict[st
     return {**files, name: files[name].replace(old, new)}
 
 
+def _sheets(files: dict[str, bytes], mark: str) -> bytes:
+    """The element's sheet with a word on it."""
+    from pypdf import PdfReader, PdfWriter
+    from reportlab.pdfgen.canvas import Canvas
+
+    over = io.BytesIO()
+    canvas = Canvas(over)
+    canvas.drawString(100, 100, mark)
+    canvas.save()
+    writer = PdfWriter(clone_from=io.BytesIO(files[f"pdf/{ELEMENT}.pdf"]))
+    writer.pages[0].merge_page(PdfReader(over).pages[0])
+    out = io.BytesIO()
+    writer.write(out)
+    return out.getvalue()
+
+
+def _recut(files: dict[str, bytes]) -> dict[str, bytes]:
+    """Another way of writing the same cut file, its digest renewed in the bill."""
+    name = f"dxf/{ELEMENT}.dxf"
+    new = files[name].replace(b"  0\nEOF", b"999\nremark\n  0\nEOF")
+    old, now = (hashlib.sha256(d).hexdigest().encode() for d in (files[name], new))
+    return {**_swap(files, "bom.csv", old, now), name: new}
+
+
 ELEMENT = f"tiny-element-a5mm_{REVISION}"
 R = REVISION.encode()
 TAMPERED = {
@@ -151,6 +174,12 @@ TAMPERED = {
     "bill with another quantity": lambda f: _swap(f, "bom.csv", b"tiny-stop-plate," + R + b",1", b"tiny-stop-plate," + R + b",2"),
     "bill with another file": lambda f: _swap(f, "bom.csv", b"dxf/" + ELEMENT.encode(), b"dxf/" + ELEMENT.encode() + b"x"),
     "bill missing": lambda f: {n: d for n, d in f.items() if n != "bom.csv"},
+    "drawing missing": lambda f: {n: d for n, d in f.items() if n != f"pdf/{ELEMENT}.pdf"},
+    "drawing of another part": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/tiny-blank_{REVISION}.pdf"]},
+    "drawing cut off": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/{ELEMENT}.pdf"][:2000]},
+    "drawing of a draft": lambda f: {**f, f"pdf/{ELEMENT}.pdf": _sheets(f, "PRELIMINARY")},
+    "assembly drawing missing": lambda f: {n: d for n, d in f.items() if n != f"pdf/tiny-array_{REVISION}.pdf"},
+    "cut file changed with everything that names it but the drawing": lambda f: _recut(f),
     "inspection sheet of another revision": lambda f: _swap(f, "inspection.csv", b"tiny," + R, b"tiny,ZZ"),
     "strength summary of another design": lambda f: _swap(f, "strength.csv", b"\ntiny,", b"\nlarge,"),
     "README of another revision": lambda f: _swap(f, "README.txt", b"tiny, revision " + R, b"tiny, revision ZZ"),
@@ -158,17 +187,26 @@ TAMPERED = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("fault", TAMPERED)
-def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path):
+@pytest.fixture
+def read_once(monkeypatch):
+    """Equal PDFs are read once: reading takes most of the check's time."""
+    monkeypatch.setattr(verify, "pdf_runs", READ)
+    monkeypatch.setattr(assembly_file, "pdf_runs", READ)
+    monkeypatch.setattr(assembly_file, "_ballooned", COUNTED)
+
+
+READ, COUNTED = lru_cache(assembly_file.pdf_runs), lru_cache(assembly_file._ballooned)
+
+
+@pytest.mark.parametrize("fault", [None, *TAMPERED])
+def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path, read_once):
     own = {n: d for n, d in files.items() if n != "MANIFEST.sha256"}
     path = tmp_path / "a.zip"
-    path.write_bytes(archive_bytes(own, "2026-11-21"))
-    assert check_archive(path, contents) == []
-    path.write_bytes(archive_bytes(TAMPERED[fault](own), "2026-11-21"))
-    assert check_archive(path, contents)
+    path.write_bytes(archive_bytes(TAMPERED[fault](own) if fault else own, "2026-11-21"))
+    assert bool(check_archive(path, contents)) == bool(fault)
 
 
-def test_damage_is_found_anywhere(released, contents, tmp_path):
+def test_damage_is_found_anywhere(released, contents, tmp_path, read_once):
     """A bit turned in the middle of every entry, and the file cut off."""
     data = released.read_bytes()
     path = tmp_path / "a.zip"
@@ -245,23 +283,23 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     assert there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == b"older"
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
+        sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
+    assert len(sheets) == 8 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
     assert DRAFT in readme.splitlines()[:5]
     flat = " ".join(readme.split())
     assert all(" ".join(failure.split()) in flat for failure in record["failures"])
 
 
-def test_a_design_outside_hardware_has_no_golden_file_and_is_released(tmp_path, capsys):
+def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released, tmp_path, capsys):
+    """This process and the fresh one; here the design stands outside hardware/, where it can have no golden file."""
     (tmp_path / "tiny.toml").write_text(TEXT)
-    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
-    assert [p.name for p in (tmp_path / "out").iterdir()] == [NAME]
-    capsys.readouterr()
-    # again, over it: the same; then over another one, which is named
-    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
-    assert "replaces" not in capsys.readouterr().err
+    (tmp_path / "out").mkdir()
     (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))
     assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out"), "--json"]) == 0
     out, err = capsys.readouterr()
     assert "replaces an earlier one" in err and "bom.csv" in json.loads(out)["replaced"]
+    assert [p.name for p in (tmp_path / "out").iterdir()] == [NAME]
+    assert (tmp_path / "out" / NAME).read_bytes() == released.read_bytes()
 
 
 def test_what_does_not_read_back_is_not_published(copy, capsys, monkeypatch):

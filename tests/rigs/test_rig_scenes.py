@@ -267,9 +267,9 @@ def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
 
 
 def test_an_array_beyond_the_estimator_still_has_a_calibration():
-    """Its strength is flagged as not known; guide and poses say nothing of it."""
+    """Its strength is flagged as not known, the guide says nothing of it, and poses take it as without stiffness."""
     odd = variant({"element.hinge_length": 3.0, "element.hinge_thickness": 0.02, "stop.gaps": {f"{a}": 0.1 for a in range(4, 9)}})
     assert all(one.refused for one in calibration_loads(odd))
     assert check_calibration(odd) == []
-    assert {p.deflection for p in poses(odd, "calibration")} == {0.0}
+    assert {p.deflection for p in poses(odd, "calibration")} == {odd.calibration.travel}
     assert "yield" not in make_scene(odd, "calibration").steps[-1].text

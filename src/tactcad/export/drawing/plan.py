@@ -57,11 +57,11 @@ class Dimension:
 
 
 def number(value: float, exact: bool = False) -> str:
-    """Shortest text: up to four decimals as they are (six where exact), otherwise rounded to three."""
-    shown = round(value, 6)
-    if not exact and abs(shown - round(shown, 4)) > 1e-9:
-        shown = round(shown, 3)
-    text = f"{shown:.6f}".rstrip("0").rstrip(".")
+    """Shortest text: up to four decimals as they are (nine where exact), otherwise rounded to three."""
+    shown = round(value, 9)
+    if not exact:
+        shown = round(shown, 4) if abs(shown - round(shown, 4)) < 1e-6 else round(shown, 3)
+    text = f"{shown:.9f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 

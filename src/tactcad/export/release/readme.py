@@ -21,8 +21,8 @@ WIDTH = 96
 MARK = "PRELIMINARY"
 DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 FOLDERS = {
-    "dxf/": "cut files of the wire-cut parts: exact nominal contours, millimetres, one part a file. "
-    "Compensation for wire and spark gap is yours.",
+    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of milled and ground "
+    "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
     "step/": "every part as a solid, and every assembly (AP214, millimetres)",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",

@@ -1,0 +1,82 @@
+"""What drawings and releases cannot do is said in one line, and nothing is written: through the command line, on a small design."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from variants import HARDWARE
+
+from tactcad.cli.main import main
+
+pytestmark = pytest.mark.cad
+
+TEXT = re.sub(
+    r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "",
+    (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
+).replace('name = "macro-array"', 'name = "tiny"').replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")  # fmt: skip
+
+
+TITLE = 'title = "Macro tactile array 2 x 5"'
+
+
+@pytest.fixture
+def place(tmp_path) -> Path:
+    """A folder with a design whose title is its own, so that no drawing of it is in the cache."""
+    assert TITLE in TEXT
+    (tmp_path / "tiny.toml").write_text(TEXT.replace(TITLE, f'title = "{tmp_path.name}"'))
+    return tmp_path
+
+
+def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
+    """Status and the last line said; no export and no zip may be there, and no traceback."""
+    status = main([*arguments, str(place / "tiny.toml"), "--out", str(place / "out")])
+    captured = capsys.readouterr()
+    assert captured.out == "" and "Traceback" not in captured.err
+    out = place / "out"
+    visible = [p for p in out.rglob("*") if not p.is_dir()] if out.exists() else []
+    assert visible == [] and not list(place.glob(".out.builds/*"))
+    return status, captured.err.splitlines()[-1]
+
+
+@pytest.mark.parametrize("command", [("export", "--drawings"), ("release",)], ids=" ".join)
+def test_a_missing_font(command, place, capsys, monkeypatch):
+    from tactcad.export.drawing import fonts
+
+    monkeypatch.setattr(fonts, "_FILE", Path("mpl-data", "fonts", "ttf", "Gone.ttf"))
+    status, said = refused(place, capsys, *command)
+    assert status == 1 and "font DejaVu Sans" in said and "is missing" in said and "no drawing was written" in said
+
+
+def test_a_letter_that_the_font_lacks(place, capsys):
+    (place / "tiny.toml").write_text(TEXT.replace(TITLE, 'title = "触覚 array"'))
+    status, said = refused(place, capsys, "export", "--drawings")
+    assert status == 1 and "has no letter '触'" in said
+
+
+@pytest.mark.parametrize("command", [("check", "--shop"), ("release", "--shop")], ids=" ".join)
+def test_an_unknown_shop_file(command, place, capsys):
+    name, option = command
+    status = main([name, option, str(place / "no-shop.toml"), str(place / "tiny.toml")])
+    captured = capsys.readouterr()
+    assert status == 2 and captured.out == "" and captured.err.count("\n") == 1 and "no-shop.toml" in captured.err
+
+
+@pytest.mark.nightly
+def test_a_part_larger_than_the_sheet(place, capsys):
+    """A row of 40 elements 50 mm apart has plates of two metres."""
+    text = TEXT.replace("[[5]]", f"[{[5] * 40}]").replace("thickness = 3.0", "thickness = 20.0", 1)
+    text = text.replace("\npitch = 4.0", "\npitch = 50.0").replace("spacer = 1.0", "spacer = 30.0")
+    (place / "tiny.toml").write_text(text)
+    status, said = refused(place, capsys, "export", "--drawings")
+    assert status == 1 and re.search(r"tiny-(stop-plate|carrier) \([\d.]+ x [\d.]+ mm\)", said) and "no drawing was written" in said
+
+
+def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
+    """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
+    from tactcad.export.drawing import compose
+
+    monkeypatch.setattr(compose, "SERIES", ((10, 1),))
+    status, said = refused(place, capsys, "export", "--drawings")
+    assert status == 1 and "finds no place on A4, A3" in said and "no drawing was written" in said
