@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check golden review release bench nightly clean
+.PHONY: help environment export test check golden review release bench reference nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -44,9 +44,12 @@ review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, co
 release: environment ## one zip a shop can quote from, of every design no check of which fails: exports/releases
 	$(BIN)/tactcad release $(DESIGNS)
 
-bench: environment ## export times against a plain script, interference against all pairs by the kernel
-	$(BIN)/python benchmarks/export.py
-	$(BIN)/python benchmarks/checks.py
+bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
+	$(BIN)/tactcad bench --out exports/bench
+
+reference: environment ## the published benchmarks again, in full, on a quiet machine: README, docs, benchmarks/results
+	$(BIN)/tactcad bench --full --out exports/bench
+	$(BIN)/python -m tactcad.studies.bench.publish exports/bench
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

@@ -28,7 +28,10 @@ NEED_SOLIDS = {
     "tactcad.export.step",
 }
 
-MODULES = sorted((SOURCE / "tactcad").rglob("*.py"))
+# Scripts that other programs run, or that show what they do without tactcad: no module, never imported.
+PEERS = SOURCE / "tactcad" / "studies" / "bench" / "peers"
+
+MODULES = sorted(p for p in (SOURCE / "tactcad").rglob("*.py") if p.parent != PEERS)
 
 
 def dotted(path: Path) -> str:
@@ -98,6 +101,12 @@ def test_kernel_is_imported_only_where_solids_are_made_or_needed(path):
 def test_the_listed_modules_exist_and_stand_above_solids():
     assert NEED_SOLIDS <= {dotted(p) for p in MODULES}
     assert {room(name) for name in NEED_SOLIDS} <= {"checks", "export"}
+
+
+def test_no_module_imports_a_peers_script():
+    assert PEERS.is_dir()
+    scripts = "tactcad.studies.bench.peers"
+    assert not [dotted(p) for p in MODULES if any(name.startswith(scripts) for name in imports_of(p))]
 
 
 def test_importing_everything_else_loads_no_kernel():

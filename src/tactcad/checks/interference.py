@@ -60,7 +60,7 @@ def check_interference(
         first, second = scene.placements[i], scene.placements[j]
         key, anchor = _situation(first, second, local, changing)
         if key not in known:
-            known[key] = _meeting((first, second), (boxes[i], boxes[j]), shapes, faces, anchor)
+            known[key] = meeting((first, second), (boxes[i], boxes[j]), shapes, faces, anchor)
         pair = frozenset((first.designator, second.designator))
         if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
             met.add(pair)
@@ -114,9 +114,9 @@ def _situation(
     return (*numbers, relative(first, second)), 0
 
 
-def _meeting(
+def meeting(
     pair: tuple[Placement, Placement], boxes: tuple[np.ndarray, np.ndarray], shapes: Mapping[str, TopoDS_Shape],
-    faces: dict[str, Faces], anchor: int,
+    faces: dict[str, Faces], anchor: int = 0,
 ) -> Meeting:
     """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these are
     measured. One part may hold the other without touching it only where its box holds the other's."""

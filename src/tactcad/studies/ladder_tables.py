@@ -140,11 +140,15 @@ TABLES = {
 def renewed(text: str, names: tuple[str, ...] = tuple(TABLES)) -> str:
     """The document with those of the named tables that it has computed anew."""
     for name in names:
-        block = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(\n<!-- end -->)", re.DOTALL)
-        if block.search(text):
-            table = TABLES[name]()
-            text = block.sub(lambda m: m.group(1) + table + m.group(2), text)  # noqa: B023
+        if f"<!-- table {name} -->" in text:
+            text = filled(text, name, TABLES[name]())
     return text
+
+
+def filled(text: str, name: str, table: str) -> str:
+    """The document with this table between the marks of that name, where it has them."""
+    block = re.compile(rf"(<!-- table {re.escape(name)} -->\n).*?(<!-- end -->)", re.DOTALL)
+    return block.sub(lambda m: f"{m.group(1)}{table}\n{m.group(2)}", text)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,14 @@ LABEL = 3.5  # height of views' letters
 LARGEST = 200.0  # mm of paper: a view is not enlarged beyond
 
 
+# Shares of the room that details may take, tried in turn.
+SHRUNK = (1.0, 0.6, 0.35)
+
+
+class NoPlace(CheckFailure):
+    """A plan that finds no place at any scale."""
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """A view's items at its scale, its (0, 0) at the paper's (0, 0)."""
@@ -43,22 +51,23 @@ def compose(
 ) -> Sheet:
     """The sheet at the largest preferred scale, and on the first paper, at which its layout is clean.
 
-    Raises CheckFailure where no scale down to 1:10 fits, or none leaves a clean layout.
+    Raises NoPlace where no scale down to 1:10 fits, or none leaves a clean layout.
     """
     width_, height_ = _main_size(plan)
     said: list[str] = []
     for scale in SERIES:
         if max(width_, height_) * factor(scale) > LARGEST:
             continue
-        for paper, beside in ((p, b) for p in papers for b in (True, False)):
+        details = SHRUNK if any(v.window for v in plan.views) else SHRUNK[:1]
+        for paper, beside, shrunk in ((p, b, s) for p in papers for s in details for b in (True, False)):
             if beside and paper.area[2] - paper.area[0] - WIDTH < NARROWEST:
                 continue
-            sheet, faults = _attempt(plan, curves, block, paper, scale, beside)
+            sheet, faults = _attempt(plan, curves, block, paper, scale, beside, shrunk)
             if sheet and not faults:
                 return sheet
             said.append(f"{paper.name} {shown(scale)}: {faults[0]}")
     nearest = [line for line in said if "do not fit" not in line] or said[-1:]
-    raise CheckFailure(
+    raise NoPlace(
         f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on {', '.join(p.name for p in papers)} at "
         f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join(nearest[:6])}; no drawing was written"
     )
@@ -71,7 +80,7 @@ def _main_size(plan: Plan) -> tuple[float, float]:
 
 def _attempt(
     plan: Plan, curves: Mapping[str, Sequence[Curve]], block: TitleBlock, paper: Paper, scale: tuple[int, int],
-    beside: bool,
+    beside: bool, shrunk: float,
 ) -> tuple[Sheet | None, list[str]]:
     board = Board(paper.area)
     board.add(frame(paper))
@@ -79,7 +88,7 @@ def _attempt(
     x0, y0, x1, y1 = paper.area
     board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
     _place_notes(board, plan.notes, paper, beside)
-    drawn = [_drawn(v, curves[v.name], scale if not v.window else _detail_scale(v), plan.values) for v in plan.views]
+    drawn = [_drawn(v, curves[v.name], scale if not v.window else _detail_scale(v, shrunk), plan.values) for v in plan.views]
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
         return None, [f"the views at {shown(scale)} do not fit {paper.name}"]
@@ -159,11 +168,11 @@ def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: 
     return _Drawn(view, scale, tuple(items))
 
 
-def _detail_scale(view: View) -> tuple[int, int]:
+def _detail_scale(view: View, shrunk: float) -> tuple[int, int]:
     x0, y0, x1, y1 = view.window
     for scale in SERIES:
         f = factor(scale)
-        if (x1 - x0) * f <= view.room[0] and (y1 - y0) * f <= view.room[1] or f <= view.least:
+        if (x1 - x0) * f <= shrunk * view.room[0] and (y1 - y0) * f <= shrunk * view.room[1] or f <= view.least:
             return scale
     return SERIES[-1]
 

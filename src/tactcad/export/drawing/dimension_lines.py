@@ -91,7 +91,8 @@ def stacked(linears: Sequence[Linear], side: Side, box: Box, scale: float, value
         length = boxed_width(text, key)
         # extension lines that pass this dimension on their way out: its own, and those of what stands outside it
         feet = [s for spot in spots[n:] for s in spot[1:3]]
-        number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet), length)
+        ends = (box[0], box[2]) if side in ("top", "bottom") else (box[1], box[3])
+        number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, ends), length)
         if number == len(tracks):
             tracks.append(_Track(offset if not tracks else tracks[-1].offset + (PITCH_BOXED if key else PITCH)))
         tracks[number].taken.append(_interval(a, b, t0, length, inside))
@@ -120,8 +121,11 @@ def _first_free(
     return len(tracks), choices[0]
 
 
-def _text_places(a: float, b: float, length: float, feet: Sequence[float]) -> list[tuple[float, bool]]:
-    """Where the text may start, and whether the arrows stand inside; the best first."""
+def _text_places(
+    a: float, b: float, length: float, feet: Sequence[float], ends: tuple[float, float]
+) -> list[tuple[float, bool]]:
+    """Where the text may start, and whether the arrows stand inside; the best first: between the extension lines, then
+    beside them within the `ends` of the view, where no other side's dimensions stand, then anywhere."""
     room = b - a
     inside = room >= 2 * ARROW + 1.5
     tail = 2.0 if inside else TAIL + 1.0
@@ -129,7 +133,9 @@ def _text_places(a: float, b: float, length: float, feet: Sequence[float]) -> li
     if room >= length + 1.6:
         slack = (room - length) / 2 - 0.8
         places += [(a + 0.8 + slack * share, inside) for share in (1.0, 0.6, 1.4, 0.2, 1.8)]
-    places += [(b + tail, inside), (a - tail - length, inside)]
+    beside = [b + tail, a - tail - length, *(f + 1.2 for f in sorted(feet) if f > b + tail)]
+    beside.sort(key=lambda t0: not ends[0] <= t0 <= t0 + length <= ends[1])
+    places += [(t0, inside) for t0 in beside]
 
     def crossed(t0: float) -> bool:
         return any(t0 - 0.7 < s < t0 + length + 0.7 for s in feet)

@@ -22,6 +22,8 @@ from .prism import ALIKE, FRONT, Sketch, closed, hole_callout, key_number, radiu
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
+MOST_LEAF = 5.0  # mm of a tall element's hinge shown either way from its middle
+WIDE_ROOM = (110.0, 100.0)
 ARM_ROOM = (190.0, 75.0)
 
 
@@ -73,8 +75,11 @@ class Outline:
         return [n for n in names if n in self and isinstance(self.segment(n), Arc)]
 
 
-def element_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
-    """The sheet of an element. Raises CheckFailure where a dimension is missing or given twice."""
+def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> Plan:
+    """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand with the arm.
+
+    Raises CheckFailure where a dimension is missing or given twice.
+    """
     o = Outline(part.body.outer)
     sketch = Sketch(part)
     for row in conventions("outer", o.contour):
@@ -86,8 +91,8 @@ def element_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
         if r is not dowel:
             sketch.convention(Span(level(f"{dowel.name}.y"), level(f"{r.name}.y")))
     limits = {c.name: c for c in part.characteristics}
-    hinge = _hinge_view(sketch, part, design, o, limits)
-    arm = _arm_view(sketch, part, design, o, limits)
+    hinge, left = _hinge_view(sketch, part, design, o, limits, tall)
+    arm = _arm_view(sketch, part, design, o, limits, *left)
     front = _front_view(sketch, part, o, called, dowel, limits)
     thickness = Characteristic(
         "thickness", part.body.thickness, part.body.thickness + design.tolerance.sheet_thickness,
@@ -100,7 +105,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
     return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
 
 
-def _within(nominal: float, rows: tuple, name: str, tolerance: float) -> Dimension:
+def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
     """A dimension with the tolerance that the uncertainty budget counts on."""
     return Dimension(name, rows, limits=(tolerance, -tolerance))
 
@@ -173,8 +178,11 @@ def _slot(o: Outline) -> tuple[Corner, Corner]:
     return o.corner("slot_arm_wall", "arm_back"), o.corner("ledge", "slot_body_wall")
 
 
-def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic]) -> View:
-    """The hinge: thickness, slot, fillets, and the heights beside it."""
+def _hinge_view(
+    sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic], tall: bool
+) -> tuple[View, tuple[list[Linear], list[Callout]]]:
+    """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the thickness alone, and
+    leaves the other dimensions and callouts, which are returned, to the arm's view."""
     arm, body = _slot(o)
     (xa, back), (xb, ledge) = arm.at, body.at
     t = design.tolerance
@@ -183,40 +191,67 @@ def _hinge_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: 
     face = flat if one else o.start("body_face")[1]
     side = max(0.55 * (xb - xa), 0.35 * back)
     window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
-    view = View("hinge", *FRONT, part_box(part), label="Z", window=window, room=HINGE_ROOM, least=HINGE_LEAST)
+    if tall:
+        window = _around_web(o, xa, xb, flat if one else None)
+    view = View("hinge", *FRONT, part_box(part), label="Z", window=window, room=WIDE_ROOM if tall else HINGE_ROOM, least=HINGE_LEAST)
     middle = (xa + xb) / 2
     linears, across, callouts = [], [], []
     near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
     floor, floor_y = _floor(o, "slot_floor", "slot_")
     web = _key(sketch, part, limits, "hinge thickness", Span(near, floor))
-    across.append(Across(web, (middle, floor_y), (middle, low), low - min(flat, face)))
-    length = sketch.must(_within(0, (Span(arm.x, body.x),), "slot length", t.hinge_length))
-    linears.append(Linear(length, "top", (xa, back), (xb, ledge)))
-    height = sketch.must(_within(0, (Span(o.y("flat_face"), arm.y),), "arm height", t.arm_height))
-    linears.append(Linear(height, "left", (window[0], flat), (window[0], back)))
-    body_low = o.y("flat_face") if one else o.y("body_face")
-    high = sketch.must(Dimension("body height", (Span(body_low, body.y),)))
-    linears.append(Linear(high, "right", (window[2], face), (window[2], ledge)))
-    if not one:
-        sketch.convention(Span(o.corner("flat_face", "front_slot_arm_wall").x, arm.x))
-        sketch.convention(Span(o.corner("front_slot_body_wall", "body_face").x, body.x))
-        depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
-        linears.append(Linear(depth, "left", (window[0], flat), (xa, low)))
-        if abs(face - flat) < ALIKE:
-            sketch.convention(Span(o.y("flat_face"), o.y("body_face")))
-        else:
-            step = sketch.must(Dimension("body below the arm", (Span(o.y("body_face"), o.y("flat_face")),)))
-            linears.append(Linear(step, "left", (window[0], flat), (xb, face)))
+    across.append(Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1])))
+    length = sketch.must(_within((Span(arm.x, body.x),), "slot length", t.hinge_length))
+    along = Linear(length, "top", (xa, back), (xb, ledge))
+    heights = _heights(sketch, t.arm_height, o, arm, body, near)
+    if not tall:
+        linears.append(along)
+        linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
-    callouts += _radii(sketch, view, o, fillets)
+    called = _radii(sketch, view, o, fillets)
     if "slot_floor" not in o:
         arc = o.segment(next(n for n in fillets if n in o))
         ends = "full round" if one else "full round, both slots"
-        callouts.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
+        called.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
+    callouts += [] if tall else called
     if rough := re.search(r"Ra [\d.]+", part.finish):
-        callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((xa + 0.3 * (xb - xa), low), 0.0),)))
-    lettered = Datum("A", (window[0] if one else xb, face), (window[2], face), (0.0, -1.0))
-    return replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=(lettered,))
+        callouts.append(Callout((f"{rough[0]}, both hinge faces",), (((middle - 0.2 * min(xb - xa, MOST_LEAF), low), 0.0),)))
+    shown = face > window[1]
+    lettered = (Datum("A", (window[0] if one else xb, face), (window[2], face), (0.0, -1.0)),) if shown else ()
+    view = replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=lettered)
+    return view, ([*heights, along], called) if tall else ([], [])
+
+
+def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> tuple[float, float, float, float]:
+    """The window of a hinge alone: its leaf, of a long one its middle; `flat` is None for two slots."""
+    floor = _floor(o, "slot_floor", "slot_")[1]
+    low = _floor(o, "hinge_face", "front_slot_")[1] if flat is None else flat
+    over = min(max(2.0 * (floor - low), 1.0), 3.0)
+    half = min((xb - xa) / 2 + over, MOST_LEAF)
+    middle = (xa + xb) / 2
+    return (middle - half, low - (over if flat is None else 0.5 * over), middle + half, floor + over)
+
+
+def _heights(sketch: Sketch, tolerance: float, o: Outline, arm: Corner, body: Corner, near: Level) -> list[Linear]:
+    """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the right."""
+    flat = o.start("flat_face")
+    height = sketch.must(_within((Span(o.y("flat_face"), arm.y),), "arm height", tolerance))
+    one = "body_face" not in o
+    foot = flat if one else o.corner("front_slot_body_wall", "body_face").at
+    high = sketch.must(Dimension("body height", (Span(o.y("flat_face") if one else o.y("body_face"), body.y),)))
+    heights = [Linear(height, "left", flat, arm.at), Linear(high, "right", foot, body.at)]
+    if one:
+        return heights
+    sketch.convention(Span(o.corner("flat_face", "front_slot_arm_wall").x, arm.x))
+    sketch.convention(Span(o.corner("front_slot_body_wall", "body_face").x, body.x))
+    depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
+    web = _floor(o, "hinge_face", "front_slot_")[1]
+    heights.append(Linear(depth, "left", flat, (arm.at[0], web)))
+    if abs(foot[1] - flat[1]) < ALIKE:
+        sketch.convention(Span(o.y("flat_face"), o.y("body_face")))
+    else:
+        step = sketch.must(Dimension("body below the arm", (Span(o.y("body_face"), o.y("flat_face")),)))
+        heights.append(Linear(step, "left", flat, foot))
+    return heights
 
 
 def part_box(part: Part) -> tuple[float, float, float, float]:
@@ -235,8 +270,11 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
     return Level(((f"outer.{i}.cy", 1.0), *ends)), s.centre[1] + (s.radius if up else -s.radius)
 
 
-def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic]) -> View:
-    """The arm: its length to the hinge's middle, pad, stop land."""
+def _arm_view(
+    sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic], more: Sequence[Linear],
+    called: Sequence[Callout],
+) -> View:
+    """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view has left to it."""
     slot, body = _slot(o)
     (xa, back), (xb, ledge) = slot.at, body.at
     t = design.tolerance
@@ -247,7 +285,7 @@ def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: di
     view = View("arm", *FRONT, part_box(part), label="X", window=window, room=ARM_ROOM)
     tip_x = o.x("tip")
     middle = (xa + xb) / 2
-    arm = sketch.must(_within(0, (Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
+    arm = sketch.must(_within((Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
     length = sketch.must(Dimension("pad length", (Span(tip_x, level(f"{o.point('pad_face', True)}.x")),)))
     height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
     lands = sketch.must(Dimension("stop land", (Span(tip_x, level(f"{o.point('stop_land', False)}.x")),)))
@@ -268,4 +306,4 @@ def _arm_view(sketch: Sketch, part: Part, design: Design, o: Outline, limits: di
     centre_line = ((middle, flat - 0.1 * back), (middle, max(ledge, back) + margin / 2))
     low = o.corner("front_slot_body_wall", "body_face").at if "body_face" in o else o.start("flat_face")
     face = Datum("A", low, (window[2] if "body_face" in o else xa, low[1]), (0.0, -1.0))
-    return replace(view, linears=linears, callouts=tuple(callouts), axes=(centre_line,), datums=(face,))
+    return replace(view, linears=(*linears, *more), callouts=(*callouts, *called), axes=(centre_line,), datums=(face,))

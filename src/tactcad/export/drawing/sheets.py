@@ -14,7 +14,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Part
 
-from .compose import compose
+from .compose import NoPlace, compose
 from .element import element_plan
 from .gate import drawing_faults
 from .ink import Sheet, preliminary
@@ -53,13 +53,15 @@ class Written:
     svg: bytes
 
 
-def part_plan(part: Part, design: Design, files: Sequence[MadeFrom]) -> Plan:
-    """What the part's sheet shows. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
+def part_plan(part: Part, design: Design, files: Sequence[MadeFrom], tall: bool = False) -> Plan:
+    """What the part's sheet shows; an element's as that of a `tall` one where asked for. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
     names = {s.name for s in part.body.outer}
-    make = element_plan if {"pad_face", "stop_land"} <= names else prism_plan
-    return make(part, design, notes_of(part, files))
+    notes = notes_of(part, files)
+    if {"pad_face", "stop_land"} <= names:
+        return element_plan(part, design, notes, tall)
+    return prism_plan(part, design, notes)
 
 
 def part_sheet(order: Order) -> Sheet:
@@ -72,7 +74,13 @@ def part_sheet(order: Order) -> Sheet:
     plan = part_plan(part, design, order.files)
     shape = from_bytes(order.shape)
     curves = {view.name: projected(shape, view.eye, view.right) for view in plan.views}
-    sheet = compose(plan, curves, title_of(design, part, order.draft), (A4, A3))
+    title = title_of(design, part, order.draft)
+    try:
+        sheet = compose(plan, curves, title, (A4, A3))
+    except NoPlace:
+        if all(view.window is None for view in plan.views):
+            raise
+        sheet = compose(part_plan(part, design, order.files, tall=True), curves, title, (A4, A3))
     return preliminary(sheet) if order.draft else sheet
 
 

@@ -4,7 +4,7 @@ Every distinct shape goes through the kernel once; every file is written once an
 the assembly (shared prototypes in one document), DXF a sheet part, hidden-line SVG, bill of materials, manifest.
 No cache, no lock, no repeatable bytes; what is read back is compared by count and volume only.
 
-usage: baseline_export.py NUMBER_OF_ELEMENTS FOLDER
+usage: plain_export.py NUMBER_OF_ELEMENTS FOLDER
 """
 
 from __future__ import annotations

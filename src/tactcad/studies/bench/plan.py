@@ -1,0 +1,29 @@
+"""How much a run does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeVar
+
+Mode = Literal["smoke", "short", "full"]
+MODES: tuple[Mode, ...] = ("smoke", "short", "full")
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """mode; seed of everything random; a scratch folder; `say` hears what is being measured.
+
+    smoke: does everything run? Its figures mean nothing. short: a minute or two. full: for publication.
+    """
+
+    mode: Mode
+    seed: int
+    folder: Path
+    say: Callable[[str], None] = lambda text: None
+
+    def of(self, smoke: T, short: T, full: T) -> T:
+        """The one for this mode."""
+        return {"smoke": smoke, "short": short, "full": full}[self.mode]

@@ -1,0 +1,72 @@
+"""A full run's report becomes the published one: `python -m tactcad.studies.bench.publish REPORT` in the checkout.
+
+Writes benchmarks/results/reference.json and .md, docs/images/bench-*.svg, the converged results that short runs compare
+with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in README.md and docs/.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from tactcad.design.messages import InputError
+from tactcad.studies.ladder_tables import filled
+from tactcad.studies.report import standalone
+
+from . import render, tables, truth
+from .choice import choice
+from .figures import figures
+from .run import BENCHMARKS, SCHEMA
+
+REFERENCE = "benchmarks/results/reference.json"
+DOCUMENTS = ("README.md", "docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
+
+
+def load(path: Path) -> dict:
+    """A report's JSON. Raises InputError where it is none, or lacks a benchmark."""
+    try:
+        result = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(str(path), f"cannot be read: {error}") from None
+    lacking = [n for n in BENCHMARKS if "tables" not in result.get("benchmarks", {}).get(n, {})]
+    failed = [n for n, entry in result.get("benchmarks", {}).items() if "failed" in entry]
+    if result.get("schema") != SCHEMA or lacking or failed:
+        raise InputError(str(path), "not a whole report", value=", ".join(lacking + failed), legal=f"schema {SCHEMA}, every benchmark")
+    return result
+
+
+def blocks(result: dict) -> dict[str, str]:
+    """What stands between a document's marks, by name."""
+    found = {"bench choose": choice(result), "bench made on": render.made_on(result)}
+    for name, entry in result["benchmarks"].items():
+        found[f"bench findings {name}"] = "\n".join(f"- {line}" for line in render.remarks(entry))
+        for key, data in entry["tables"].items():
+            found[f"bench {key}"] = tables.markdown(data) + (f"\n\n{data['note']}" if data["note"] else "")
+    return found
+
+
+def images(result: dict) -> dict[str, bytes]:
+    return {f"{f.name}.svg": standalone(f).encode() for shown in figures(result).values() for f in shown}
+
+
+def publish(report: Path, root: Path) -> list[Path]:
+    """Write everything that is published into the checkout `root`; returns what was written."""
+    result = load(report / "report.json")
+    files = {REFERENCE: render.to_json(result), REFERENCE.replace(".json", ".md"): render.to_markdown(result, "../../docs/images")}
+    files |= {f"docs/images/{name}": data.decode() for name, data in images(result).items()}
+    if (report / truth.SHIPPED).is_file():
+        files[f"src/tactcad/studies/data/{truth.SHIPPED}"] = (report / truth.SHIPPED).read_text("utf-8")
+    for document in DOCUMENTS:
+        text = (root / document).read_text("utf-8")
+        for name, block in blocks(result).items():
+            text = filled(text, name, block)
+        files[document] = text
+    for name, text in files.items():
+        (root / name).write_text(text, "utf-8")
+    return [root / name for name in files]
+
+
+if __name__ == "__main__":
+    for path in publish(Path(sys.argv[1]), Path.cwd()):
+        print(path)

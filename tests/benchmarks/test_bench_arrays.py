@@ -1,0 +1,24 @@
+"""The arrays that benchmarks are made on: legal designs of the size they say."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactcad.design.load import parse
+from tactcad.parts.rules import refuse_broken
+from tactcad.studies.bench import arrays
+
+
+@pytest.mark.parametrize("elements", [2, 10, 20, 30, 40, 100, 300, 400, 1000])
+@pytest.mark.parametrize("changed", [False, True])
+def test_its_designs_are_legal_and_of_the_size_they_say(elements, changed):
+    design = parse(arrays.text(elements, changed), "benchmark")
+    refuse_broken(design)
+    assert sum(map(len, design.array.row_arms)) == elements
+    if not changed:
+        assert design.array.row_arms == arrays.of(elements).array.row_arms
+
+
+def test_ten_elements_are_the_published_design():
+    assert parse(arrays.text(10), "a") == parse(arrays.published_text(), "a") == arrays.of(10)
+    assert parse(arrays.text(10, changed=True), "a") != arrays.of(10)

@@ -1,0 +1,85 @@
+"""What a benchmark's figures rest on: the fit of exponents, the efficient front, times in turns, tables."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from tactcad.studies.bench import tables
+from tactcad.studies.bench.exponent import fit
+from tactcad.studies.bench.front import efficient
+from tactcad.studies.bench.timing import interleaved, of_samples
+
+
+@pytest.mark.parametrize("p", [0.0, 0.5, 1.0, 2.0])
+def test_an_exact_power_is_found_with_no_doubt_left(p):
+    sizes = [10, 30, 100, 1000]
+    found = fit(sizes, [3e-4 * n**p for n in sizes])
+    assert (found.value, found.low, found.high, found.last) == pytest.approx((p, p, p, p), abs=1e-9)
+
+
+def test_its_interval_covers_the_truth_nineteen_times_in_twenty():
+    random, sizes = np.random.default_rng(3), np.array([10, 30, 100, 300, 1000])
+    covered = 0
+    for _ in range(2000):
+        found = fit(sizes, sizes**1.3 * np.exp(random.normal(0, 0.2, 5)))
+        covered += found.low <= 1.3 <= found.high
+    assert 0.935 < covered / 2000 < 0.965  # binomial: 0.95 +- 3 x 0.005
+
+
+def test_a_fixed_cost_shows_in_the_last_step():
+    sizes = [1, 10, 100, 1000, 10_000]
+    found = fit(sizes, [1.0 + 1e-3 * n for n in sizes])
+    assert found.value < 0.35 and found.last == pytest.approx(np.log10(11.0 / 2.0), rel=1e-12)
+
+
+def test_two_sizes_have_no_interval_and_one_has_no_exponent():
+    found = fit([10, 20], [1.0, 4.0])
+    assert found.value == pytest.approx(2.0) and (found.low, found.high) == (-np.inf, np.inf)
+    with pytest.raises(ValueError, match="two sizes"):
+        fit([10, 10], [1.0, 2.0])
+
+
+def dominated(point, points) -> bool:
+    return any(all(a <= b for a, b in zip(q, point)) and q != point for q in points)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_front_is_what_nothing_dominates(seed):
+    """Brute force over every pair; few distinct values, so that ties and equal points occur."""
+    points = [tuple(map(float, p)) for p in np.random.default_rng(seed).integers(1, 6, (seed % 14, 2))]
+    front = efficient(points)
+    assert sorted(front) == [i for i, p in enumerate(points) if not dominated(p, points)]
+    assert [points[i][0] for i in front] == sorted(points[i][0] for i in front)
+
+
+def test_actions_are_run_in_turns_and_each_as_often():
+    order = []
+    timed = interleaved({name: (lambda name=name: order.append(name)) for name in "abc"}, 3)
+    rounds = "".join(key for i, key in enumerate(order) if i == 0 or order[i - 1] != key)
+    assert rounds == "abc" + "abc" + "bca" + "cab", "a warm-up, then every round begins with the next one"
+    assert all(t.runs == 3 and 0 < t.least <= t.median for t in timed.values())
+
+
+def test_samples_of_another_clock():
+    found = of_samples([3.0, 1.0, 8.0])
+    assert (found.least, found.median, found.runs) == (1.0, 3.0, 3)
+
+
+ROWS = [{"name": "a", "time": 0.00123456, "wrong": 3, "kept": True}, {"name": "b | c", "time": None, "wrong": 0, "kept": False}]
+TABLE = tables.table("T", [("name", "name", tables.PLAIN), ("time", "time", tables.MILLI), ("wrong", "wrong", tables.PLAIN), ("kept", "kept", tables.PLAIN)], ROWS)
+
+
+def test_a_table_reads_the_same_in_every_form():
+    assert json.loads(json.dumps(TABLE)) == TABLE
+    read = list(csv.DictReader(io.StringIO(tables.as_csv(TABLE))))
+    assert float(read[0]["time"]) == ROWS[0]["time"] and read[1]["time"] == "" and read[1]["name"] == "b | c"
+    heads, _, first, second = tables.markdown(TABLE).splitlines()
+    assert heads == "| name | time, ms | wrong | kept |"
+    assert first == "| a | 1.23 | 3 | yes |" and second == "| b \\| c |  | 0 | no |"
+    lines = tables.text(TABLE).splitlines()
+    assert lines[1].split() == ["name", "time", "wrong", "kept"] and lines[2].split() == ["ms"] and lines[3].split() == ["a", "1.23", "3", "yes"]
