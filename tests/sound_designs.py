@@ -25,6 +25,7 @@ M6_UPPER = {"2": 0.008, "2.5": 0.008, "3": 0.008, "4": 0.012, "5": 0.012}  # ISO
 # The shop that comes with tactcad: wire/2 + gap, one cut, aluminium's wall, drills' and taps' reach in diameters.
 CORNER, CUT, WALL, DRILL_REACH, TAP_REACH = 0.15, 0.3, 0.8, 10.0, 3.0
 LEAST_SPACER = 0.1
+LEAD = 0.25  # mm, AWG 36 with its insulation
 
 # Numbers by path: what the design file may hold; stop.gaps holds several.
 LEGAL: dict[str, Number] = {
@@ -123,7 +124,7 @@ def _stack(d: Draw, row_lengths: tuple[int, ...]) -> list[int]:
     n, least = max(rows), d.m.d + 0.6
     wide = 1.9 if d.longest_stack < 100 and d.once_in(2) else LEAST_SPACER  # room for the calibration's roller
     spacer = d.number("array.spacer", wide, min(30.0, d.longest_stack / n / 2))
-    sheet = d.number("sheet.thickness", (least - spacer) / n - spacer, (d.longest_stack - spacer) / n - spacer)
+    sheet = d.number("sheet.thickness", max((least - spacer) / n, LEAD) - spacer, (d.longest_stack - spacer) / n - spacer)
     d.put("array.pitch", round(sheet + spacer, 3))
     return rows
 
@@ -151,7 +152,9 @@ def _arms(d: Draw, rows: list[int]) -> None:
     half = d.l / 2
     root = d.number("element.pad_root_radius", CORNER)
     pad = d.number("element.pad_length", WALL + 0.05, min(d.widest_pad, 99 - root - half))
-    d.number("element.pad_height", max(root, 0.1 - d.bottom))
+    # gauge and leads beside it stay off the object
+    out = LEAD + (d.number("gauge.grid_height") if not d.two else d.rise)
+    d.number("element.pad_height", max(root, out))
     carrier = d.number("gauge.carrier_arm_side", high=99 - pad - root)
     grid = d.number("gauge.grid_length", high=min(d.l, 2 * carrier))
     sheet = d.table["sheet.thickness"]
@@ -187,8 +190,8 @@ def _loads(d: Draw) -> None:
     # deflection at the tip when a leaf of length l yields: 2 (stress/E) a l/t
     bend = 2 / factor * (max(d.l - 2 * d.r, 0) + sqrt(d.r * d.t)) / d.t
     room = d.rise - 0.2929 * d.corner - 0.005
-    open_slot = min(0.5 * d.l * least / d.h, room)
-    low = 2 * 0.008 / (bend * least)
+    open_slot = min(0.3 * d.l * least / d.h, room)
+    low = 2 * 0.02 / (bend * least)
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", d.choice(*ALLOYS))
     ratio = d.between(min(max(low, 3e-4), 0.5), min(max(high, 3e-4), 0.5))
@@ -202,7 +205,7 @@ def _loads(d: Draw) -> None:
     d.rest("material")
     d.elastic = 0.2 * bend * factor * least * ratio  # mm of deflection that no hinge yields at
     gap = min(room, bend * least * ratio)
-    tolerance = d.number("stop.tolerance", high=gap / 16)
+    tolerance = d.number("stop.tolerance", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     if d.once_in(5):
         arm = d.choice(*d.arms[0])
@@ -210,10 +213,11 @@ def _loads(d: Draw) -> None:
     # rows that stay apart when facing pads turn towards each other
     d.number("tolerance.hinge_length", high=d.l / 10)
     off = 2 * d.number("tolerance.load_arm", high=(49 - pad) / 4)
-    turn = min(room, 2 * bend * most * ratio) + tolerance
+    turn = min(room, 3 * bend * most * ratio) + tolerance
     towards = 2 * (d.table["element.pad_height"] + d.h) * turn / least
     d.number("array.row_pitch", pad + max(0.1, off) + towards, 2.8 * d.widest_pad - pad)
-    d.number("tolerance.sheet_thickness", high=d.table["array.spacer"] - LEAST_SPACER + 1e-4)
+    d.number("tolerance.sheet_thickness", high=d.table["array.spacer"] - 0.0301)
+    d.number("tolerance.arm_height", high=0.29 * d.corner)
 
 
 def _clamp(d: Draw) -> None:
@@ -242,7 +246,8 @@ def _clamp(d: Draw) -> None:
     pin = dowel + M6_UPPER[d.table["clamp.dowel"]]
     hole = d.number("holes.dowel_hole", pin, pin + 0.05)
     widest = max(m.clearance, hole + upper)
-    recess = d.number("element.recess_depth", max(corner + d.bottom, 0.02), top / 8)
+    layers = ceil(3 / floor(d.table["array.pitch"] / LEAD + 1e-9))
+    recess = d.number("element.recess_depth", max(corner + d.bottom, layers * LEAD), max(top / 8, layers * LEAD))
     bottom = d.number("clamp.spacer_bottom", recess, recess + top / 16)
     web = d.number("holes.web", WALL, top / 8)
     drop = d.number("clamp.spacer_drop", high=top / 16)
@@ -278,7 +283,7 @@ def _clamp(d: Draw) -> None:
     rear_end = max(spots[-1] + max(web + widest / 2, head + 1), offset + counterbore / 2 + 1)
     length = d.number("element.rear_length", rear_end)
     start = d.number("element.recess_offset", high=length - corner - 0.01)
-    d.number("gauge.carrier_body_side", d.carrier_least, seat + d.l / 2 + start)
+    d.number("gauge.carrier_body_side", d.carrier_least, seat + 0.35 * d.l + start)
 
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)

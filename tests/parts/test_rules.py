@@ -20,6 +20,9 @@ from tactcad.parts.rules import RULES, broken_rules, refuse_broken
 from tactcad.scenes import make_scene
 
 MACRO = "macro-array"
+THIN = {
+    "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0, "gauge.carrier_width": 0.5, "gauge.grid_width": 0.4,
+}  # fmt: skip
 ONE = {"array.row_arms": [[4.0]]}
 TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
 
@@ -56,11 +59,11 @@ WITNESSES = {
         )
     ],
     "slot_clears_pad": [
-        ({"array.row_arms": [[6], [2.7]], "gauge.carrier_arm_side": 0.2}, "array.row_arms[1][0]"),
+        ({"array.row_arms": [[6], [2.7]], "gauge.carrier_arm_side": 0.3}, "array.row_arms[1][0]"),
         ({**TWO_SIDED, "array.row_arms": [[2.7]]}, "array.row_arms[0][0]"),
     ],
     "pad_root_fits_pad": [
-        ({"element.pad_height": 0.25}, "element.pad_root_radius"),
+        ({"element.pad_height": 0.29}, "element.pad_root_radius"),
         ({"element.pad_root_radius": 2.1, "array.row_arms": [[6]]}, "element.pad_root_radius"),
     ],
     "pad_stands_out_of_body": [
@@ -75,7 +78,25 @@ WITNESSES = {
         ({"gauge.carrier_body_side": 4.1}, "gauge.carrier_body_side"),
         ({**TWO_SIDED, "gauge.grid_length": 0.9}, "gauge.grid_length"),
     ],
-    "arms_clear_end_plates": [({"array.spacer": 0.06, "array.pitch": 3.06}, "array.spacer")],
+    "arms_clear_neighbours": [
+        ({"array.spacer": 0.06, "array.pitch": 3.06, "tolerance.sheet_thickness": 0.01}, "array.spacer"),
+        ({"array.spacer": 0.12, "array.pitch": 3.12}, "array.spacer"),
+    ],
+    "gauge_fits_width": [
+        ({"gauge.carrier_width": 3.1}, "gauge.carrier_width"),
+        ({"gauge.grid_width": 1.6}, "gauge.grid_width"),
+        ({"gauge.grid_length": 2.5}, "gauge.grid_length"),
+    ],
+    "leads_have_room": [
+        ({"element.recess_depth": 0.2, "element.corner_radius": 0.15, "element.pad_root_radius": 0.2}, "element.recess_depth"),
+        ({"element.pad_height": 0.27, "element.pad_root_radius": 0.2}, "element.pad_height"),
+    ],
+    "land_stands_over_arm": [({"tolerance.arm_height": 0.4}, "tolerance.arm_height")],
+    "slots_stay_open": [({"tolerance.hinge_length": 0.5, "element.hinge_length": 0.55, "element.fillet_radius": 0.25}, "element.hinge_length")],
+    "pressed_arms_clear_opposite_row": [
+        ({"array.row_pitch": 2.2}, "array.row_pitch"),
+        ({"tolerance.load_arm": 1.0}, "array.row_pitch"),
+    ],
     "ledge_below_rear": [
         ({"clamp.stop_plate_gap": 0.25}, "clamp.stop_plate_gap"),
         ({"element.body_height": 7.5, "stop.land_length": 0.1, "array.row_arms": [[9]]}, "element.rear_height"),
@@ -83,7 +104,7 @@ WITNESSES = {
     ],
     "recess_fits_rear": [
         ({"clamp.spacer_bottom": 0.7}, "clamp.spacer_bottom"),
-        ({"element.recess_depth": 0.2}, "element.recess_depth"),
+        ({"element.recess_depth": 0.28}, "element.recess_depth"),
         ({"element.recess_offset": 18.0}, "element.recess_offset"),
     ],
     "stop_land_above_arm": [
@@ -124,7 +145,7 @@ WITNESSES = {
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5}, "clamp.stop_plate_thickness"),
         (
-            {**ONE, "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0},
+            {**ONE, **THIN},
             "clamp.screw",
         ),
     ],
@@ -240,7 +261,7 @@ def test_many_such_designs_build_and_pass_every_check(design):
         {"element.rear_height": 16.0},  # carrier over high rear bodies
         {"array.row_arms": [[4] * 4], "clamp.end_plate_thickness": 5.0, "clamp.mount_pitch_y": 5.0},  # counterbores
         # set screws over the outermost of thin elements would stand in the end plates
-        {"array.row_arms": [[4] * 8], "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0},
+        {"array.row_arms": [[4] * 8], **THIN},
         {"array.row_arms": [[50.0, 4.0]]},  # beyond the estimator's fit
         {**TWO_SIDED, "clamp.screw": "M2.5", "clamp.stop_plate_thickness": 5.0},
     ],

@@ -1,13 +1,13 @@
-"""Do pressed arms stay clear of their own body and of the opposite arm?
+"""Do pressed arms stay clear of what stands around them, and have gauges and leads their space?
 
-Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre, as far as its stop
-lets it: to its gap and tolerance at the tip. It moves in its own plane: from its neighbours and the end plates
-it stays as far as it stands, which is the spacer's thickness and part of the check of interference.
+Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to its stop's gap and
+tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate. It moves in its own
+plane: from its neighbours and the end plates it stays as far as it stands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cache
 from math import asin, cos, sin
@@ -17,19 +17,33 @@ from tactcad.contour.nearest import distance
 from tactcad.design.tree import Design
 from tactcad.parts.element import outline
 from tactcad.parts.layout import ElementPlace, Layout
+from tactcad.parts.room_rules import (
+    LEAD,
+    LEADS,
+    gauge_room,
+    gauge_stands_out,
+    hinge_centre,
+    leads_that_fit,
+    neighbours_take,
+    turns,
+)
 from tactcad.parts.stop_gap import stop_gap
 
 from .finding import Finding
 
 
 def check_clearance(design: Design) -> list[Finding]:
-    """Findings on every element, pressed and at rest, against its body and the opposite arms.
+    """Findings on every element, pressed and at rest: its own body, the stop plate, its neighbours and the end plates,
+    the opposite arms, gauge and leads.
 
     Nearer than the design's tolerances is too near: two pad edges may each be off by [tolerance] load_arm.
     """
     layout = Layout(design)
     arms = _Arms(layout)
-    return [*_own_body(layout, arms), *_opposite(layout, arms)]
+    return [
+        *_own_body(layout, arms), *_stop_plate(layout, arms), *_beside(layout), *_opposite(layout, arms),
+        *_leads(layout),
+    ]
 
 
 class _Arms:
@@ -37,19 +51,18 @@ class _Arms:
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
+        self.turns = turns(layout)
         self.contour = cache(lambda arm, hinge, gap: outline(layout, arm, hinge, gap))
 
-    def of(self, place: ElementPlace, pressed: bool) -> tuple[Segment, ...]:
-        """Every segment that moves with the arm, in (x, z) of row one."""
-        layout = self.layout
-        gap = stop_gap(layout, place)
-        arm = _left_of(self.contour(place.arm, place.hinge, gap), place.hinge_x)
-        if not pressed:
-            return tuple(arm)
-        two = layout.design.element.sides == "two"
-        centre = (place.hinge_x, place.hinge.h / 2 if two else place.hinge.t / 2)
-        turn = asin((gap + layout.design.stop.tolerance) / place.arm)
+    def of(self, place: ElementPlace, turn: float) -> tuple[Segment, ...]:
+        """Every segment that moves with the arm, turned by that angle, in (x, z) of row one."""
+        arm = _left_of(self.contour(place.arm, place.hinge, stop_gap(self.layout, place)), place.hinge_x)
+        centre = (place.hinge_x, hinge_centre(self.layout, place))
         return tuple(_turned(s, centre, turn) for s in arm)
+
+    def most(self, place: ElementPlace) -> float:
+        """Angle by which the arm turns at most."""
+        return self.turns[place.number - 1]
 
     def body(self, place: ElementPlace) -> list[Segment]:
         contour = self.contour(place.arm, place.hinge, stop_gap(self.layout, place))
@@ -86,18 +99,55 @@ def _nearest(some: Iterable[Segment], others: Iterable[Segment]) -> float:
     return min(distance(a, b) for a in some for b in others)
 
 
-def _own_body(layout: Layout, arms: _Arms) -> Iterable[Finding]:
+def _own_body(layout: Layout, arms: _Arms) -> Iterator[Finding]:
     seen: dict[tuple, float] = {}
     for place in layout.elements:
         key = (place.arm, place.hinge)
         if key not in seen:
-            seen[key] = _nearest(arms.of(place, pressed=True), arms.body(place))
+            seen[key] = _nearest(arms.of(place, arms.most(place)), arms.body(place))
         limit = layout.design.tolerance.hinge_length
         if seen[key] <= limit:
-            yield _finding(place, seen[key], limit, "its own body: the slot closes before the stop does")
+            yield _pressed(place, seen[key], limit, "its own body: the slot closes before the stop does")
 
 
-def _opposite(layout: Layout, arms: _Arms) -> Iterable[Finding]:
+# Lengths in decimals, kept in binary, mm.
+ROUNDING = 1e-9
+# Pieces of the contour that meet the stop plate, or lead up to it.
+LAND = frozenset({"stop_land", "tip", "land_ramp", "land_root"})
+
+
+def _stop_plate(layout: Layout, arms: _Arms) -> Iterator[Finding]:
+    """On its closed stop the land touches the plate; no other piece of the arm comes as high."""
+    seen: dict[tuple, float] = {}
+    for place in layout.elements:
+        key = (place.arm, place.hinge)
+        if key not in seen:
+            closed = asin(min(1.0, stop_gap(layout, place) / place.arm))
+            rest = [s for s in arms.of(place, closed) if s.name not in LAND]
+            seen[key] = layout.ledge - max(s.at(u)[1] for s in rest for u in (0.0, 0.5, 1.0))
+        limit = layout.design.tolerance.arm_height
+        if seen[key] <= limit:
+            yield _pressed(place, seen[key], limit, "the stop plate beside its land")
+
+
+def _beside(layout: Layout) -> Iterator[Finding]:
+    """Along the row: what stands next to each element, blanks and end plates too, is a spacer away."""
+    limit, thick = neighbours_take(layout), layout.design.sheet.thickness
+    for place in layout.elements:
+        for step in (-1, 1):
+            gap = layout.stack / 2 - abs(place.y) - thick / 2
+            index = place.index + step
+            if 0 <= index < layout.positions:
+                gap = abs(layout.position_y(index) - place.y) - thick
+                what = next((p.designator for p in layout.elements if (p.row, p.index) == (place.row, index)), "a blank")
+            else:
+                what = "EP1" if place.y + step < place.y else "EP2"
+            if gap <= limit + ROUNDING:
+                message = f"the arm stands {gap:.3f} mm beside {what}; tolerances of sheet and spacer take {limit:.3f} mm"
+                yield _fail(place, (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0), gap, limit, message)
+
+
+def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
     limit = 2 * layout.design.tolerance.load_arm
     seen: dict[tuple, float] = {}
     first, second = ([p for p in layout.elements if p.row == row] for row in (1, 2))
@@ -108,12 +158,33 @@ def _opposite(layout: Layout, arms: _Arms) -> Iterable[Finding]:
             if key not in seen:
                 seen[key] = min(
                     _nearest(arms.of(a, one), map(_mirrored, arms.of(b, other)))
-                    for one in (False, True) for other in (False, True)
+                    for one in (0.0, arms.most(a)) for other in (0.0, arms.most(b))
                 )
             if seen[key] <= limit:
-                yield _finding(a, seen[key], limit, f"the opposite arm of {b.designator}")
+                yield _pressed(a, seen[key], limit, f"the opposite arm of {b.designator}")
 
 
-def _finding(place: ElementPlace, value: float, limit: float, what: str) -> Finding:
-    message = f"pressed onto its stop the arm comes within {value:.3f} mm of {what}; tolerances take {limit:.3f} mm"
-    return Finding("clearance", "fail", place.designator, (place.hinge_x - place.arm, 0.0), value, limit, message)
+def _leads(layout: Layout) -> Iterator[Finding]:
+    """Gauge and leads stay off the object, and the leads go into the wire recess."""
+    e = layout.design.element
+    out, room = gauge_stands_out(layout), gauge_room(layout)
+    fit = leads_that_fit(layout)
+    for place in layout.elements:
+        if room < out - ROUNDING:
+            message = f"gauge and leads stand {out:.3f} mm out, and the object comes within {room:.3f} mm of their face"
+            yield _fail(place, (place.hinge_x, 0.0), room, out, message)
+        if fit < LEADS:
+            message = (
+                f"{fit} leads of {LEAD:g} mm fit into its wire recess of {layout.design.array.pitch:g} x {e.recess_depth:g} mm, "
+                f"it has {LEADS}"
+            )
+            yield _fail(place, (layout.recess_start, 0.0), fit, LEADS, message)
+
+
+def _pressed(place: ElementPlace, value: float, limit: float, what: str) -> Finding:
+    message = f"pressed as far as it goes the arm comes within {value:.3f} mm of {what}; tolerances take {limit:.3f} mm"
+    return _fail(place, (place.hinge_x - place.arm, 0.0), value, limit, message)
+
+
+def _fail(place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str) -> Finding:
+    return Finding("clearance", "fail", place.designator, at, value, limit, message)

@@ -7,7 +7,7 @@ from math import ceil
 
 from .layout import Layout
 from .library.dowels import dowel_lengths
-from .library.screws import CAP_SCREW_LENGTHS, METRIC, engagement
+from .library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one
 # diameter of the usual M3 and of its dowel less the pin's chamfer.
@@ -41,8 +41,8 @@ def clamping(layout: Layout) -> Clamping:
     plate, stack = d.end_plate_thickness, layout.stack
     dowel = _dowel(layout)
     for length in CAP_SCREW_LENGTHS[d.screw]:
-        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside
-        engaged = max(engagement(d.screw), round(2 / 3 * plate, 1))
+        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside, and no deeper than its thread
+        engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
         if LEAST_UNDER_HEAD <= web <= plate and engaged <= plate:
             return Clamping(False, length, web, dowel)

@@ -15,6 +15,7 @@ from .materials import plate_material
 
 STEEL = Material("1.4301 stainless steel", 7900)
 PLATE_COLOUR = "#7c8794"
+SPACER_TOLERANCE = 0.01  # mm, plus and minus; chosen: shim stock is rolled to less
 
 
 def spacer(layout: Layout) -> Part:
@@ -31,7 +32,9 @@ def spacer(layout: Layout) -> Part:
         ),
         colour="#9aa4ae",
         notes=("burr-free, flat faces as rolled",),
-        characteristics=(Characteristic("thickness", layout.spacer, layout.spacer + 0.01, layout.spacer - 0.01),),
+        characteristics=(
+            Characteristic("thickness", layout.spacer, layout.spacer + SPACER_TOLERANCE, layout.spacer - SPACER_TOLERANCE),
+        ),
     )
 
 

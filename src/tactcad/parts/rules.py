@@ -34,6 +34,14 @@ from .library.screws import (
     engagement,
 )
 from .rigs.rules import RIG_RULES
+from .room_rules import (
+    arms_clear_neighbours,
+    gauge_fits_width,
+    land_stands_over_arm,
+    leads_have_room,
+    pressed_arms_clear_opposite_row,
+    slots_stay_open,
+)
 from .slivers import no_slivers
 from .stop_gap import land_room, stop_gap, stop_limit
 
@@ -470,14 +478,6 @@ def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
         )
 
 
-def arms_clear_end_plates(layout: Layout) -> Iterator[Finding]:
-    if layout.spacer < LEAST_ARM_GAP - SAME:
-        yield ("array.spacer", "arms too near their neighbours to move freely", layout.spacer, f"at least {LEAST_ARM_GAP:g} mm")
-
-
-# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam.
-LEAST_ARM_GAP = 0.1
-
 RULES: dict[str, Rule] = {
     rule.__name__: rule
     for rule in (
@@ -491,7 +491,9 @@ RULES: dict[str, Rule] = {
         pad_root_fits_pad,
         pad_stands_out_of_body,
         gauge_fits_face,
-        arms_clear_end_plates,
+        gauge_fits_width,
+        arms_clear_neighbours,
+        leads_have_room,
         ledge_below_rear,
         recess_fits_rear,
         stop_land_above_arm,
@@ -504,6 +506,9 @@ RULES: dict[str, Rule] = {
         carrier_can_be_screwed,
         stop_plate_can_be_held,
         carrier_holes_apart,
+        land_stands_over_arm,
+        slots_stay_open,
+        pressed_arms_clear_opposite_row,
         no_slivers,
     )
 }
@@ -511,8 +516,9 @@ RULES: dict[str, Rule] = {
 STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
 # Rules that need the stop gap or the stiffness, and those without which there is none: what is no hinge has no stiffness.
 ASK_THE_GAP = frozenset(
-    {"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm", "calibration_bends_elastically"}
+    {"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm", "land_stands_over_arm",
+     "calibration_bends_elastically"}
 )
 NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
-# Rules on contours as drawn, which only a design that keeps the rules before them is sure to have.
-ASK_THE_CONTOUR = frozenset({"no_slivers"})
+# Rules on contours as drawn and turned, which only a design that keeps the rules before them is sure to have.
+ASK_THE_CONTOUR = frozenset({"slots_stay_open", "pressed_arms_clear_opposite_row", "no_slivers"})

@@ -38,9 +38,10 @@ def cart_plate(rig: RigLayout) -> Part:
         )
         for sx in (-1.0, 1.0) for sy in (-1.0, 1.0)
     )
-    h = rig.holder_screw
+    h, (length, under) = rig.holder_screw, rig.holder_fixing
+    engaged = length - under - rig.holder_body
     holder = tuple(
-        tapped_through("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t) for sx in (-1, 1) for sy in (-1, 1)
+        tapped_through("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged) for sx in (-1, 1) for sy in (-1, 1)
     )
     return Part(
         part_no=f"{rig.design.name}-cart-plate",

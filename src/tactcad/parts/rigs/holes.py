@@ -16,10 +16,10 @@ def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, und
     return Hole(name, at, axis, METRIC[thread].clearance, thickness, True, counterbore=counterbore)
 
 
-def tapped_through(name: str, thread: str, at: Vector, axis: Vector, thickness: float) -> Hole:
-    """Drilled through; threaded from `at` as deep as is of use."""
+def tapped_through(name: str, thread: str, at: Vector, axis: Vector, thickness: float, engaged: float = 0.0) -> Hole:
+    """Drilled through; threaded from `at` as deep as is of use, and as deep as the screw reaches that is `engaged` mm in."""
     m = METRIC[thread]
-    full = min(thickness, DEEPEST_THREAD * m.d)
+    full = min(thickness, max(DEEPEST_THREAD * m.d, engaged))
     return Hole(name, at, axis, m.tap_drill, thickness, True, thread=thread, thread_depth=full)
 
 

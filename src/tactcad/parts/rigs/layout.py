@@ -15,7 +15,7 @@ from tactcad.design.tree import Cart, Design, Holder
 from ..layout import Layout
 from ..library import orings
 from ..library.bearings import BEARINGS, Bearing
-from ..library.screws import CAP_SCREW_LENGTHS, METRIC, engagement
+from ..library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 
 # Micro-stages: two plates of this size and thickness that slide on each other, threads at +-STAGE_HOLE.
 STAGE, STAGE_PLATE, STAGE_HOLE = 60.0, 10.0, 25.0
@@ -135,7 +135,8 @@ class RigLayout:
         most = self.holder.lid_thickness - METRIC["M3"].head_height
         for length in CAP_SCREW_LENGTHS["M3"]:
             engaged = round(length - self.holder_body - most, 9)
-            if engagement("M3") <= engaged <= self.cart.thickness and most >= 2.0:
+            deepest = min(self.cart.thickness, TAP_REACH * METRIC["M3"].d)
+            if engagement("M3") <= engaged <= deepest and most >= 2.0:
                 return length, round(most, 9)
         return None
 
