@@ -40,6 +40,7 @@ MOST_FILES = 3  # of tests that a mutant is tried on: a check that only a fourth
 # Names of findings that no literal in the source spells out, by module and expression.
 SPELT_OUT = {
     ("checks/brep.py", "f'tiny-{name}'"): ("tiny-edge", "tiny-face"),
+    ("checks/brep.py", "f'step-{name}'"): ("step-volume", "step-area"),
 }
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "_finding", "_about"}
