@@ -59,7 +59,7 @@ def test_condition_grows_as_beam_theory_says_and_rounding_stays_below_it(two):
     assert np.all((-4.3 < slopes) & (slopes < -3.0))
     for r in rows:
         assert r.rounding < EPS * r.condition
-        assert r.rounding < 1e-4
+    assert next(r for r in rows if r.thickness == 0.02).rounding < 2e-6
 
 
 @BOTH

@@ -159,7 +159,8 @@ def _rounding(axis, x: Extremes, d) -> None:
         floor = [np.finfo(float).eps * r.condition for r in rows]
         axis.plot(unknowns, floor, color=colour, ls="--", lw=1, label=f"{sides}-sided: 2.2e-16 x condition")
     axis.set(xscale="log", yscale="log", xlabel="unknowns", ylabel="relative", title="Refinement: error falls, rounding rises")
-    axis.legend()
+    axis.set_ylim(1e-13, 1e4)  # room for the legend above the lines
+    axis.legend(loc="upper right", ncols=2, fontsize=9)
 
 
 def _angles(axis, x: Extremes, d) -> None:
