@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -316,6 +316,7 @@ def _picture(
     placements: Sequence[Placement], view: str, shapes: Shapes, title: str, description: str,
     marked: Sequence[Placement] = (),
 ) -> bytes:
+    from tactcad.parts.library.screws import for_pictures
     from tactcad.solids.place import placed_shape
 
     from . import picture
@@ -326,5 +327,7 @@ def _picture(
         return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
-    picture.check_picture(data, placements, eye)
+    # a thread may be the outermost thing in sight, and it is drawn thinner than the screw is
+    seen = [replace(p, part=for_pictures(p.part)) for p in placements] if len(placements) > 1 else placements
+    picture.check_picture(data, seen, eye)
     return data
