@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from tactcad.checks import brep as brep_check
 from tactcad.checks import mesh as mesh_check
 from tactcad.checks.brep import check_brep, check_step, check_step_file
 from tactcad.checks.mesh import check_mesh, check_triangles
@@ -167,9 +168,12 @@ def test_a_shape_that_was_moved_before_it_was_written_is_seen(shape):
     assert {f.check for f in found} == {"step-box"} and "STEP" in found[0].message
 
 
-def test_a_step_file_that_ends_early_cannot_be_read(shape):
+def test_a_step_file_that_ends_early_cannot_be_read(shape, monkeypatch):
     with pytest.raises(ValueError, match="STEP"):
         check_step_file(BLOCK, shape, cut_off(write_step(shape)))
+    monkeypatch.setattr(brep_check, "write_step", lambda s: cut_off(write_step(s)))
+    (finding,) = check_step(BLOCK, shape)
+    assert (finding.check, finding.severity, finding.part) == ("step-file", "fail", "BLOCK")
 
 
 # --- meshes ---

@@ -107,3 +107,13 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     assert report.runs["configurations"] == len(posed) and report.runs["interference"] == len(scenes)
     assert report.runs["build"] == len(parts | {p.part_no: p for s in posed for p in s.parts})
     assert report.runs["scenes left out"] == 1
+
+
+def test_a_scene_that_the_design_cannot_have_is_flagged_with_the_rule():
+    from variants import variant
+
+    from tactcad.checks.run import _left_out
+
+    (finding,) = _left_out(variant({"grasping.moving_weight": 500.0}))
+    assert (finding.check, finding.severity) == ("scene", "flag")
+    assert "scene grasping left out: rule ballast_trims_moving_weight" in finding.message

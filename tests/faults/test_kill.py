@@ -69,6 +69,38 @@ def test_killed_at_fifty_random_moments(bench, tmp_path):
     kill_exports(bench, tmp_path, 50)
 
 
+def test_killed_while_helpers_draw(bench, work):
+    """The processes that draw sheets end with the export that was killed, and with them its lock."""
+    env = environment(work)
+    arguments = ("export", "A.toml", "--drawings", "--out", "exports/out")
+    with subprocess.Popen([*MODULE, *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True) as export:
+        helpers = []
+        for line in export.stderr:
+            children = Path(f"/proc/{export.pid}/task/{export.pid}/children").read_text().split()
+            if "drawing of" in line and children:
+                helpers = [int(child) for child in children]
+                break
+        export.kill()
+    if os.cpu_count() > 1:
+        assert helpers, "nobody helped: this test shows nothing"
+    until = time.monotonic() + 20
+    while any(running(helper) for helper in helpers) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not any(running(helper) for helper in helpers)
+    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=env)
+    assert done.returncode == 0 and b"waiting" not in done.stderr, done.stderr.decode()
+    assert contents(work / "exports" / "out") == bench.files["A"]
+    assert_tidy(work / "exports" / "out", work)
+
+
+def running(process: int) -> bool:
+    """Whether it lives: an ended one may wait for whoever inherits it."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def test_killed_among_others_that_wait(bench, work):
     """The lock goes with its process: those who wait for a killed export take over."""
     env = environment(work)

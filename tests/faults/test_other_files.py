@@ -22,6 +22,7 @@ READERS = {
     "grasp.csv": ["stiffness", "FILE", "--calibration", "good-calibration.csv"],
     "calibration.csv": ["stiffness", "good-grasp.csv", "--calibration", "FILE"],
     "calibration.json": ["stiffness", "good-grasp.csv", "--calibration", "FILE"],
+    "sheet.csv": ["estimate", "A.toml", "--inspection", "FILE"],
     "shop.toml": ["check", "A.toml", "--shop", "FILE", "--report", "report"],
     "table1.csv": ["validate", "--table1", "FILE", "--out", "report"],
     "table2.csv": ["validate", "--table2", "FILE", "--out", "report"],
@@ -31,7 +32,7 @@ READERS = {
 
 
 @pytest.fixture(scope="module")
-def good(tmp_path_factory) -> dict[str, bytes]:
+def good(bench, tmp_path_factory) -> dict[str, bytes]:
     """A good file of every kind."""
     folder = tmp_path_factory.mktemp("good")
     env = environment(folder)
@@ -46,6 +47,7 @@ def good(tmp_path_factory) -> dict[str, bytes]:
         "grasp.csv": (EXAMPLES / "grasp.csv").read_bytes(),
         "calibration.csv": (folder / "calibration.csv").read_bytes(),
         "calibration.json": as_json.stdout,
+        "sheet.csv": next(file for path, file in bench.files["A"].items() if "inspection" in path and path.endswith(".csv")),
         "shop.toml": (data / "checks" / "data" / "shop.toml").read_bytes(),
         "table1.csv": (data / "studies" / "data" / "table1.csv").read_bytes(),
         "table2.csv": (data / "studies" / "data" / "table2.csv").read_bytes(),

@@ -68,13 +68,13 @@ def test_every_product_has_the_same_bytes_everywhere(bench, work, locales, name)
 
 @pytest.mark.nightly
 def test_every_product_of_every_design_has_the_same_bytes_everywhere(tmp_path, locales):
-    """The shipped designs with all their scenes and guides, two surroundings."""
+    """The shipped designs with all their scenes, guides and drawings, two surroundings."""
     for design in sorted((ROOT / "hardware").glob("*.toml")):
         made = []
         for name in ("comma, seed 1, clock of 1990", "dotless i, seed 4242"):
             work = tmp_path / f"{design.stem} {len(made)}"
             work.mkdir()
-            export_in(name, str(design), work, locales, "--guide")
+            export_in(name, str(design), work, locales, "--guide", "--drawings")
             made.append(contents(work / "exports" / "out"))
         assert made[0] == made[1]
 

@@ -372,6 +372,9 @@ for line in sys.stdin:
 """
 
 
+_GREEN: set[tuple[str, ...]] = set()  # test files that pass where nothing is broken
+
+
 class Runner:
     """A process that runs tests on copies of the source, one after the other."""
 
@@ -380,22 +383,35 @@ class Runner:
         self.process = subprocess.Popen([sys.executable, "-c", RUNNER], env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def run(self, mutant: Mutant) -> Outcome:
-        """The tests that concern it on a copy of the source with the mutant in it."""
+        """The tests that concern it on a copy of the source with the mutant in it.
+
+        Raises AssertionError where one of them fails without the mutant: it would show nothing.
+        """
+        files = tests_of(mutant)
+        if tuple(files) not in _GREEN:
+            failed = self._failed(files, None)
+            assert not failed, f"{failed} fails in a copy of the source with nothing broken"
+            _GREEN.add(tuple(files))
+        return Outcome(mutant, self._failed(files, mutant))
+
+    def _failed(self, files: list[str], mutant: Mutant | None) -> str:
+        """The first of the tests that fails, "" where none does."""
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
             folder = Path(name)
             for part in ("src", "tests", "hardware", "exports/golden", "benchmarks", "packaging", "docs"):
                 shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
             shutil.copy(ROOT / "pyproject.toml", folder)
             (folder / "tmp").mkdir()
-            (folder / "src" / "tactcad" / mutant.module).write_text(mutant.source(), encoding="utf-8")
-            self.process.stdin.write(json.dumps([name, tests_of(mutant), SECONDS]) + "\n")
+            if mutant:
+                (folder / "src" / "tactcad" / mutant.module).write_text(mutant.source(), encoding="utf-8")
+            self.process.stdin.write(json.dumps([name, files, SECONDS]) + "\n")
             self.process.stdin.flush()
             status, said = json.loads(self.process.stdout.readline())
         failed = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", said, re.MULTILINE)
         if status == 1 and failed:
-            return Outcome(mutant, failed.group(1).removeprefix("tests/"))
-        assert status == 0, f"{mutant.label}: the tests did not run, status {status}:\n{said[-2000:]}"
-        return Outcome(mutant, "")
+            return failed.group(1).removeprefix("tests/")
+        assert status == 0, f"the tests did not run, status {status}:\n{said[-2000:]}"
+        return ""
 
 
 def run_all(mutants: list[Mutant], workers: int, say: Callable[[Outcome], None]) -> list[Outcome]:

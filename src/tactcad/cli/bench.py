@@ -63,12 +63,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(only: list[str] | None) -> list[str]:
-    from tactcad.design.messages import InputError
+    from tactcad.design.messages import InputError, one_of
     from tactcad.studies.bench.run import BENCHMARKS
 
     for name in only or ():
         if name not in BENCHMARKS:
-            raise InputError("--only", "no such benchmark", value=name, legal=", ".join(BENCHMARKS))
+            raise InputError("--only", "no such benchmark", value=name, legal=one_of(name, BENCHMARKS))
     return [name for name in BENCHMARKS if not only or name in only]
 
 

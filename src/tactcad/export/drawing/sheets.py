@@ -14,6 +14,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Part
 
+from ..workers import end_with
 from .compose import NoPlace, compose
 from .element import element_plan
 from .gate import drawing_faults
@@ -119,7 +120,7 @@ def all_written(
     if cores < 2 or len(orders) < PARALLEL_FROM:
         return [_said(make(order), n, orders, say) for n, order in enumerate(orders)]
     # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial)
-    with ProcessPoolExecutor(cores, multiprocessing.get_context("fork")) as pool:
+    with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
         try:
             return [_said(done, n, orders, say) for n, done in enumerate(pool.map(make, orders))]
         except BrokenProcessPool as error:
