@@ -26,6 +26,7 @@ from .moving_weight import check_moving_weight
 from .report import Report
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
+from .tools import check_tools
 from .wirecut import check_wirecut
 
 
@@ -67,6 +68,7 @@ def run_checks(
         if not all(part.part_no in shapes for part in scene.parts):
             continue
         report.run("interference", check_interference, scene, shapes, known)
+        report.run("tools", check_tools, scene, shapes)
         if scene.motions:
             envelopes = {part.part_no: build(envelope(part)).wrapped for part in scene.parts}
             report.run("motion", check_motions, scene, shapes, envelopes)
