@@ -1,5 +1,6 @@
 """make review: opens every exported STEP and DXF file in real FreeCAD, headless, and compares it with the
-bill of materials and the manifest. Installs nothing; says what is missing and how to get it.
+bill of materials and the manifest; and every assembly in FreeCAD's window program, for the tree and the colours that a
+person sees. Installs nothing; says what is missing and how to get it.
 
 usage: python review.py exports/NAME...
 """
@@ -13,6 +14,8 @@ import sys
 from collections import Counter
 from math import isclose
 from pathlib import Path
+
+import window
 
 INSIDE = Path(__file__).with_name("in_freecad.py")
 # Debian's freecad-python3 belongs to the system's Python, others bring a command of their own.
@@ -62,18 +65,31 @@ def review(freecad: list[str], folder: Path) -> list[str]:
     report = open_files(freecad, [str(folder / f["path"]) for f in files])
     if report is None:
         return ["FreeCAD ended without a report (it crashed on one of the files)"]
-    wrong = []
+    program = window.command()
+    wrong = [] if program else ["FreeCAD's window program is not there: nobody saw tree and colours"]
+    wrong += scene_faults(manifest)
     for f in files:
         found = report["files"][str(folder / f["path"])]
         if f["kind"] == "step-part":
             wrong += part_faults(f["path"], found, parts[f["part_no"]])
         elif f["kind"] == "step-assembly":
-            wrong += assembly_faults(f["path"], found, bill_of(folder, f["path"]), parts)
+            bill = bill_of(folder, f["path"])
+            wrong += assembly_faults(f["path"], found, bill, parts)
+            if program:
+                wrong += window.tree_faults(f["path"], window.shown(program, folder / f["path"]), bill)
         else:
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
     solids = sum(len(found.get("solids", ())) for found in report["files"].values())
-    print(f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, {len(wrong)} findings")
+    print(f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees too, {len(wrong)} findings")
     return wrong
+
+
+def scene_faults(manifest: dict) -> list[str]:
+    """Every scene of the export has an assembly, and every assembly the bill of its scene."""
+    bills = {Path(f["path"]).stem.removeprefix("bom").lstrip("-") or "array" for f in manifest["files"] if f["kind"] == "bom"}
+    stem = f"{manifest['design']}-"
+    models = {Path(f["path"]).stem.rpartition("_")[0].removeprefix(stem) for f in manifest["files"] if f["kind"] == "step-assembly"}
+    return [] if bills == models else [f"assemblies of {', '.join(sorted(models))}, bills of {', '.join(sorted(bills))}"]
 
 
 def bill_of(folder: Path, path: str) -> list[dict]:

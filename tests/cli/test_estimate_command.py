@@ -228,7 +228,7 @@ def test_estimates_load_neither_kernel_nor_scipy():
 
 
 def test_estimate_starts_in_a_few_times_what_numpy_needs():
-    """The goal is 3; 4 here, on a machine that runs other tests beside it (benchmarks/ladder.py measures)."""
+    """The goal is 3; 4 here, on a machine that runs other tests beside it (`tactcad bench --only export` measures)."""
 
     def best(*args):
         times = []

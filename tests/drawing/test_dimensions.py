@@ -33,6 +33,7 @@ DESIGNS = {
     "full round": {"element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]]},
     "full rounds from both sides": {
         "element.sides": "two", "element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]],
+        "calibration.travel": 0.1,
     },
     "another hinge for one element": {
         "array.row_arms": [[4, 7], [8, 5]], "element.override": {"2": {"hinge_thickness": 0.3, "hinge_length": 1.0}},
@@ -98,10 +99,11 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits."""
-    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: \+([\d.]+)/0)?( H7.*)?", text)
+    """The number that a dimension's text states, the middle of its limits. H7 of 3 mm is +0.010/0 (ISO 286-2)."""
+    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: \+([\d.]+)/0)?( H7)?", text)
     assert match, text
-    return float(match[1]) + (float(match[2]) / 2 if match[2] else 0.0)
+    assert not match[3] or match[1] == "3"
+    return float(match[1]) + (float(match[2]) / 2 if match[2] else 0.005 if match[3] else 0.0)
 
 
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):

@@ -25,6 +25,7 @@ FITTED_BREAKS = {
     "arm too low for the fit": dict(arm_height=0.68),
     "body too low for the fit": dict(body_height=0.68),
     "r/t is outside": dict(fillet_radius=0.02),
+    "body too short for the fit": dict(body_length=0.6),
     "l/t is outside": dict(hinge_length=40.0, load_arm=60.0),
     "h/t is outside": dict(arm_height=40.0, load_arm=60.0),
     "Hb/t is outside": dict(body_height=60.0),

@@ -6,6 +6,7 @@ import numpy as np
 import trimesh
 from OCP.TopoDS import TopoDS_Shape
 
+from tactcad.account import making
 from tactcad.parts.description import Part
 from tactcad.solids.measure import measure
 from tactcad.solids.mesh import triangles
@@ -17,7 +18,8 @@ LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
 
 def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
     """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in bounds."""
-    vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
+    with making("mesh", part.part_no):
+        vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     found = check_triangles(part.part_no, mesh)
     if found:

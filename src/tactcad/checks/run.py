@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from OCP.TopoDS import TopoDS_Shape
@@ -49,6 +50,7 @@ def run_checks(
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
     shapes: dict[str, TopoDS_Shape] = {}
+    envelopes: dict[str, TopoDS_Shape] = {}
     for n, part in enumerate(parts):
         say(n, total, part.part_no)
         report.run("build", _built, part, shapes)
@@ -70,7 +72,7 @@ def run_checks(
         report.run("interference", check_interference, scene, shapes, known)
         report.run("tools", check_tools, scene, shapes)
         if scene.motions:
-            envelopes = {part.part_no: build(envelope(part)).wrapped for part in scene.parts}
+            _add_envelopes(scene.parts, shapes, envelopes)
             report.run("motion", check_motions, scene, shapes, envelopes)
         if scene.name == "grasping":
             report.run("moving weight", check_moving_weight, design, scene)
@@ -88,6 +90,15 @@ def run_checks(
 def _left_out(design: Design) -> list[Finding]:
     """A rig that cannot take this array is flagged with the reason."""
     return [Finding("scene", "flag", design.name, (), 0, 0, line) for line in left_out(design)]
+
+
+def _add_envelopes(parts: Sequence[Part], shapes: dict[str, TopoDS_Shape], envelopes: dict[str, TopoDS_Shape]) -> None:
+    """The parts' envelopes that are not known yet; a part that nothing is cut into is its own."""
+    for part in parts:
+        if part.part_no not in envelopes:
+            outside = replace(envelope(part), part_no=f"{part.part_no}, envelope")
+            own = outside.body == part.body and not part.features
+            envelopes[part.part_no] = shapes[part.part_no] if own else build(outside).wrapped
 
 
 def _built(part: Part, shapes: dict[str, TopoDS_Shape]) -> list[Finding]:

@@ -6,15 +6,22 @@ import argparse
 import json
 import math
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, RUNGS
+
+if TYPE_CHECKING:
+    from tactcad.mechanics.accuracy import Choice
 
 EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
+  tactcad estimate --accuracy 1%                    # the quickest rung whose measured worst error is within it
+  tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
+  tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
   tactcad estimate --inspection inspection.csv
                                       the elements as made, from the inspection sheet that the shop filled in
 """
@@ -43,9 +50,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model",
         choices=RUNGS,
-        default=DEFAULT_RUNG,
         metavar="RUNG",
         help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another",
+    )
+    parser.add_argument(
+        "--accuracy",
+        metavar="P",
+        help='instead of --model: the error of stiffness that may be left, as "1%%" or 0.01, against solid elements '
+        "refined to their limit; takes the quickest rung whose measured worst error at this design is within it, "
+        "or refuses (docs/accuracy.md)",
     )
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
@@ -63,28 +76,75 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     if args.force is not None and not (0.0 < args.force < math.inf):
         raise InputError("--force", "not a force", value=args.force, legal="a positive number of newtons")
+    accuracy = _asked_accuracy(args)
     if args.batch is not None:
-        return _batch(args)
+        return _batch(args, accuracy)
     if args.inspection is not None:
         return _as_made(args)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
-    from tactcad.studies.array_estimate import compare_uncut, estimate
+    from tactcad.studies.array_estimate import choose_rung, compare_uncut, estimate
 
     design = load(args.design or "macro-array")
     layout = Layout(design)
-    rows = [asdict(row) for row in estimate(layout, args.model, args.force)]
-    uncut = asdict(compare_uncut(layout)) if args.model in FINITE_ELEMENTS else None
+    choice = choose_rung(layout, accuracy) if accuracy is not None else None
+    model, mesh = (choice.candidate.rung, choice.candidate.mesh) if choice else (args.model or DEFAULT_RUNG, None)
+    rows = [asdict(row) for row in estimate(layout, model, args.force, mesh)]
+    uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
-        print(json.dumps(_document(design, args.model, rows, uncut), indent=2))
+        print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
     else:
-        print(_report(design, args.model, rows, uncut))
+        print(_report(design, model, rows, uncut))
+        if choice:
+            print(_why(choice, accuracy))
     return 0
 
 
-def _batch(args: argparse.Namespace) -> int:
+def _asked_accuracy(args: argparse.Namespace) -> float | None:
+    """The asked relative error of stiffness, from "1%", "1 %" or "0.01"; None where none is asked for."""
+    if args.accuracy is None:
+        return None
+    if args.model is not None:
+        raise InputError("--accuracy", f"chooses the rung itself; leave out --model {args.model}")
+    text = args.accuracy.strip()
+    try:
+        number = float(text.removesuffix("%"))
+    except ValueError:
+        number = math.nan
+    value = number / 100.0 if text.endswith("%") else number
+    if not 0.0 < value < 1.0:
+        raise InputError("--accuracy", "not an accuracy", value=args.accuracy, legal='"0.1%", "1%", 0.01: above 0, below 100 %')
+    return value
+
+
+def _chosen(choice: Choice | None, accuracy: float | None) -> dict:
+    if choice is None:
+        return {}
+    from tactcad.mechanics.accuracy import accuracy_data
+
+    return {
+        "accuracy_asked": accuracy,
+        "expected_error": choice.expected_error,
+        "expected_time_s": choice.expected_time,
+        "mesh": choice.candidate.mesh,
+        "reference": accuracy_data()["reference"],
+        "zones": list(choice.zones),
+    }
+
+
+def _why(choice: Choice, accuracy: float) -> str:
+    from tactcad.mechanics.accuracy import accuracy_data
+
+    return (
+        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, K within {100 * choice.expected_error:.2g} % of "
+        f"solid elements refined to their limit, in about {choice.expected_time:.2g} s "
+        f"(measured {accuracy_data()['date']}; docs/accuracy.md)"
+    )
+
+
+def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
     from tactcad.studies.batch import estimate_file
 
     for name, given in (("DESIGN", args.design), ("--force", args.force), ("--inspection", args.inspection)):
@@ -94,8 +154,8 @@ def _batch(args: argparse.Namespace) -> int:
         raise InputError("--batch", "writes CSV; leave out --json")
     if args.out is None:
         raise InputError("--batch", "needs --out OUT.csv")
-    valid, count = estimate_file(args.batch, args.out, args.model)
-    print(f"{args.out}: {count} designs, {count - valid} out of range")
+    valid, count = estimate_file(args.batch, args.out, args.model or DEFAULT_RUNG, accuracy)
+    print(f"{args.out}: {count} designs, {count - valid} out of range" + (" or of reach" if accuracy else ""))
     return 0
 
 
@@ -108,15 +168,18 @@ def _as_made(args: argparse.Namespace) -> int:
 
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
+    if args.accuracy is not None:
+        raise InputError("--accuracy", "does not go with --inspection: the cut's scatter is far above it; use --model")
     if args.model in FINITE_ELEMENTS:
         closed = ", ".join(rung for rung in RUNGS if rung not in FINITE_ELEMENTS)
         raise InputError("--model", "--inspection takes closed forms only", value=args.model, legal=closed)
+    model = args.model or DEFAULT_RUNG
     layout = Layout(load(args.design or "macro-array"))
-    rows = as_made(layout, read_sheet(args.inspection, layout), args.model, args.force)
+    rows = as_made(layout, read_sheet(args.inspection, layout), model, args.force)
     if args.json:
-        print(json.dumps(as_made_text.document(layout.design, args.model, rows), indent=2))
+        print(json.dumps(as_made_text.document(layout.design, model, rows), indent=2))
     else:
-        print(as_made_text.report(layout.design, args.model, rows))
+        print(as_made_text.report(layout.design, model, rows))
     return 0
 
 

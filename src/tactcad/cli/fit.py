@@ -1,4 +1,4 @@
-"""`tactcad fit`: the ladder's constants from finite elements, written with their report."""
+"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their report."""
 
 from __future__ import annotations
 
@@ -18,8 +18,10 @@ EXAMPLES = """\
   tactcad fit --out fit --shipped-samples    # the shipped constants again from the shipped samples
 """
 
-LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 5}  # more data than constants
+# more data than constants, and some in every zone of the accuracy's envelope
+LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 5, "range": 240}
 FILES = {"fitted": "ladder-samples.csv", "held out": "ladder-heldout.csv"}
+RANGE_FILE = "ladder-range.csv"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -48,6 +50,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=120,
         help="of them with solid elements, and a fifth more (default 120)",
     )
+    parser.add_argument(
+        "--range",
+        type=int,
+        default=240,
+        help="designs over the whole range, on which worst errors are measured (default 240)",
+    )
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--reuse", action="store_true", help="take the samples that lie in DIR")
     source.add_argument(
@@ -58,6 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import make_folder, write_whole
     from tactcad.studies import fit_samples
+    from tactcad.studies.accuracy_table import accuracy_table
     from tactcad.studies.fit import fit
 
     for option, least in LEAST.items():
@@ -71,16 +80,19 @@ def run(args: argparse.Namespace) -> int:
     out = Path(args.out)
     make_folder(out)
     if args.shipped_samples:
-        tables = fit_samples.shipped()
+        tables = fit_samples.shipped() | {"range": fit_samples.shipped_table(RANGE_FILE)}
     elif args.reuse:
-        missing = [str(out / name) for name in FILES.values() if not (out / name).is_file()]
+        files = FILES | {"range": RANGE_FILE}
+        missing = [str(out / name) for name in files.values() if not (out / name).is_file()]
         if missing:
             raise InputError("--reuse", f"{missing[0]} is not there")
-        tables = {kind: fit_samples.load(out / name) for kind, name in FILES.items()}
+        tables = {kind: fit_samples.load(out / name) for kind, name in files.items()}
     else:
         tables = _sample(args, out)
     result = fit(tables["fitted"], tables["held out"], _today())
-    write_whole(out / "ladder.json", (json.dumps(result, indent=1) + "\n").encode())
+    accuracy = accuracy_table(tables, result, _today())
+    for name, document in (("ladder.json", result), ("accuracy.json", accuracy)):
+        write_whole(out / name, (json.dumps(document, indent=1) + "\n").encode())
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
         rungs = ("plane, against plane elements", "solid, against solid elements")
         worst = {name: errors[name]["max"] for name in rungs}
@@ -88,12 +100,13 @@ def run(args: argparse.Namespace) -> int:
             f"{side}-sided, held out: "
             + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items())
         )
-    print(f"{out / 'ladder.json'} written")
+    print(f"{out / 'ladder.json'} and {out / 'accuracy.json'} written")
     return 0
 
 
 def _sample(args: argparse.Namespace, out: Path) -> dict:
     from tactcad.studies import fit_samples
+    from tactcad.studies.accuracy_samples import compute_range, draw_range, draw_refined, meshes_of
 
     plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
     for kind, (count, solids) in plan.items():
@@ -104,8 +117,12 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
             fit_samples.compute(edges, solids // 5, report),
         ]
         fit_samples.write(fit_samples.joined(tables), out / FILES[kind])
+    report = lambda line: print(f"range: {line}", file=sys.stderr, flush=True)  # noqa: E731
+    whole = compute_range(draw_range(args.range), report, meshes_of)
+    refined = compute_range(draw_refined(), report, lambda i: (2, 3, 4))
+    fit_samples.write(fit_samples.joined([whole, refined]), out / RANGE_FILE)
     # read back: the fit sees the digits that the files hold
-    return {kind: fit_samples.load(out / name) for kind, name in FILES.items()}
+    return {kind: fit_samples.load(out / name) for kind, name in (FILES | {"range": RANGE_FILE}).items()}
 
 
 def _today() -> date:

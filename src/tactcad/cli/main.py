@@ -9,11 +9,14 @@ from __future__ import annotations
 import argparse
 import importlib
 import io
+import json
 import os
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 
 from tactcad import __version__
+from tactcad.account import account, text
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
 
@@ -87,6 +90,17 @@ def _drop_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
+    """Run the command and print its account, whether it succeeds or not."""
+    with account() as made:
+        try:
+            return run(args)
+        finally:
+            record = made.record()
+            as_json = getattr(args, "json", False)
+            print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
+
+
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
         module = importlib.import_module(f"tactcad.cli.{argv[0]}")
@@ -97,7 +111,13 @@ def _dispatch(argv: list[str]) -> int:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         module.configure(parser)
-        return module.run(parser.parse_args(argv[1:]))
+        parser.add_argument(
+            "--profile", action="store_true",
+            help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
+            "made, how often, how long, and how much memory it took (with --json as JSON)",
+        )
+        args = parser.parse_args(argv[1:])
+        return _profiled(module.run, args) if args.profile else module.run(args)
     parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",

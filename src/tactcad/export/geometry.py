@@ -123,7 +123,7 @@ def _elements(design: Design) -> Record:
     layout = Layout(design)
     hinges = hinge_section(layout, layout.elements)
     known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
-    at_yield = strength.yield_force(hinges, design_alloy(design))
+    at_yield = strength.yield_force_where_known(hinges, design_alloy(design))
     return {
         place.designator: _rounded({
             "part_no": element_number(design, place),

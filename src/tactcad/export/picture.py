@@ -24,6 +24,7 @@ from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
 
+from tactcad.account import making
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import ModelFile, Vector
 from tactcad.scenes.scene import Placement
@@ -91,7 +92,8 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
         sharp, smooth = _lines(exact(shapes, projector))
     else:
         # meshed once a prototype: placed copies share it
-        BRepMesh_IncrementalMesh(_compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
+        with making("mesh", f"picture of {len(shapes)} shapes"):
+            BRepMesh_IncrementalMesh(_compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
         sharp, smooth = draw_in_windows(
             _boxes(shapes, view), lambda some: _on_triangles([shapes[i] for i in some], projector)
         )

@@ -31,10 +31,10 @@ def strength_bytes(layout: Layout) -> bytes:
     design, places = layout.design, layout.elements
     section, alloy = hinge_section(layout, places), design_alloy(design)
     stiffness = ladder.evaluate(section, ladder.DEFAULT_RUNG).stiffness
-    yields = strength.yield_force(section, alloy)
+    yields = strength.yield_force_where_known(section, alloy)
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
-    goodman = strength.goodman_factor(section, alloy, rated)
+    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)  # the fillet's stress at that force
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)

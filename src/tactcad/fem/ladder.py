@@ -9,11 +9,9 @@ from tactcad.mechanics import friction
 from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.section import HingeSection
 
-from .convergence import Converged, converged_plane, converged_solid
+from .convergence import SOLID_MESH, Converged, converged_plane, converged_solid
 from .shape import HingeShape, reference_shape
 from .surface import face_strain
-
-CONVERGED = {"fem-plane": converged_plane, "fem-solid": converged_solid}
 
 
 @dataclass(frozen=True)
@@ -28,29 +26,33 @@ class ElementResult:
     fillet_peak: float
 
 
-def stiffness(s: HingeSection, rung: str) -> float:
+def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     """Tip stiffness of one reference element (scalars) in N/mm, friction at the pad included.
 
-    Raises CheckFailure where the design is impossible or the mesh cannot follow it.
+    `mesh` is the density of fem-solid's finer mesh. Raises CheckFailure where the design is impossible or the mesh
+    cannot follow it.
     """
-    return converged(s, rung).stiffness * float(friction.factor(s))
+    return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
 
 
-def converged(s: HingeSection, rung: str, shape: HingeShape | None = None) -> Converged:
+def converged(s: HingeSection, rung: str, shape: HingeShape | None = None, mesh: int = SOLID_MESH) -> Converged:
     """The rung's solution on the shape cut from a contour, or on the reference shape."""
     require_range(s, rung)
     if not float(s.fillet_radius) > 0.0:
         raise CheckFailure(f"rung {rung} needs rounded slot corners: fillet_radius is 0")
     E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)
-    return CONVERGED[rung](shape or reference_shape(s), E, nu, b)
+    shape = shape or reference_shape(s)
+    return converged_plane(shape, E, nu, b) if rung == "fem-plane" else converged_solid(shape, E, nu, b, mesh=mesh)
 
 
-def solve(s: HingeSection, rung: str, grid_length: float, shape: HingeShape | None = None) -> ElementResult:
+def solve(
+    s: HingeSection, rung: str, grid_length: float, shape: HingeShape | None = None, mesh: int = SOLID_MESH
+) -> ElementResult:
     """One design (scalars) by finite elements, on the shape cut from its contour or on the reference shape.
 
     Raises CheckFailure where the design is impossible or the mesh cannot follow it.
     """
-    found = converged(s, rung, shape)
+    found = converged(s, rung, shape, mesh)
     slot, flat = face_strain(found.solution, "slot"), face_strain(found.solution, "flat")
     return ElementResult(
         found.stiffness * float(friction.factor(s)), found.error, flat.mean(grid_length), flat.peak, slot.peak

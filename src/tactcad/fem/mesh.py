@@ -38,6 +38,7 @@ SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on 
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
 COLUMN = 0.6  # longest element along hinge and fillet, in hinge thicknesses, on the coarsest mesh
+STEEP = 4.0  # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
 TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
 
 
@@ -251,7 +252,7 @@ class _Root:
             [strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1
         )
         left = _edge((strip_end, 0.0), (strip_end, self.strip_height), np.linspace(0.0, 1.0, 2 * rows + 1))
-        grids = [_coons(floor, arc, left, ring)]
+        grids = [_coons(floor, arc, left, ring, 1.0 if self.radius <= STEEP * self.strip_height else 3.0)]
 
         step = pi / 2.0 * inner / ROWS
         u = _graded((side_x - mouth + side_z - inner) / 2.0, step, density)
@@ -307,16 +308,16 @@ def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
     return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
 
 
-def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid) -> Grid:
+def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid, power: float = 1.0) -> Grid:
     """Transfinite interpolation between four edges that share their ends.
 
-    Blending follows arc length, so that graded edges grade the inside too.
+    Blending follows arc length, so that graded edges grade the inside too. How far left and right edge bulge from
+    their chords is felt inside by the share of the way to the other one, to that power.
     """
     u = (_share(bottom) + _share(top))[:, None, None] / 2.0
     v = (_share(left) + _share(right))[None, :, None] / 2.0
-    ruled = (1 - v) * bottom[:, None] + v * top[:, None] + (1 - u) * left[None] + u * right[None]
-    corners = (1 - u) * ((1 - v) * bottom[0] + v * top[0]) + u * ((1 - v) * bottom[-1] + v * top[-1])
-    return ruled - corners
+    bulges = [side - ((1 - v[0]) * side[0] + v[0] * side[-1]) for side in (left, right)]
+    return (1 - v) * bottom[:, None] + v * top[:, None] + (1 - u) ** power * bulges[0] + u**power * bulges[1]
 
 
 def _share(edge: Grid) -> NDArray[np.float64]:

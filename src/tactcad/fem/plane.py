@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementQuad2
 
+from tactcad.account import making
+
 from . import elasticity
 from .mesh import PlaneMesh, plane_mesh, quad_mesh
 from .shape import HingeShape
@@ -36,6 +38,13 @@ def solve_plane(
     whole: bool = False,
 ) -> PlaneSolution:
     """Clamped at the body's end, parabolic shear of 1 N on the arm's end; work-conjugate deflection."""
+    with making("elements", f"plane, density {density}"):
+        return _solved(shape, E, nu, width, density, plane_strain, whole)
+
+
+def _solved(
+    shape: HingeShape, E: float, nu: float, width: float, density: int, plane_strain: bool, whole: bool
+) -> PlaneSolution:
     mesh = plane_mesh(shape, density, whole)
     quads = quad_mesh(mesh)
     basis = Basis(quads, ElementQuad2(), intorder=4)

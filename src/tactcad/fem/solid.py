@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import Basis, ElementHex2
 
+from tactcad.account import making
+
 from . import elasticity
 from .mesh import PlaneMesh, hex_mesh, plane_mesh
 from .plane import Array, end_nodes, fixed_unknowns, parabola
@@ -36,8 +38,14 @@ def solve_solid(
 
     `across` is the density over the width, by default the same as in the plane.
     """
+    across = across or density
+    with making("elements", f"solid, density {density} and {across} across"):
+        return _solved(shape, E, nu, width, density, across)
+
+
+def _solved(shape: HingeShape, E: float, nu: float, width: float, density: int, across: int) -> SolidSolution:
     mesh = plane_mesh(shape, density)
-    hexes = hex_mesh(mesh, width / 2.0, across or density)
+    hexes = hex_mesh(mesh, width / 2.0, across)
     basis = Basis(hexes, ElementHex2(), intorder=5)
     A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu))
     f = np.zeros(A.shape[0])

@@ -46,7 +46,8 @@ def ratio_interval(
     )
     # a x^2 - 2 h x + k <= 0
     a, h, k = D * D - q * q * vD, N * D - q * q * c, N * N - q * q * vN
-    discriminant = h * h - a * k
+    # h^2 - a k with N^2 D^2 taken out of both, so that certain readings leave no rounding to take a root of
+    discriminant = q * q * (N * N * vD - 2.0 * N * D * c + D * D * vN - q * q * (vN * vD - c * c))
     real = discriminant >= 0.0
     root = np.sqrt(np.where(real, discriminant, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -56,6 +57,9 @@ def ratio_interval(
         estimate = N / D
     lower, upper = np.minimum(first, second), np.maximum(first, second)
     bounded, open_ended = real & (a > 0.0), real & (a < 0.0)
+    # a bounded set holds the estimate; rounding may put an end of a very narrow one beside it
+    lower = np.where(bounded, np.minimum(lower, estimate), lower)
+    upper = np.where(bounded, np.maximum(upper, estimate), upper)
     known = bounded | open_ended
     return RatioInterval(
         estimate, np.where(known, lower, -np.inf), np.where(known, upper, np.inf), bounded, open_ended

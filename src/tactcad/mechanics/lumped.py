@@ -12,14 +12,21 @@ import numpy as np
 from .section import Array
 
 
+def _share(x, K) -> Array:
+    """x/(x + K), for x from 0 to infinity: 1 there."""
+    x = np.asarray(x, dtype=float)
+    finite = np.where(np.isinf(x), 1.0, x)
+    return np.where(np.isinf(x), 1.0, finite / (finite + K))
+
+
 def object_indentation(K, K_obj, approach) -> Array:
     """Equation (1): delta = K/(K_obj + K) Delta, how far the element presses the object in, mm."""
     return K / (K_obj + K) * approach
 
 
 def element_deflection(K, K_obj, approach) -> Array:
-    """Delta - delta = K_obj/(K_obj + K) Delta, without the difference, mm; K_obj may be infinite."""
-    return approach / (1.0 + np.divide(K, K_obj))
+    """Delta - delta = K_obj/(K_obj + K) Delta, without the difference, mm; K_obj from 0 to infinity."""
+    return approach * _share(K_obj, K)
 
 
 def deflection_ratio(K_r, K_m, K_obj) -> Array:
@@ -35,11 +42,14 @@ def ratio_excess(K_r, K_m, K_obj) -> Array:
 def ratio_deficit(K_r, K_m, K_obj) -> Array:
     """K_r/K_m - R = K_obj (K_r - K_m)/(K_m (K_m + K_obj)), for objects much softer than the elements."""
     K_m = np.asarray(K_m)
-    return K_obj / (K_m + K_obj) * ((np.asarray(K_r) - K_m) / K_m)
+    return _share(K_obj, K_m) * ((np.asarray(K_r) - K_m) / K_m)
 
 
 def object_stiffness(K_r, K_m, R) -> Array:
-    """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm. Its digits are those that R carries."""
+    """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm. Its digits are those that R carries.
+
+    Infinite for R = 1; NaN where K_r = K_m too, since then R tells nothing.
+    """
     R = np.asarray(R)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (K_r - R * K_m) / (R - 1.0)
@@ -63,8 +73,8 @@ def differences(K_r, K_m, K_obj, approach) -> tuple[Array, Array]:
     d_m - d_r = Delta x (K_r - K_m)/((K_r + x)(K_m + x)), x = K_obj, and F_r - F_m is x times that.
     """
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
-    deflection = approach * (x / (K_r + x)) * ((K_r - K_m) / (K_m + x))
-    return deflection * x, deflection
+    per_force = approach * _share(x, K_r) * (K_r - K_m)
+    return per_force * _share(x, K_m), per_force / (K_m + x)
 
 
 def object_stiffness_from_differences(force_difference, deflection_difference) -> Array:
@@ -86,21 +96,24 @@ def object_stiffness_from_deflections(K_r, K_m, d_r, d_m) -> Array:
 
 
 def condition_in_ratio(K_r, K_m, K_obj) -> Array:
-    """dln K_obj/dln R = -(K_r + x)(K_m + x)/(x (K_r - K_m)), x = K_obj."""
+    """dln K_obj/dln R = -(K_r + x)(K_m + x)/(x (K_r - K_m)), x = K_obj; infinite at x = 0 and infinity."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
-    return -(K_r + x) / (K_r - K_m) * (K_m / x + 1.0)
+    with np.errstate(divide="ignore"):
+        return -(K_r + x) / (K_r - K_m) / _share(x, K_m)
 
 
 def condition_in_reference(K_r, K_m, K_obj) -> Array:
-    """dln K_obj/dln K_r = K_r (K_m + x)/(x (K_r - K_m))."""
+    """dln K_obj/dln K_r = K_r (K_m + x)/(x (K_r - K_m)); infinite at x = 0."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
-    return K_r / (K_r - K_m) * (K_m / x + 1.0)
+    with np.errstate(divide="ignore"):
+        return K_r / (K_r - K_m) / _share(x, K_m)
 
 
 def condition_in_measuring(K_r, K_m, K_obj) -> Array:
     """dln K_obj/dln K_m = -K_m (K_r + x)/(x (K_r - K_m)); with `condition_in_reference` it adds up to 1."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
-    return -K_m / (K_r - K_m) * (K_r / x + 1.0)
+    with np.errstate(divide="ignore"):
+        return -K_m / (K_r - K_m) / _share(x, K_r)
 
 
 def least_condition(K_r, K_m) -> tuple[Array, Array]:

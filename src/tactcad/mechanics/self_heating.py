@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import exp
 
+from tactcad.design.messages import InputError
+
 from .gauge_signal import Gauge
 
 FOIL_HEAT = 3.6e6  # J/(m3 K), constantan: 8900 kg/m3 x 410 J/(kg K)
@@ -52,10 +54,16 @@ def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
 
 def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     """Power on for on_time in every period: the warmest moment, at the end of a reading, in the settled
-    cycle.
+    cycle. Raises InputError where on_time is longer than the period.
     """
+    if power.on_time > power.period:
+        raise InputError(
+            "readout.on_time", "longer than readout.period", value=power.on_time, legal=f"up to {power.period:g} s"
+        )
     steady = continuous(excitation, gauge, power)
     tau = time_constant(gauge, power)
+    if tau == 0.0:  # a grid on the bare metal
+        return _heating(steady.power * power.on_time / power.period, 0.0, gauge, power)
     on, off = exp(-power.on_time / tau), exp(-(power.period - power.on_time) / tau)
     rise = steady.rise * (1 - on) / (1 - on * off)
     return _heating(steady.power * power.on_time / power.period, rise, gauge, power)

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import ladder, plane
+from . import ladder, plane, validity
 from .constants import by_sides
 from .section import Array, HingeSection
 
@@ -52,14 +52,30 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
 def peak_stress(s: HingeSection, force) -> Array:
     """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
 
-    Stress along the hinge follows from equilibrium and is not changed by the width.
+    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where the
+    factor was not fitted.
     """
+    _require_fitted(s)
+    return stress_beyond_the_fit(s, force)
+
+
+def stress_beyond_the_fit(s: HingeSection, force) -> Array:
+    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound a stop."""
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
 def face_stress(s: HingeSection, force) -> Array:
-    """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's."""
+    """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's.
+
+    Raises CheckFailure where the factor was not fitted.
+    """
+    _require_fitted(s)
     return nominal(s, force) * s.youngs_modulus * face_factor(s)
+
+
+def _require_fitted(s: HingeSection) -> None:
+    for rule in validity.broken_rules(s, "plane"):
+        raise CheckFailure(f"the closed forms for stress do not reach this design: {rule}")
 
 
 def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:

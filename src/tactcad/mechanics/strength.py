@@ -6,13 +6,25 @@ import numpy as np
 
 from tactcad.design.materials import Alloy
 
-from . import ladder, strain
+from . import ladder, strain, validity
 from .section import Array, HingeSection
 
 
 def yield_force(s: HingeSection, alloy: Alloy) -> Array:
-    """Force at which the fillet's surface reaches the yield strength, N."""
+    """Force at which the fillet's surface reaches the yield strength, N.
+
+    Like all of this module's it raises CheckFailure where the closed forms for stress do not reach.
+    """
     return alloy.yield_strength / strain.peak_stress(s, 1.0)
+
+
+def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
+    """The same, N, with NaN for designs that the closed forms for stress do not reach."""
+    force = np.full(s.shape, np.nan)
+    known = validity.reasons(s, "plane") == ""
+    if known.any():
+        force[known] = yield_force(s.rows(known.reshape(-1)), alloy)
+    return force
 
 
 def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:

@@ -103,6 +103,13 @@ def _fitted(rung: str) -> tuple[Rule, ...]:
             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s),
         ),
     ]
+    least = sampled["least_body_length"]
+    rules.append(
+        Rule(
+            f"body too short for the fit: Lb < {least:g} t",
+            lambda s: s.body_length < least * (1.0 - ROUNDING) * s.hinge_thickness,
+        )
+    )
     for name, value in (PLANE_GROUPS if rung == "plane" else PLANE_GROUPS | SOLID_GROUPS).items():
         low, high = sampled["groups"][name]
         rules.append(Rule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high)))

@@ -55,17 +55,19 @@ def overloads(layout: Layout) -> list[Overload]:
     earliest = K * (gap - tolerance) * s.load_arm / arm
     closing = np.minimum(K * (gap + tolerance) * s.load_arm / arm, load)
     beyond = load - closing
-    stress = strain.peak_stress(s, closing + stress_share(s, K, arm) * beyond)
+    # beyond the estimator's range K is NaN, and so are all figures but the gap
+    stress = strain.stress_beyond_the_fit(s, closing + stress_share(s, K, arm) * beyond)
+    yields = strength.yield_force_where_known(s, alloy)
     columns = (
         gap + tolerance,
         earliest,
         closing,
         beyond * s.load_arm / arm,
         (closing + deflection_share(s, K, arm) * beyond) / K,
-        strength.yield_force(s, alloy) / rating.deflection_factor / K,
+        yields / rating.deflection_factor / K,
         stress,
         alloy.yield_strength / stress,
-        strength.rated_force(s, alloy, rating.force, rating.yield_factor),
+        np.minimum(rating.force, yields / rating.yield_factor),
     )
     rows = np.stack([np.broadcast_to(c, s.shape) for c in columns], axis=1)
     return [Overload(p, *map(float, row), str(why)) for p, row, why in zip(places, rows, known.reason)]

@@ -75,7 +75,7 @@ def _limit(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
-    rated = yield_strength / strain.peak_stress(section, 1.0) / factor
+    rated = yield_strength / strain.stress_beyond_the_fit(section, 1.0) / factor
     closing = float(largest_closing_force(section, K, a, overload, rated))
     narrow = K * (2.0 * tolerance + STEP_MM) * L / a
     return StopLimit(closing / K * a / L, float(largest_overload(section, K, a, narrow, rated)))

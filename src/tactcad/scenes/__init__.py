@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
+from tactcad.account import making
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
@@ -66,4 +67,5 @@ def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
     """
     own = name.replace("-", "_")
     make = getattr(importlib.import_module(f"tactcad.scenes.{own}"), own)
-    return make(design) if pose is None or name == "array" else make(design, pose)
+    with making("scene", name):
+        return make(design) if pose is None or name == "array" else make(design, pose)

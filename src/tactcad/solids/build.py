@@ -6,6 +6,7 @@ from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
 
+from tactcad.account import making
 from tactcad.contour import Contour, Line, Point
 from tactcad.parts.description import (
     Extrusion,
@@ -35,6 +36,11 @@ def build(part: Part) -> Solid:
 
     Raises SolidError where the result is not one valid solid, or its volume is not the closed form's.
     """
+    with making("solid", part.part_no):
+        return _built(part)
+
+
+def _built(part: Part) -> Solid:
     if isinstance(part.body, ModelFile):
         return read_step_solid(part.body)
     stock = _extruded(part.body) if isinstance(part.body, Extrusion) else _revolved(part.body)

@@ -8,6 +8,7 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strength
+from tactcad.mechanics.accuracy import Choice, choose
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.element import element
 from tactcad.parts.hinge_section import design_alloy, hinge_section
@@ -41,8 +42,11 @@ class ElementEstimate:
     rated_deflection: float  # mm, never passed: overload and calibration stay below
 
 
-def estimate(layout: Layout, rung: str, force: float | None = None) -> list[ElementEstimate]:
-    """Every element of the layout, by number; force in N, by default the design's rating.
+def estimate(
+    layout: Layout, rung: str, force: float | None = None, mesh: int | None = None
+) -> list[ElementEstimate]:
+    """Every element of the layout, by number; force in N, by default the design's rating; `mesh` the density
+    of rung fem-solid's finer mesh.
 
     Raises CheckFailure where an element lies outside the rung's range.
     """
@@ -51,7 +55,7 @@ def estimate(layout: Layout, rung: str, force: float | None = None) -> list[Elem
     section = hinge_section(layout, layout.elements)
     if rung not in ladder.FINITE_ELEMENTS:
         return estimate_sections(layout, section, rung, force)
-    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length)
+    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)
     return _estimates(layout, section, K, per_newton, force)
 
 
@@ -60,6 +64,14 @@ def estimate_sections(layout: Layout, section: HingeSection, rung: str, force: f
     instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
     K = np.asarray(ladder.stiffness(section, rung))
     return _estimates(layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force)
+
+
+def choose_rung(layout: Layout, accuracy: float) -> Choice:
+    """The quickest rung that keeps the relative accuracy of stiffness at every element, each distinct one counted
+    once in the expected time as it is solved once. Raises CheckFailure where there is none."""
+    places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
+    names = [f"element {p.number}" for p in places.values()]
+    return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
 
 
 @dataclass(frozen=True)
@@ -86,29 +98,30 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
 
 
 def _by_elements(
-    layout: Layout, places: tuple[ElementPlace, ...], section: HingeSection, rung: str, grid: float
+    layout: Layout, places: tuple[ElementPlace, ...], section: HingeSection, rung: str, grid: float,
+    mesh: int | None,
 ) -> tuple[Array, _PerNewton]:
     """Finite elements on each distinct contour, cut at clamp edge and load line."""
     from tactcad.fem import ladder as elements
+    from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
 
-    solved: dict[tuple, elements.ElementResult] = {}
+    solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
     results = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
             contour = element(layout, place).body.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
-            solved[key] = elements.solve(section.rows(i), rung, grid, shape)
+            one = section.rows(i)
+            found = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
+            # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
+            plane = found if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
+            solved[key] = found, plane
         results.append(solved[key])
+    results, planes = zip(*results)
     E = section.youngs_modulus
-    if rung == "fem-solid":
-        # along the hinge stress follows from equilibrium: the plane rung's factors hold for the solid too
-        stress, face = strain.peak_stress(section, 1.0), strain.face_stress(section, 1.0)
-    else:
-        stress, face = (
-            E * np.array([getattr(r, name) for r in results]) for name in ("fillet_peak", "face_peak")
-        )
+    stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
     return np.array([r.stiffness for r in results]), _PerNewton(
         np.array([r.gauge_strain for r in results]), np.array([r.fillet_peak for r in results]), stress, face
     )

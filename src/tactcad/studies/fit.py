@@ -95,7 +95,11 @@ def fit(samples: Columns, held_out: Columns, today: date) -> dict:
         rows = _rows(samples, samples["two_sided"] == flag)
         rounded["grid"][side] = _rounded(_fit_grid(rows, rounded["root"][side], side))
     return rounded | {
-        "range": {"least_height": LEAST_HEIGHT, "groups": sampled_range(samples)},
+        "range": {
+            "least_height": LEAST_HEIGHT,
+            "least_body_length": _digits((samples["body_length"] / samples["hinge_thickness"]).min(), 3),
+            "groups": sampled_range(samples),
+        },
         "report": _report(rounded, samples, held_out, today),
     }
 

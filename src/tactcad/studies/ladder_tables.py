@@ -1,4 +1,6 @@
-"""The tables of docs/mechanics.md, computed: `python -m tactcad.studies.ladder_tables docs/mechanics.md`.
+"""The tables of docs/mechanics.md and docs/accuracy.md, computed.
+
+`python -m tactcad.studies.ladder_tables docs/mechanics.md`, and the other likewise.
 
 Blocks stand between `<!-- table NAME -->` and `<!-- end -->`; running it writes them anew.
 """
@@ -11,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tactcad.mechanics import ladder, strain
+from tactcad.mechanics.accuracy import accuracy_data, zone_name
 from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
@@ -66,9 +69,10 @@ def beyond() -> str:
 
 def fitted_range() -> str:
     """The dimensionless groups that the sample covered."""
-    groups = ladder_data()["range"]["groups"]
+    sampled = ladder_data()["range"]
     lines = ["| group | from | to |", "|---|---|---|"]
-    return "\n".join(lines + [f"| {name} | {low:g} | {high:g} |" for name, (low, high) in groups.items()])
+    lines += [f"| {name} | {low:g} | {high:g} |" for name, (low, high) in sampled["groups"].items()]
+    return "\n".join([*lines, f"| Lb/t | {sampled['least_body_length']:g} | - |"])
 
 
 def papers_strains() -> str:
@@ -111,7 +115,19 @@ def _strain_table(rungs: tuple[str, ...], strains: Callable[[HingeSection, str],
     return "\n".join(lines)
 
 
+def promised() -> str:
+    """Worst error that was measured, and promised, of the rungs that can be chosen, by zone of the envelope."""
+    data = accuracy_data()
+    names = ("plane", "solid", "fem-plane", "fem-solid, mesh 2", "fem-solid, mesh 3")
+    lines = ["| zone | designs | " + " | ".join(names) + " |", "|---|---|" + "---|" * len(names)]
+    for zone in data["zones"]:
+        cells = (f"{100 * zone['worst'][n]:.2g} % -> {100 * zone['promised'][n]:.2g} %" for n in names)
+        lines.append(f"| {zone_name(zone)} | {zone['designs']['solid']} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
 TABLES = {
+    "promised": promised,
     "errors": errors,
     "beyond": beyond,
     "range": fitted_range,
@@ -122,9 +138,10 @@ TABLES = {
 
 
 def renewed(text: str, names: tuple[str, ...] = tuple(TABLES)) -> str:
-    """The document with the named tables computed anew."""
+    """The document with those of the named tables that it has computed anew."""
     for name in names:
-        text = filled(text, name, TABLES[name]())
+        if f"<!-- table {name} -->" in text:
+            text = filled(text, name, TABLES[name]())
     return text
 
 

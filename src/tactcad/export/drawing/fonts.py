@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.util import find_spec
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,7 +38,8 @@ def font_file() -> Path:
 def _face() -> FT2Font:
     from matplotlib.ft2font import FT2Font
 
-    return FT2Font(str(font_file()))
+    # from memory: processes that are forked would share an open file, and move each other's place in it
+    return FT2Font(BytesIO(font_file().read_bytes()))
 
 
 @cache

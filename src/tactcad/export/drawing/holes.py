@@ -106,7 +106,11 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
         rows = tuple(size(f"{n}.{what}") for n in names)
         return Dimension(f"{label} {what}", rows, sign, **more)
 
-    limits, modelled, fit = _tolerance(h.tolerance)
+    limits, modelled, words = _tolerance(h.tolerance)
+    fit, _, remark = words.partition(", ")
+    if fit:
+        # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
+        modelled = round(h.diameter - round(h.diameter, 1), 9)
     bore = dimension("d", "⌀", limits=limits, modelled=modelled, fit=fit, counted=not h.thread and not _entered(h))
     used = [bore]
     depth = None if h.through else dimension("depth", "↧", counted=False)
@@ -131,6 +135,8 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
         lines.append(f"{bore.text(values)}{ending}{cone}")
         if h.counterbore:
             lines.append(f"counterbore {wider}")
+    if remark:
+        lines.append(remark)
     if both:
         lines.append("from both sides alike")
     elif not _same_from_both_sides(h) and sum(a * e for a, e in zip(h.axis, eye_of[axis_of(h)])) > 0:

@@ -41,7 +41,7 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     c, layout = design.calibration, Layout(design)
     s = hinge_section(layout, layout.elements)
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
-    yields = strength.yield_force(s, design_alloy(design))
+    yields = strength.yield_force_where_known(s, design_alloy(design))
     loads = []
     for place, K, why, at_yield in zip(layout.elements, known.stiffness, known.reason, yields):
         share = c.load_cell_stiffness / (c.load_cell_stiffness + K)

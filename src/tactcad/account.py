@@ -1,0 +1,122 @@
+"""What a run made, how often and how long it took, and what it loaded and held: for `--profile`.
+
+Makers of what is dear (solids, meshes, finite-element solutions, scenes) say so through `making`; where nobody
+has asked for an account that costs a comparison.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+# Packages that are slow to import or large, and what for.
+HEAVY = {
+    "numpy": "arrays",
+    "scipy": "sparse solver, statistics",
+    "skfem": "finite elements",
+    "matplotlib": "plots",
+    "ezdxf": "DXF",
+    "reportlab": "PDF",
+    "pypdf": "PDF read back",
+    "OCP": "CAD kernel",
+    "build123d": "CAD kernel",
+    "cadquery": "CAD kernel",
+    "bd_warehouse": "CAD kernel",
+    "vtkmodules": "CAD kernel",
+    "trimesh": "meshes",
+    "manifold3d": "meshes",
+}
+KERNEL = frozenset(name for name, what in HEAVY.items() if what == "CAD kernel")
+
+
+@dataclass
+class Made:
+    """One thing made: kind ("solid", "mesh", "elements", "scene"), name, and processor seconds it took."""
+
+    kind: str
+    name: str
+    seconds: float
+
+
+@dataclass
+class Account:
+    """Of one run; `made` in the order of finishing."""
+
+    made: list[Made] = field(default_factory=list)
+    started: float = field(default_factory=time.perf_counter)
+
+    def record(self) -> dict:
+        """As JSON holds it: loaded packages with their number of modules, what was made, time and memory."""
+        by_kind: dict[str, dict[str, dict]] = {}
+        for m in self.made:
+            entry = by_kind.setdefault(m.kind, {}).setdefault(m.name, {"times": 0, "seconds": 0.0})
+            entry["times"] += 1
+            entry["seconds"] = round(entry["seconds"] + m.seconds, 6)
+        return {
+            "seconds": round(time.perf_counter() - self.started, 3),
+            "peak_memory_mb": _peak_memory_mb(),
+            "modules": len(sys.modules),
+            "loaded": _loaded(),
+            "made": by_kind,
+        }
+
+
+_open: Account | None = None
+
+
+@contextmanager
+def account() -> Iterator[Account]:
+    """Whatever is made inside is put down in the account that this yields."""
+    global _open
+    before, _open = _open, Account()
+    try:
+        yield _open
+    finally:
+        _open = before
+
+
+@contextmanager
+def making(kind: str, name: str) -> Iterator[None]:
+    """Around the making of one thing; what fails is not put down."""
+    own = _open
+    if own is None:
+        yield
+        return
+    start = time.process_time()
+    yield
+    own.made.append(Made(kind, name, time.process_time() - start))
+
+
+def text(record: dict) -> str:
+    """The record for a terminal."""
+    loaded = ", ".join(f"{name} ({count})" for name, count in record["loaded"].items()) or "none of the heavy ones"
+    lines = [
+        f"profile: {record['seconds']:.2f} s, {record['peak_memory_mb']:.0f} MB at most, {record['modules']} modules",
+        f"  loaded (modules): {loaded}",
+    ]
+    for kind, things in record["made"].items():
+        times, seconds = (sum(t[key] for t in things.values()) for key in ("times", "seconds"))
+        lines.append(f"  {kind}: {len(things)} made, {times} times, {seconds:.2f} s")
+        lines += [f"    {name:50} {t['times']:4} x {t['seconds']:8.3f} s" for name, t in things.items()]
+    return "\n".join(lines)
+
+
+def _loaded() -> dict[str, int]:
+    counts = dict.fromkeys(HEAVY, 0)
+    for module in sys.modules:
+        top = module.split(".", 1)[0]
+        if top in counts:
+            counts[top] += 1
+    return {name: count for name, count in counts.items() if count}
+
+
+def _peak_memory_mb() -> float:
+    """Most memory that this process or one that it waited for ever held."""
+    import resource  # not on every system, and only a profile needs it
+
+    scale = 1e-6 if sys.platform == "darwin" else 1.024e-3  # bytes there, kibibytes elsewhere
+    usage = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return round(max(usage) * scale, 1)

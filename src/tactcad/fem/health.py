@@ -1,0 +1,68 @@
+"""How far a finite-element solution can be trusted: angles of its elements, condition, and what rounding leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator, onenormest
+
+from . import elasticity
+from .mesh import PlaneMesh
+from .plane import end_nodes, fixed_unknowns, parabola, solve_plane
+from .shape import HingeShape
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Health:
+    """Of one plane mesh and the system that it gives. Angles in degrees, at the corners of the elements.
+
+    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Higham and
+    Tisseur's method). rounding: relative change of the compliance by one step of iterative refinement, an estimate of
+    what rounding did to it.
+    """
+
+    smallest_angle: float
+    largest_angle: float
+    condition: float
+    rounding: float
+    compliance: float  # mm/N
+    unknowns: int
+
+
+def plane_health(shape: HingeShape, E: float, nu: float, width: float, density: int) -> Health:
+    """Of the plane-stress problem that `solve_plane` solves on that density."""
+    solution = solve_plane(shape, E, nu, width, density=density)
+    basis, mesh = solution.basis, solution.mesh
+    A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=True)) * width
+    end = end_nodes(basis.doflocs, mesh)
+    f = np.zeros(A.shape[0])
+    f[2 * end + 1] = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))
+    free = np.setdiff1d(np.arange(len(f)), fixed_unknowns(basis.doflocs, mesh, 2))
+    reduced = A[free][:, free].tocsc()
+    solve = elasticity.factorised(reduced).solve
+    inverse = LinearOperator(reduced.shape, matvec=solve, rmatvec=solve, dtype=float)
+    _, rounding = elasticity.refined(reduced, f[free])
+    smallest, largest = corner_angles(mesh)
+    return Health(
+        smallest, largest, float(abs(reduced).sum(axis=0).max() * onenormest(inverse)),
+        rounding, solution.compliance, solution.unknowns,
+    )  # fmt: skip
+
+
+def corner_angles(mesh: PlaneMesh) -> tuple[float, float]:
+    """Smallest and largest angle between the two edges that meet at an element's corner, degrees.
+
+    Edges are curved: their tangents count, as the parabola through corner, middle and far corner has them.
+    """
+    found = []
+    for u, v in ((0, 0), (0, 2), (2, 0), (2, 2)):
+        corner = mesh.cells[:, u, v]
+        along = 4.0 * mesh.cells[:, 1, v] - 3.0 * corner - mesh.cells[:, 2 - u, v]
+        across = 4.0 * mesh.cells[:, u, 1] - 3.0 * corner - mesh.cells[:, u, 2 - v]
+        cross = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+        found.append(np.degrees(np.arctan2(np.abs(cross), np.sum(along * across, axis=1))))
+    return float(np.min(found)), float(np.max(found))

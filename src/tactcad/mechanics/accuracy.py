@@ -1,0 +1,158 @@
+"""The cheapest rung that keeps an asked accuracy at a design, by the worst errors that were measured near it.
+
+Error is that of the tip stiffness K against one reference for all rungs: three-dimensional linear elasticity of
+the element cut at load line and clamp edge, solved by solid elements to their limit. What the reference leaves
+out (the real hinge's thickness, where the load stands) is not in it.
+
+`data/accuracy.json`, written by `tactcad fit`, divides the envelope into zones by notch form and dimensionless
+groups, and holds for each the worst error of every candidate, what is promised, and the time an element takes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from tactcad.design.messages import CheckFailure
+
+from . import validity
+from .section import Array, HingeSection
+
+MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is where errors were measured
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A rung as it can be chosen; `mesh` is the density of fem-solid's finer mesh, None for all other rungs."""
+
+    rung: str
+    mesh: int | None = None
+
+    @property
+    def name(self) -> str:
+        return self.rung if self.mesh is None else f"{self.rung}, mesh {self.mesh}"
+
+
+CANDIDATES = (
+    *(Candidate(rung) for rung in ("short", "beam", "section", "plane", "solid", "fem-plane")),
+    Candidate("fem-solid", 2),
+    Candidate("fem-solid", 3),
+)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What was chosen: the promised worst error |K/K_reference - 1|, the time for all designs (s, on the machine
+    that data/accuracy.json names, one thread), and the zones of the envelope that the designs lie in."""
+
+    candidate: Candidate
+    expected_error: float
+    expected_time: float
+    zones: tuple[str, ...]
+
+
+@lru_cache(maxsize=1)
+def accuracy_data() -> dict:
+    """data/accuracy.json as written by the fit."""
+    return json.loads((Path(__file__).parent / "data" / "accuracy.json").read_text("utf-8"))
+
+
+def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choice:
+    """The quickest candidate that keeps the relative `accuracy` at every one of the designs.
+
+    Raises CheckFailure where a design, called by its name where `names` has one, lies outside what was measured, or
+    where no candidate keeps the accuracy.
+    """
+    where = lambda i: f" ({names[i]})" if names else ""  # noqa: E731
+    outside = validity.reasons(s, MEASURED_FOR).ravel()
+    zone = zones(s).ravel()
+    for i in np.flatnonzero(outside != ""):
+        raise CheckFailure(_not_measured(outside[i]) + where(i))
+    found = list(_suitable(zone, accuracy))
+    if not found:
+        best, error = _best(zone)
+        worst = int(np.argmax(error))
+        raise CheckFailure(_none_keeps(accuracy, best, float(error[worst])) + where(worst))
+    return min(found, key=lambda choice: choice.expected_time)
+
+
+def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
+    """For every design its own choice, or why there is none."""
+    by_zone: dict[int, Choice | str] = {}
+    zone = zones(s).ravel()
+    for z in np.unique(zone):
+        one = np.array([z])
+        found = list(_suitable(one, accuracy))
+        by_zone[z] = min(found, key=lambda choice: choice.expected_time) if found else ""
+        if not found:
+            best, error = _best(one)
+            by_zone[z] = _none_keeps(accuracy, best, float(error[0]))
+    reasons = validity.reasons(s, MEASURED_FOR).ravel()
+    return [_not_measured(why) if why else by_zone[z] for why, z in zip(reasons, zone)]
+
+
+def zones(s: HingeSection) -> np.ndarray:
+    """Index of every design's zone in the data's list; sensible only inside the envelope."""
+    with np.errstate(all="ignore"):
+        groups = validity.groups(s)
+    index = np.zeros(s.shape, dtype=int)
+    for i, zone in enumerate(accuracy_data()["zones"]):
+        index[np.broadcast_to(in_zone(zone, groups, s.two_sided), s.shape)] = i
+    return index
+
+
+def in_zone(zone: dict, groups: dict[str, Array], two_sided: np.ndarray) -> np.ndarray:
+    """Which designs lie in a zone: its notch form, and low <= group < high for each group that bounds it."""
+    inside = two_sided == (zone["sides"] == "two")
+    for name, (low, high) in zone["bounds"].items():
+        inside = inside & (groups[name] >= low) & (groups[name] < (np.inf if high is None else high))
+    return inside
+
+
+def expected_error(s: HingeSection, candidate: Candidate) -> Array:
+    """Promised worst error of a candidate at every design, NaN outside the envelope."""
+    promised = _promised(zones(s), candidate)
+    return np.where(validity.reasons(s, MEASURED_FOR) == "", promised, np.nan)
+
+
+def zone_name(zone: dict) -> str:
+    bounds = (
+        f"{name} from {low:g}" if high is None else f"{name} {low:g} to {high:g}"
+        for name, (low, high) in zone["bounds"].items()
+    )
+    return ", ".join((f"{zone['sides']}-sided", *bounds))
+
+
+def _promised(zone: np.ndarray, candidate: Candidate) -> Array:
+    return np.array([z["promised"][candidate.name] for z in accuracy_data()["zones"]])[zone]
+
+
+def _suitable(zone: np.ndarray, accuracy: float) -> Iterator[Choice]:
+    data = accuracy_data()
+    for candidate in CANDIDATES:
+        error = float(_promised(zone, candidate).max())
+        if error <= accuracy:
+            each = np.array([z["seconds"][candidate.name] for z in data["zones"]])[zone].sum()
+            names = tuple(zone_name(data["zones"][z]) for z in np.unique(zone))
+            yield Choice(candidate, error, float(data["seconds a call"][candidate.name] + each), names)
+
+
+def _best(zone: np.ndarray) -> tuple[Candidate, Array]:
+    """The candidate whose worst promise over the designs is least, and its promise at each."""
+    return min(((c, _promised(zone, c)) for c in CANDIDATES), key=lambda pair: pair[1].max())
+
+
+def _not_measured(rule: str) -> str:
+    return f"the errors of the rungs were not measured for this design: {rule}; name a rung with --model"
+
+
+def _none_keeps(accuracy: float, best: Candidate, error: float) -> str:
+    return (
+        f"no rung is known to keep {100 * accuracy:.3g} % at this design; "
+        f"the best is {best.name}, measured to keep {100 * error:.2g} %"
+    )

@@ -1,0 +1,151 @@
+"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked for."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from variants import HARDWARE, variant
+
+import tactcad
+from tactcad.account import HEAVY, KERNEL, account, making, text
+from tactcad.scenes import make_scene, scene_names
+
+DESIGN = HARDWARE / "double-sample.toml"  # two elements, and every rig
+MESHES = {"trimesh", "manifold3d"}
+
+
+def run(*arguments, cwd, script="-m"):
+    """A fresh process: its exit status, standard output, and the account on standard error."""
+    environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH", "HOME")}
+    environment |= {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "TACTCAD_CACHE": str(cwd / "cache")}
+    command = [sys.executable, "-m", "tactcad"] if script == "-m" else [sys.executable, "-c", script]
+    done = subprocess.run([*command, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    return done
+
+
+def profile(*arguments, cwd, status=0):
+    done = run(*arguments, "--profile", "--json", cwd=cwd)
+    assert done.returncode == status, done.stderr
+    return json.loads(done.stderr[done.stderr.index("{\n") :])
+
+
+@pytest.mark.parametrize(
+    "arguments,loaded",
+    [
+        (("estimate",), {"numpy"}),
+        (("estimate", "--accuracy", "1%"), {"numpy"}),
+        (("size", "--stiffness", "10", "--load-arm", "5"), {"numpy"}),
+        (("schema",), set()),
+    ],
+    ids=lambda a: " ".join(a) if isinstance(a, tuple) else "",
+)
+def test_estimates_load_numpy_alone_and_make_nothing(arguments, loaded, tmp_path):
+    (tmp_path / "hardware").symlink_to(HARDWARE)
+    record = profile(*arguments, cwd=tmp_path)
+    assert set(record["loaded"]) == loaded
+    assert record["made"] == {}
+    assert record["peak_memory_mb"] < 100
+
+
+def test_finite_element_estimates_load_no_kernel_and_solve_each_distinct_element_once(tmp_path):
+    record = profile("estimate", str(DESIGN), "--model", "fem-plane", cwd=tmp_path)
+    assert not set(record["loaded"]) & (KERNEL | MESHES)
+    assert set(record["made"]) == {"elements"}
+    arms = {arm for row in variant(base="double-sample").array.row_arms for arm in row}
+    # two densities of each, and of the one that is compared with its uncut contour
+    assert [e["times"] for e in record["made"]["elements"].values()] == [len(arms) + 1] * 2
+
+
+def test_cut_files_and_inspection_load_no_kernel(tmp_path):
+    script = """
+import sys
+from tactcad.account import KERNEL
+from tactcad.export.dxf import check_dxf, dxf_bytes
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+from tactcad.scenes import make_scene, scene_names
+from tactcad.studies.inspection_sheet import read_sheet
+import tactcad.studies.as_made, tactcad.export.strength, tactcad.export.bom
+design = load(sys.argv[1])
+for name in scene_names(design):
+    for part in make_scene(design, name).parts:
+        if part.process == "wire-cut":
+            assert check_dxf(dxf_bytes(part), part) == []
+found = {m.split(".")[0] for m in sys.modules} & (KERNEL | {"trimesh", "manifold3d"})
+sys.exit(f"loaded {found}" if found else 0)
+"""
+    done = run(str(DESIGN), cwd=tmp_path, script=script)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize("scene", ["array", pytest.param("grasping", marks=pytest.mark.nightly)])
+def test_export_builds_the_scenes_own_parts_each_once_and_solves_nothing(scene, tmp_path):
+    done = run("export", str(DESIGN), "--scene", scene, "--out", "out", "--profile", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    made = parsed(done.stderr)
+    parts = {part.part_no for part in make_scene(variant(base="double-sample"), scene).parts}
+    assert made["solid"] == dict.fromkeys(parts, 1), "no part outside the scene, none twice"
+    assert set(made["scene"]) == {scene} and "elements" not in made
+    assert all(name.startswith("picture of") for name in made.get("mesh", {})), "meshes for pictures alone"
+    again = run("export", str(DESIGN), "--scene", scene, "--out", "out", "--profile", cwd=tmp_path)
+    assert parsed(again.stderr) == {} and "none of the heavy ones" in again.stderr
+
+
+@pytest.mark.cad
+@pytest.mark.nightly
+def test_check_builds_and_meshes_every_part_once(tmp_path):
+    done = run("check", str(DESIGN), "--profile", cwd=tmp_path)
+    made = parsed(done.stderr)
+    design = variant(base="double-sample")
+    parts = {part.part_no for name in scene_names(design) for part in make_scene(design, name).parts}
+    posed = {n for n in made["solid"] if not n.endswith(", envelope")}
+    assert parts <= posed
+    assert set(made["solid"].values()) == {1} == set(made["mesh"].values())
+    assert set(made["mesh"]) == parts, "a mesh where a check asks for one"
+    assert "elements" not in made
+
+
+def parsed(stderr: str) -> dict[str, dict[str, int]]:
+    """How often each thing was made, by kind, from the account's text."""
+    lines = stderr[stderr.index("profile: ") :].splitlines()[2:]
+    made, kind = {}, ""
+    for line in lines:
+        if line.startswith("    "):
+            name, _, rest = line.strip().rpartition(" x ")
+            name, times = name.rsplit(None, 1)
+            made[kind][name.strip()] = int(times)
+        else:
+            kind = line.strip().split(":")[0]
+            made[kind] = {}
+    return made
+
+
+def test_the_account_is_printed_when_a_command_fails_too(tmp_path):
+    done = run("estimate", str(DESIGN), "--accuracy", "0.0001%", "--profile", cwd=tmp_path)
+    assert done.returncode == 1 and "profile: " in done.stderr and "no rung is known" in done.stderr
+
+
+def test_nothing_is_put_down_where_nobody_asks():
+    with making("solid", "a"):
+        pass
+    with account() as outer:
+        with making("solid", "b"), account() as inner, making("mesh", "c"):
+            pass
+        with pytest.raises(ValueError, match="torn"), making("solid", "d"):
+            raise ValueError("torn")
+    assert [(m.kind, m.name) for m in inner.made] == [("mesh", "c")]
+    assert [(m.kind, m.name) for m in outer.made] == [("solid", "b")]
+    with account() as own:
+        for _ in range(3):
+            with making("solid", "e"):
+                sum(range(1000))
+    record = own.record()
+    assert record["made"]["solid"]["e"]["times"] == 3 and record["peak_memory_mb"] > 10
+    assert "e " in text(record) and "3 x" in text(record)
+    assert set(record["loaded"]) <= set(HEAVY)
