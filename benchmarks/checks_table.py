@@ -22,7 +22,6 @@ BEGIN, END = "<!-- checks: written by benchmarks/checks_table.py -->\n", "<!-- e
 HEAD = "| `tactcad check` times | check | its bad part | what it says | array | its rigs | largest |\n|---|---|---|---|---|---|---|\n"
 
 sys.path.insert(0, str(ROOT / "tests"))
-sys.path.insert(0, str(ROOT / "benchmarks"))
 
 Times = dict[str, tuple[str, str, str]]
 
@@ -51,19 +50,18 @@ def known_times(text: str) -> Times:
 
 def measured() -> Times:
     """Seconds of every timed check on the macro array alone, on it with its rigs, and on 2 x 500 elements."""
-    from checks import long_array
-
     from tactcad.checks import report as clocked
     from tactcad.checks.run import run_checks
     from tactcad.export.golden import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
+    from tactcad.studies.bench import arrays
 
     clocked.time = SimpleNamespace(perf_counter=time.process_time)
     shipped = load("macro-array")
     run_checks(shipped, ["array"])  # builds and loads what is kept
     columns = []
-    for design, names in ((shipped, ["array"]), (shipped, scene_names(shipped)), (long_array(100), ["array"])):
+    for design, names in ((shipped, ["array"]), (shipped, scene_names(shipped)), (arrays.of(1000), ["array"])):
         report = run_checks(design, names)
         if design is shipped:
             report.run("golden", check_golden, design, golden_path(ROOT / "hardware" / "macro-array.toml", design))
