@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 
 # Packages that are slow to import or large, and what for.
 HEAVY = {
@@ -114,9 +115,20 @@ def _loaded() -> dict[str, int]:
 
 
 def _peak_memory_mb() -> float:
-    """Most memory that this process or one that it waited for ever held."""
-    import resource  # not on every system, and only a profile needs it
+    """Most memory that this process ever held."""
+    kibibytes = _high_water()
+    if kibibytes is None:
+        import resource  # not on every system, and only a profile needs it
 
-    scale = 1e-6 if sys.platform == "darwin" else 1.024e-3  # bytes there, kibibytes elsewhere
-    usage = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return round(max(usage) * scale, 1)
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        return round(most * (1e-6 if sys.platform == "darwin" else 1.024e-3), 1)  # bytes there, kibibytes elsewhere
+    return round(kibibytes * 1.024e-3, 1)
+
+
+def _high_water() -> int | None:
+    """Linux's VmHWM in kibibytes. getrusage's figure there begins with that of the process that started this one."""
+    try:
+        lines = Path("/proc/self/status").read_text("ascii").splitlines()
+    except OSError:
+        return None
+    return next((int(line.split()[1]) for line in lines if line.startswith("VmHWM:")), None)

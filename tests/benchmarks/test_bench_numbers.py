@@ -11,7 +11,7 @@ import pytest
 
 from tactcad.studies.bench import tables
 from tactcad.studies.bench.exponent import fit
-from tactcad.studies.bench.front import efficient
+from tactcad.studies.bench.front import dominators, efficient, told
 from tactcad.studies.bench.timing import interleaved, of_samples
 
 
@@ -55,6 +55,16 @@ def test_the_front_is_what_nothing_dominates(seed):
     front = efficient(points)
     assert sorted(front) == [i for i, p in enumerate(points) if not dominated(p, points)]
     assert [points[i][0] for i in front] == sorted(points[i][0] for i in front)
+    instead = dominators(points)
+    assert set(instead) == set(range(len(points))) - set(front)
+    for i, j in instead.items():
+        as_quick = [p[1] for p in points if p[0] <= points[i][0]]
+        assert points[j][0] <= points[i][0] and points[j][1] == min(as_quick)
+
+
+def test_the_sentence_names_front_and_dominated():
+    said = told(["a", "b", "c"], [(1.0, 1.0), (2.0, 3.0), (3.0, 0.1)])
+    assert said == "On the efficient front, quickest first: a, c. Dominated: b by a."
 
 
 def test_actions_are_run_in_turns_and_each_as_often():

@@ -98,7 +98,7 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     assert len(scenes) == 4 and len(posed) > 10
     expected = {(check, macro.name) for check in ("check_strength", "check_clearance", "check_calibration")}
     for number, part in parts.items():
-        expected |= {("check_brep", number), ("check_mesh", number)}
+        expected |= {("check_brep", number), ("check_step", number), ("check_mesh", number)}
         expected |= {("check_wirecut", number)} if part.process == "wire-cut" else set()
         expected |= {("check_machining", number)} if part.process in ("milled", "turned", "ground") else set()
     expected |= {("check_interference", s.name) for s in scenes} | {("check_motions", s.name) for s in scenes if s.motions}

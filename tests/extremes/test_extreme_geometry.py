@@ -32,17 +32,17 @@ WHOLE = {
     "slot of its fillets alone": {"element.hinge_length": 0.3, "element.fillet_radius": 0.15, "calibration.travel": 0.1},
     "full round": {"element.fillet_radius": 0.44},
     "arm 0.5 mm": {
-        "array.row_arms": [[0.5, 0.5]], "array.row_pitch": 0.4, "element.pad_length": 0.1, "element.pad_height": 0.2,
+        "array.row_arms": [[0.5, 0.5]], "array.row_pitch": 0.4, "element.pad_length": 0.1, "element.pad_height": 0.3,
         "element.hinge_length": 0.2, "element.fillet_radius": 0.05, "element.hinge_thickness": 0.05,
         "element.pad_root_radius": 0.05, "element.corner_radius": 0.05, "element.arm_height": 0.4,
-        "element.body_height": 0.6, "element.recess_depth": 0.2, "element.seat_length": 4.0, "gauge.carrier_arm_side": 0.12,
+        "element.body_height": 0.6, "element.recess_depth": 0.25, "element.seat_length": 4.0, "gauge.carrier_arm_side": 0.12,
         "gauge.grid_length": 0.1, "stop.land_length": 0.06, "stop.tolerance": 0.001, "clamp.stop_plate_thickness": 4.4,
     },
     "arm 100 mm": {"array.row_arms": [[100.0]]},
     "arms of 4 and 100 mm": {"array.row_arms": [[4.0, 100.0]], "clamp.hold_down_pitch": 100.0},
     "1 x 1": {"array.row_arms": [[4.0]]},
     "2 x 20": {"array.row_arms": [LONG * 4] * 2},
-    "foil of 0.1 mm": {"sheet.thickness": 0.1, "array.pitch": 1.1, "rating.overload_force": 5.0},
+    "foil of 0.1 mm": {"sheet.thickness": 0.1, "array.pitch": 1.1, "gauge.carrier_width": 0.1, "gauge.grid_width": 0.1, "rating.overload_force": 5.0},
     "block of 20 mm": {"sheet.thickness": 20.0, "array.pitch": 21.0},
 }  # fmt: skip
 

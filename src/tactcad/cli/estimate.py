@@ -56,9 +56,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accuracy",
         metavar="P",
-        help='instead of --model: the error of stiffness that may be left, as "1%%" or 0.01, against solid elements '
-        "refined to their limit; takes the quickest rung whose measured worst error at this design is within it, "
-        "or refuses (docs/accuracy.md)",
+        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the examples), "
+        "against solid elements refined to their limit; takes the quickest rung whose measured worst error at this "
+        "design is within it, or refuses (docs/accuracy.md)",
     )
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"

@@ -20,8 +20,8 @@ Array = NDArray[np.float64]
 class Health:
     """Of one plane mesh and the system that it gives. Angles in degrees, at the corners of the elements.
 
-    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Higham and
-    Tisseur's method). rounding: relative change of the compliance by one step of iterative refinement, an estimate of
+    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Hager's method,
+    which has nothing random). rounding: relative change of the compliance by one step of iterative refinement, an estimate of
     what rounding did to it.
     """
 
@@ -48,7 +48,7 @@ def plane_health(shape: HingeShape, E: float, nu: float, width: float, density: 
     _, rounding = elasticity.refined(reduced, f[free])
     smallest, largest = corner_angles(mesh)
     return Health(
-        smallest, largest, float(abs(reduced).sum(axis=0).max() * onenormest(inverse)),
+        smallest, largest, float(abs(reduced).sum(axis=0).max() * onenormest(inverse, t=1)),
         rounding, solution.compliance, solution.unknowns,
     )  # fmt: skip
 

@@ -21,7 +21,7 @@ from tactcad.fem.shape import HingeShape, reference_shape
 from tactcad.fem.solid import solve_solid
 
 from . import tables, truth
-from .front import efficient
+from .front import efficient, told
 from .plan import Plan
 from .timing import interleaved
 
@@ -112,8 +112,10 @@ def _error(case: Case, designs: list[tuple]) -> dict:
 
 def findings(rows: list[dict]) -> list[str]:
     lines = []
-    front = [f"{r['elements']} {r['density']}" for r in rows if r["front"] and r["code"] == "tactcad"]
-    lines.append(f"On the efficient front: {', '.join(front)}.")
+    for against, title in (("plane", "Plane stress"), ("solid", "Three dimensions")):
+        group = [r for r in rows if r["against"] == against]
+        names = [f"{'' if r['code'] == 'tactcad' else r['code'] + ' '}{r['elements'].replace(',', '')} at {r['density']}" for r in group]
+        lines.append(f"{title}. " + told(names, [(r["seconds"], r["worst"]) for r in group]))
     chosen = [_cheapest(rows, code) for code in ("tactcad", "CalculiX")]
     if all(chosen):
         ours, theirs = chosen

@@ -9,8 +9,10 @@ import numpy as np
 from tactcad.mechanics import ladder
 from tactcad.studies import fit_samples
 from tactcad.studies.fit_samples import Columns, draw_box, section
+from tactcad.studies.report import sig
 
 from . import tables, truth
+from .front import told
 from .plan import Plan
 from .timing import interleaved
 
@@ -113,8 +115,9 @@ def findings(rows: list[dict]) -> list[str]:
     slowest = max(by[r]["seconds"] for r in ladder.CLOSED_FORMS) * 1e6
     default, plane, solid = by["solid"], by["fem-plane"], by["fem-solid"]
     return [
+        "Against solid elements: " + told([r["rung"] for r in rows], [(r["seconds"], r["solid worst"]) for r in rows]),
         f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in {slowest:.2f} s (goal {GOAL_MILLION} s).",
         f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by {100 * plane['solid worst']:.0f} % at "
-        f"{plane['seconds'] / default['seconds']:.0f} times the time: for a real sheet plane elements are dominated by a closed form.",
-        f"fem-solid errs by {100 * solid['solid worst']:.3f} % at worst, at {solid['seconds'] / default['seconds']:.1e} times the solid rung's time.",
+        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements are dominated by a closed form.",
+        f"fem-solid errs by {100 * solid['solid worst']:.3f} % at worst, at {sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
     ]
