@@ -34,10 +34,16 @@ def strength(**changes) -> list[Finding]:
     return check_strength(variant({path.replace("__", "."): value for path, value in changes.items()}))
 
 
-def clearance() -> list[Finding]:
+def clearance(**changes) -> list[Finding]:
     from tactcad.checks.clearance import check_clearance
 
-    return check_clearance(variant({"array.row_pitch": 2.2, "array.row_arms": [[4], [4]]}))
+    return check_clearance(variant({path.replace("__", "."): value for path, value in changes.items()}))
+
+
+def tool() -> list[Finding]:
+    import test_tools as t
+
+    return t.found(t.scene(bridge=30.0))
 
 
 def calibration() -> list[Finding]:
@@ -212,7 +218,7 @@ def golden() -> list[Finding]:
     return judge(golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1})))
 
 
-BREP = "tests/checks/test_brep_and_mesh.py"
+BREP, CLEARANCE = "tests/checks/test_brep_and_mesh.py", "tests/checks/test_clearance.py"
 MACHINING = {
     "mill-corner": "a pocket with sharp corners", "mill-groove": "a groove of 0.9 mm", "mill-floor": "a floor of 0.7 mm",
     "drill-diameter": "a hole of 0.4 mm", "drill-depth": "a hole 10.1 diameters deep", "drill-floor": "0.7 mm under a blind hole",
@@ -233,7 +239,23 @@ BAD: dict[str, Bad] = {
         lambda: strength(element__hinge_length=3.0, element__hinge_thickness=0.02, stop__gaps=dict.fromkeys("45678", 0.1)),
         "tests/checks/test_strength_check.py",
     ),
-    "clearance": Bad("clearance", "rows 2.2 mm apart", clearance, "tests/checks/test_clearance.py"),
+    "slot-clearance": Bad(
+        "clearance", "a slot of 0.25 mm under a stop gap of 0.6",
+        lambda: clearance(array__row_arms=[[4]], element__hinge_length=0.25, element__fillet_radius=0.1, stop__gaps={"4": 0.6},
+                          element__body_height=3.6, gauge__grid_length=0.2), CLEARANCE,
+    ),
+    "stop-clearance": Bad(
+        "clearance", "a land 0.13 mm high, arms within 0.2",
+        lambda: clearance(array__row_arms=[[4]], stop__gaps={"4": 0.1}, element__body_height=2.83, tolerance__arm_height=0.2), CLEARANCE,
+    ),
+    "neighbour-clearance": Bad(
+        "clearance", "spacers of 0.11 mm", lambda: clearance(array__row_arms=[[6, 6]], array__pitch=3.11, array__spacer=0.11), CLEARANCE,
+    ),
+    "opposite-clearance": Bad("clearance", "rows 2.2 mm apart", lambda: clearance(array__row_pitch=2.2, array__row_arms=[[4], [4]]), CLEARANCE),
+    "gauge-room": Bad("clearance", "pads 0.27 mm high", lambda: clearance(element__pad_height=0.27, element__pad_root_radius=0.2), CLEARANCE),
+    "lead-room": Bad(
+        "clearance", "a wire recess of 0.2 mm", lambda: clearance(element__recess_depth=0.2, element__corner_radius=0.15), CLEARANCE,
+    ),
     "calibration": Bad("calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"),
     "build": Bad("build", "a part that the kernel calls invalid", unbuildable, BREP),
     "one-solid": Bad("brep", "two boxes", lambda: brep(two_boxes), BREP),
@@ -257,6 +279,7 @@ BAD: dict[str, Bad] = {
     "undeclared-touch": Bad("interference", "cubes face to face", lambda: interference("faces touch, not declared"), "tests/checks/test_interference.py"),
     "contact": Bad("interference", "cubes 0.1 mm apart that should touch", lambda: interference("declared, but apart"), "tests/checks/test_interference.py"),
     "thread": Bad("interference", "a screw 0.1 mm beyond its full thread", thread, "tests/checks/test_interference.py"),
+    "tool-room": Bad("tools", "a bridge 30 mm over the screw", tool, "tests/checks/test_tools.py"),
     "motion": Bad("motion", "a foil of 10 um in the way", motion, "tests/rigs/test_motion.py"),
     "moving-weight": Bad("moving weight", "2 N asked for", moving_weight, "tests/rigs/test_rig_statics.py"),
     "scene": Bad("scenes left out", "500 N asked for, ballast of 2.9 m", left_out, "tests/checks/test_found_designs.py"),

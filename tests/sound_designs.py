@@ -269,7 +269,7 @@ def _clamp(d: Draw) -> None:
         d.number("clamp.end_plate_height", low, low + thickness - 1 - 1.5 * m.d)
 
     # screws and dowels behind the clamp edge
-    step = max(widest + web, 2 * max(head, dowel / 2) + 0.5) + 0.001
+    step = max(widest + web, 2 * max(head, dowel / 2) + 0.5, nut_corner + 1.35) + 0.001
     counts = ((1, 1), (2, 1), (1, 2), (2, 2), (4, 1), (8, 4))
     screws, dowels = d.choice(*(c for c in counts if sum(c) * step < 150))
     kinds = ["screw"] * screws + ["dowel"] * dowels

@@ -22,6 +22,7 @@ NEED_SOLIDS = {
     "tactcad.checks.mesh",
     "tactcad.checks.motion",
     "tactcad.checks.run",
+    "tactcad.checks.tools",
     "tactcad.export.drawing.assembly_lines",
     "tactcad.export.drawing.hidden_lines",
     "tactcad.export.picture",

@@ -101,7 +101,8 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
         expected |= {("check_brep", number), ("check_step", number), ("check_mesh", number)}
         expected |= {("check_wirecut", number)} if part.process == "wire-cut" else set()
         expected |= {("check_machining", number)} if part.process in ("milled", "turned", "ground") else set()
-    expected |= {("check_interference", s.name) for s in scenes} | {("check_motions", s.name) for s in scenes if s.motions}
+    expected |= {(check, s.name) for check in ("check_interference", "check_tools") for s in scenes}
+    expected |= {("check_motions", s.name) for s in scenes if s.motions}
     expected |= {("check_moving_weight", macro.name)}
     assert calls == expected
     assert report.runs["configurations"] == len(posed) and report.runs["interference"] == len(scenes)

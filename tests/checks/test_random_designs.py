@@ -59,7 +59,7 @@ def test_draws_reach_over_every_fields_range():
     for number in range(6000):
         for section, fields in raw_table(number, (1, 2, 3, 5), 0.5).items():
             for name, value in fields.items():
-                if f"{section}.{name}" in LEGAL:
+                if f"{section}.{name}" in LEGAL and not isinstance(value, dict):
                     seen.setdefault(f"{section}.{name}", []).append(value)
     seen.pop("stop.gaps", None)  # follows from the estimator where it is not given
     assert set(seen) == set(LEGAL) - {"stop.gaps"}

@@ -43,7 +43,7 @@ SPELT_OUT = {
     ("checks/brep.py", "f'step-{name}'"): ("step-volume", "step-area"),
 }
 # Functions that make findings under a name that they are given.
-PASS_ON = {"Finding", "fail", "flag", "_finding", "_about"}
+PASS_ON = {"Finding", "fail", "flag", "_finding", "_about", "_pressed"}
 GATE = re.compile(r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$")
 # Functions of export/ that raise CheckFailure and are no gates.
 NO_GATES = {

@@ -107,7 +107,7 @@ def _own_body(layout: Layout, arms: _Arms) -> Iterator[Finding]:
             seen[key] = _nearest(arms.of(place, arms.most(place)), arms.body(place))
         limit = layout.design.tolerance.hinge_length
         if seen[key] <= limit:
-            yield _pressed(place, seen[key], limit, "its own body: the slot closes before the stop does")
+            yield _pressed("slot-clearance", place, seen[key], limit, "its own body: the slot closes before the stop does")
 
 
 # Lengths in decimals, kept in binary, mm.
@@ -127,7 +127,7 @@ def _stop_plate(layout: Layout, arms: _Arms) -> Iterator[Finding]:
             seen[key] = layout.ledge - max(s.at(u)[1] for s in rest for u in (0.0, 0.5, 1.0))
         limit = layout.design.tolerance.arm_height
         if seen[key] <= limit:
-            yield _pressed(place, seen[key], limit, "the stop plate beside its land")
+            yield _pressed("stop-clearance", place, seen[key], limit, "the stop plate beside its land")
 
 
 def _beside(layout: Layout) -> Iterator[Finding]:
@@ -144,7 +144,7 @@ def _beside(layout: Layout) -> Iterator[Finding]:
                 what = "EP1" if place.y + step < place.y else "EP2"
             if gap <= limit + ROUNDING:
                 message = f"the arm stands {gap:.3f} mm beside {what}; tolerances of sheet and spacer take {limit:.3f} mm"
-                yield _fail(place, (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0), gap, limit, message)
+                yield _about("neighbour-clearance", place, (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0), gap, limit, message)
 
 
 def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
@@ -161,7 +161,7 @@ def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
                     for one in (0.0, arms.most(a)) for other in (0.0, arms.most(b))
                 )
             if seen[key] <= limit:
-                yield _pressed(a, seen[key], limit, f"the opposite arm of {b.designator}")
+                yield _pressed("opposite-clearance", a, seen[key], limit, f"the opposite arm of {b.designator}")
 
 
 def _leads(layout: Layout) -> Iterator[Finding]:
@@ -172,19 +172,19 @@ def _leads(layout: Layout) -> Iterator[Finding]:
     for place in layout.elements:
         if room < out - ROUNDING:
             message = f"gauge and leads stand {out:.3f} mm out, and the object comes within {room:.3f} mm of their face"
-            yield _fail(place, (place.hinge_x, 0.0), room, out, message)
+            yield _about("gauge-room", place, (place.hinge_x, 0.0), room, out, message)
         if fit < LEADS:
             message = (
                 f"{fit} leads of {LEAD:g} mm fit into its wire recess of {layout.design.array.pitch:g} x {e.recess_depth:g} mm, "
                 f"it has {LEADS}"
             )
-            yield _fail(place, (layout.recess_start, 0.0), fit, LEADS, message)
+            yield _about("lead-room", place, (layout.recess_start, 0.0), fit, LEADS, message)
 
 
-def _pressed(place: ElementPlace, value: float, limit: float, what: str) -> Finding:
+def _pressed(check: str, place: ElementPlace, value: float, limit: float, what: str) -> Finding:
     message = f"pressed as far as it goes the arm comes within {value:.3f} mm of {what}; tolerances take {limit:.3f} mm"
-    return _fail(place, (place.hinge_x - place.arm, 0.0), value, limit, message)
+    return _about(check, place, (place.hinge_x - place.arm, 0.0), value, limit, message)
 
 
-def _fail(place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str) -> Finding:
-    return Finding("clearance", "fail", place.designator, at, value, limit, message)
+def _about(check: str, place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str) -> Finding:
+    return Finding(check, "fail", place.designator, at, value, limit, message)

@@ -178,7 +178,11 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
-    """Axis and radius of the hole, and of its counterbore; a thread counts with its outside diameter."""
+    """Axis and radius of the hole, and of its counterbore; a thread counts with its outside diameter.
+
+    Walls are measured from the axis, with round ends: a blind hole's axis ends so that its round end reaches as
+    deep as the drill's point.
+    """
 
     def at(depth: float) -> Vector:
         return tuple(p + depth * a for p, a in zip(h.at, h.axis))
@@ -186,7 +190,8 @@ def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
     r = h.diameter / 2
     if h.thread:
         r = max(r, float(h.thread[1:]) / 2)
-    yield h, at(0.0), at(h.depth), r
+    point = drill_point_height(h.diameter) if h.drill_point else 0.0
+    yield h, at(0.0), at(h.depth if h.through else max(0.0, h.depth + point - r)), r
     if h.counterbore:
         yield h, at(0.0), at(h.counterbore[1]), h.counterbore[0] / 2
 

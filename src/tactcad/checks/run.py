@@ -27,6 +27,7 @@ from .moving_weight import check_moving_weight
 from .report import Report
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
+from .tools import check_tools
 from .wirecut import check_wirecut
 
 
@@ -69,6 +70,7 @@ def run_checks(
         if not all(part.part_no in shapes for part in scene.parts):
             continue
         report.run("interference", check_interference, scene, shapes, known)
+        report.run("tools", check_tools, scene, shapes)
         if scene.motions:
             _add_envelopes(scene.parts, shapes, envelopes)
             report.run("motion", check_motions, scene, shapes, envelopes)

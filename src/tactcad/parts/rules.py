@@ -29,6 +29,7 @@ from .library.screws import (
     DRILL_REACH,
     METRIC,
     SET_SCREW_LENGTHS,
+    SOCKET_WALL,
     TAP_REACH,
     counterbore_diameter,
     engagement,
@@ -368,14 +369,16 @@ def end_plate_takes_holes(layout: Layout) -> Iterator[Finding]:
     rear = layout.rear_end - max(layout.screw_x)
     if rear + c.end_plate_margin < around + web - SAME:
         yield ("clamp.end_plate_margin", "end plate ends in the screw heads", c.end_plate_margin, f"at least {around + web - rear:g} mm")
-    spots = [(x, around) for x in layout.screw_x] + [(x, float(c.dowel) / 2) for x in layout.dowel_x]
+    spots = [(x, around, True) for x in layout.screw_x] + [(x, float(c.dowel) / 2, False) for x in layout.dowel_x]
+    beside = SOCKET_WALL if rod else 0.0  # a socket goes over a nut beside the next one; dowels end flush
     between = LEAST_GAP if rod else HOLE_WEB
-    for (x0, r0), (x1, r1) in combinations(spots, 2):
-        if abs(x0 - x1) < r0 + r1 + between - SAME:
-            yield ("holes.screw_offsets", "screw heads too near each other or a dowel", abs(x0 - x1), f"at least {r0 + r1 + between:g} mm apart")
-    first = min(x - r for x, r in spots)
-    if first < LEAST_GAP:
-        yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {LEAST_GAP:g} mm from the middle line")
+    for (x0, r0, turned), (x1, r1, other) in combinations(spots, 2):
+        least = r0 + r1 + between + (beside if turned and other else 0.0)
+        if abs(x0 - x1) < least - SAME:
+            yield ("holes.screw_offsets", "screw heads or nuts too near each other or a dowel", abs(x0 - x1), f"at least {least:g} mm apart")
+    first, least = min(x - r for x, r, _ in spots), LEAST_GAP + beside / 2
+    if first < least - SAME:
+        yield ("holes.screw_offsets", "heads of both rows meet", first, f"at least {least:g} mm from the middle line")
     reach = DRILL_REACH * min(m.clearance if rod else m.tap_drill, float(c.dowel))
     if c.end_plate_thickness > reach + SAME:
         yield ("clamp.end_plate_thickness", "too thick for the drills of its holes", c.end_plate_thickness, f"at most {reach:g} mm")

@@ -26,6 +26,7 @@ class Builder:
         self._numbers: dict[str, int] = {}
         self._group: str | None = None
         self._stepped = 0
+        self._ready: set[str] = set()
 
     def group(self, name: str | None) -> None:
         """What is placed from here on moves with the group `name` (None: stands still)."""
@@ -62,15 +63,17 @@ class Builder:
                 tuple(sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
             )
             at = tuple(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
-            self._add(Placement(p.designator, p.part, _rounded(at), turned))
+            self._ready.add(self._add(Placement(p.designator, p.part, _rounded(at), turned)))
         self.contacts += scene.contacts
         self.supplies += scene.supplies
 
-    def step(self, title: str, explode: Vector, text: str, fan: bool = False) -> None:
-        """Close a step: it takes what was placed since the one before."""
+    def step(
+        self, title: str, explode: Vector, text: str, fan: bool = False, bench: bool = False, aside: tuple[str, ...] = ()
+    ) -> None:
+        """Close a step: it takes what was placed since the one before; a subassembly's parts are ready."""
         names = tuple(p.designator for p in self.placements[self._stepped:])
         self._stepped = len(self.placements)
-        self.steps.append(Step(title, names, explode, text, fan))
+        self.steps.append(Step(title, names, explode, text, fan, bench, aside, frozenset(self._ready & set(names))))
 
     def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:
         groups = tuple((group, frozenset(names)) for group, names in self.groups.items())

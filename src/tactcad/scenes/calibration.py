@@ -81,6 +81,7 @@ def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
             f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other end and fix the "
             "other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
+            aside=(high,),
         )
         below = high
     return below
@@ -107,6 +108,7 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
         "Array on its mount", (0, 0, 120),
         "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would close before the end "
         "of the travel) on the mount with its carrier down, and fix it by four screws from below. Leads leave along x, loose.",
+        bench=True,
     )
     for sx, sy in CORNERS:
         at = (dx + sx * STAGE_HOLE, dy + sy * STAGE_HOLE, z + UNDER)

@@ -141,6 +141,7 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
         f"Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the post's rows at "
         f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to the base plate: "
         "0.01 mm on the whole travel against a square.",
+        aside=(moving,),
     )
     b.group("axis")
     back = y - 2 * STAGE_PLATE
@@ -156,7 +157,10 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     b.meet(gauge_plate, gauge)
     for dz in bought.GAUGE_THREADS:
         b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
-    b.step("Force gauge", (0, -130, AXIS_LIFT), "On the bench: screw the force gauge on its plate from behind, heads sunk.")
+    b.step(
+        "Force gauge", (0, -130, AXIS_LIFT), "On the bench: screw the force gauge on its plate from behind, heads sunk.",
+        bench=True,
+    )
     b.meet(plate, gauge_plate)
     for sx, sy in CORNERS:
         at = (sx * stand.GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * stand.GAUGE_SCREW_Z)

@@ -39,8 +39,8 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     post = place_stand(b, rig, stages=False)
     rail = _guide(b, rig, post)
     lift = pose.height - pose.deflection
-    under, mass = trim(rig)
-    top = _moving(b, rig, rail, lift, under, mass)
+    thick, mass = trim(rig)
+    top = _moving(b, rig, rail, lift, thick, mass)
     b.group("axis")
     disc = bought.disc_weight(rig)
     z = top
@@ -112,8 +112,8 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
     return rail
 
 
-def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, under: float, ballast: float) -> float:
-    """All that moves with the array, with `ballast` g of ballast, about `under` mm thick; returns z of the surface
+def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ballast: float) -> float:
+    """All that moves with the array, with `ballast` g of ballast, about `thick` mm of it; returns z of the surface
     that the weights lie on."""
     design = rig.design
     b.group("axis")
@@ -128,7 +128,10 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, under: float, ba
     for sx in (-1, 1):
         at = (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, rig.bar_bottom + lift - carried.FOOT_UNDER_HEAD)
         b.screw("M4", 10.0, at, (0, 0, 1), foot, bar)
-    b.step("Foot and bar", (0, -140, 0), "On the bench: screw the foot under the bar, from below, square within 0.02 mm.")
+    b.step(
+        "Foot and bar", (0, -140, 0), "On the bench: screw the foot under the bar, from below, square within 0.02 mm.",
+        bench=True,
+    )
     b.subassembly(array(design), UPRIGHT, (0, 0, rig.array_z + lift))
     b.meet("CA1", foot)
     for x, y in carried.carrier_pattern(rig):
@@ -155,7 +158,7 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, under: float, ba
     for sx in (-1, 1):
         b.screw("M4", 10.0, (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, z - PLATFORM + under), (0, 0, -1), platform, bar)
     b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
-    pin = b.place("PN", carried.pin(rig, under), (0, 0, z))
+    pin = b.place("PN", carried.pin(rig, thick), (0, 0, z))
     b.meet(platform, pin)
     b.screw("M4", 10.0, (0, 0, z - under), (0, 0, 1), platform, pin)
     b.step("Pin", (0, 0, 280), "Screw the pin on the platform from below.")

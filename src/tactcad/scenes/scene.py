@@ -52,7 +52,8 @@ class Motion:
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
-    `fan` spreads the step's parts over the outer half of that way, in their order.
+    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from what
+    stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before.
     """
 
     title: str
@@ -60,6 +61,9 @@ class Step:
     explode: Vector
     text: str
     fan: bool = False
+    bench: bool = False
+    aside: tuple[str, ...] = ()
+    ready: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

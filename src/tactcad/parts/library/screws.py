@@ -68,6 +68,8 @@ ENGAGED = 1.5
 # Full thread in diameters, and drilled depth in diameters, that taps and drills reach (usual advice).
 TAP_REACH = 3.0
 DRILL_REACH = 10.0
+# A socket is wider than its nut's corners by twice its wall, mm; chosen: thin-walled 1/4 inch sockets.
+SOCKET_WALL = 1.25
 
 
 def engagement(thread: str) -> float:
