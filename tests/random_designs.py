@@ -36,7 +36,7 @@ def raw_table(number: int, row_lengths: tuple[int, ...], rigs: float) -> dict[st
     random = Random(number)
     values = sound_table(random.randrange(2**48), row_lengths, rigs=random.random() < rigs)
     if random.random() < 0.5:
-        _redraw(values, random)
+        redraw(values, random)
     tree = as_table(values)
     name = "".join(random.choice("abcdefghijklmnopqrstuvwxyz0123456789-") for _ in range(random.randint(1, 38)))
     tree["design"] |= {
@@ -48,7 +48,7 @@ def raw_table(number: int, row_lengths: tuple[int, ...], rigs: float) -> dict[st
     return tree
 
 
-def _redraw(values: dict[str, Any], random: Random) -> None:
+def redraw(values: dict[str, Any], random: Random) -> None:
     """One to three fields anywhere in their ranges."""
     again = Draw(random.randrange(2**48), ends=5)
     for path in random.sample(sorted(values), random.randint(1, 3)):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import ceil, cos, pi
 
-from sound_designs import DRILL_REACH, WALL, Draw, as_table
+from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table
 
 from tactcad.design.load import from_table
 from tactcad.parts.library.bearings import BEARINGS
@@ -60,6 +60,9 @@ def _cart(d: Draw) -> None:
     lid = d.number("holder.lid_thickness", M3.head_height + 2, min(DRILL_REACH * hole, 28.0 - plenum - floor))
     body = plenum + floor + lid - M3.head_height
     fixing = min(n for n in CAP_SCREW_LENGTHS["M3"] if n - body >= 4.5)
+    longer = max(0.0, fixing - body - TAP_REACH * 3)  # the next screw would reach deeper than a tap
+    d.put("holder.lid_thickness", round(lid + longer, 6))
+    body += longer
 
     # cart plate: axles inside it, holder's screws beside them
     z, around = bearing.D / 2, axle.clearance / 2 + WALL

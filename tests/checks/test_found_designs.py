@@ -82,3 +82,12 @@ def test_the_derived_set_screw_leaves_the_stop_plate_its_gap():
     for thickness in (3.0, 4.0, 5.0, 6.0, 6.001, 6.04, 6.1, 7.0):
         layout = Layout(variant({**TWO, "clamp.stop_plate_thickness": thickness}))
         assert layout.hold_down.reach >= 0.1
+
+
+def test_set_screws_stand_in_mirrored_places_to_the_last_digit():
+    """Two rows' places, rounded to a micrometre's thousandth, once differed in that digit: one hole counted as two."""
+    for pitch in (29.917, 7.001, 5.123, 13.77777):
+        for apart in (5.0, 6.321, 13.151, 17.0):
+            changes = {"array.row_arms": [[4.0] * 8] * 2, "array.pitch": pitch, "clamp.hold_down_pitch": apart}
+            y = Layout(variant(changes)).hold_down_y
+            assert y == tuple(-v for v in reversed(y))

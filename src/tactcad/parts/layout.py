@@ -273,7 +273,8 @@ class Layout:
         count = 2
         while span / (count - 1) > self.design.clamp.hold_down_pitch:
             count += 1
-        return tuple(round(-span / 2 + span * i / (count - 1), 6) for i in range(count))
+        # by whole numbers that mirror each other, so that the rounded places do too
+        return tuple(round(span * i / (2 * (count - 1)), 6) for i in range(1 - count, count, 2))
 
     @property
     def mount_x(self) -> float:
