@@ -46,6 +46,7 @@ PASSES = {
     ),
     "an arm too low for the estimator, pressed in calibration": ({"element.hinge_length": 9.0, "array.row_arms": [[12.0]]}, "calibration"),
     "holder's screws 8.8 mm in the cart plate, whose thread ended at 7.5": ({"holder.floor": 5.2}, "sample-stiffness"),
+    "holder's screws in a cart plate thicker than a drill reaches": ({"cart.thickness": 40.0}, "sample-stiffness"),
     "clamping screws 13 mm in a plate of 20 mm, whose thread ends at 9": ({"clamp.end_plate_thickness": 20.0}, "array"),
     "pads no deeper in the sample than their root fillets": ({"sample.travel": 1.8}, "grasping"),
 }  # fmt: skip
