@@ -12,6 +12,7 @@ from math import hypot, pi, tan
 from tactcad.mechanics.rigs import holding_force, tipping_margin
 
 from ..broken import Broken
+from ..deflected import deflection_at_pad_edge
 from ..layout import HOLE_WEB, Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
@@ -241,6 +242,22 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
         yield ("calibration.roller", "roller touches the facing pad", size, "a thinner one")
 
 
+def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
+    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
+    c = layout.design.calibration
+    if c is None:
+        return
+    roller = dowel_diameter(c.roller) / 2
+    for load in calibration_loads(layout.design):
+        most = deflection_at_pad_edge(layout, load.place, roller)
+        deflection = c.travel if load.refused else load.deflection
+        if deflection > most:
+            yield (
+                "calibration.travel", f"the pad of element {load.place.number} swings out from under the roller", c.travel,
+                f"at most {c.travel * most / deflection:.4g} mm",
+            )
+
+
 def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     rig, g = RigLayout(layout.design), layout.design.grasping
     if g is None or not rig.has_cart:
@@ -356,6 +373,7 @@ RIG_RULES: dict[str, Rule] = {
 FITS: dict[str, tuple[Rule, ...]] = {
     "calibration": (
         stages_reach_pads, mount_clears_carrier, carrier_screws_fit, mount_holes_apart, roller_clears_neighbours,
+        roller_stays_on_pad,
     ),
     "grasping": (
         pads_on_sample, carrier_screws_fit, bar_clears_screws, foot_holes_apart, rail_is_long_enough,
