@@ -93,7 +93,7 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
     else:
         # meshed once a prototype: placed copies share it
         with making("mesh", f"picture of {len(shapes)} shapes"):
-            BRepMesh_IncrementalMesh(_compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
+            BRepMesh_IncrementalMesh(compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
         sharp, smooth = draw_in_windows(
             _boxes(shapes, view), lambda some: _on_triangles([shapes[i] for i in some], projector)
         )
@@ -117,7 +117,7 @@ def _boxes(shapes: Sequence[TopoDS_Shape], view: View) -> np.ndarray:
 def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
     """Exact hidden-line removal of the placed shapes, as one compound."""
     algorithm = HLRBRep_Algo()
-    algorithm.Add(_compound(shapes))
+    algorithm.Add(compound(shapes))
     algorithm.Projector(projector)
     algorithm.Update()
     algorithm.Hide()
@@ -126,7 +126,7 @@ def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBR
 
 def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
     algorithm = HLRBRep_PolyAlgo()
-    algorithm.Load(_compound(shapes))
+    algorithm.Load(compound(shapes))
     algorithm.Projector(projector)
     algorithm.Update()
     result = HLRBRep_PolyHLRToShape()
@@ -139,7 +139,7 @@ def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
     return sharp, polylines(result.Rg1LineVCompound())
 
 
-def _compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
+def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
     """All shapes as one: added one by one they are hidden pair by pair, with the same lines for the result."""
     builder, whole = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(whole)

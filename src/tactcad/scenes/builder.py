@@ -27,10 +27,16 @@ class Builder:
         self._group: str | None = None
         self._stepped = 0
         self._ready: set[str] = set()
+        self._scenes: list[Scene] = []
+        self._unit = ""
 
     def group(self, name: str | None) -> None:
         """What is placed from here on moves with the group `name` (None: stands still)."""
         self._group = name
+
+    def unit(self, name: str) -> None:
+        """Steps from here on belong to the sub-assembly `name`."""
+        self._unit = name
 
     def name(self, prefix: str) -> str:
         """The next designator with that prefix."""
@@ -64,6 +70,7 @@ class Builder:
             )
             at = tuple(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
             self._ready.add(self._add(Placement(p.designator, p.part, _rounded(at), turned)))
+        self._scenes.append(scene)
         self.contacts += scene.contacts
         self.supplies += scene.supplies
 
@@ -73,13 +80,13 @@ class Builder:
         """Close a step: it takes what was placed since the one before; a subassembly's parts are ready."""
         names = tuple(p.designator for p in self.placements[self._stepped:])
         self._stepped = len(self.placements)
-        self.steps.append(Step(title, names, explode, text, fan, bench, aside, frozenset(self._ready & set(names))))
+        self.steps.append(Step(title, names, explode, text, fan, bench, aside, frozenset(self._ready & set(names)), self._unit))
 
     def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:
         groups = tuple((group, frozenset(names)) for group, names in self.groups.items())
         return Scene(
             name, tuple(self.placements), tuple(self.contacts), tuple(self.supplies), frozenset(cover), groups,
-            tuple(motions), tuple(self.steps),
+            tuple(motions), tuple(self.steps), tuple(self._scenes),
         )
 
 

@@ -58,6 +58,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 
 def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
+    b.unit("stages")
     c = rig.design.calibration
     fixed, moving = bought.stage_fixed(c.stage_travel), bought.stage_moving(c.stage_travel)
     head = bought.micrometer(c.stage_travel, 0.01)
@@ -91,6 +92,7 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
     """The array on its mount, pads up, on the upper stage."""
     z = 4 * STAGE_PLATE
     b.group("stage-y")
+    b.unit("array on its mount")
     mount = b.place("AM", carried.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness

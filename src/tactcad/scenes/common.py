@@ -29,6 +29,7 @@ THREAD, LENGTH, UNDER = PLATE_SCREW
 
 def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
     """Base plate (STAND) and post; returns the post's designator."""
+    b.unit("stand")
     base = b.place("BP", stand.base_plate(rig, stages), (0, 0, -BASE[1]))
     post = b.place("PO", stand.post(rig), (0, rig.post_y, 0), ALONG_Y)
     b.meet(base, post)
@@ -48,6 +49,7 @@ def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
 def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float = 0.0) -> str:
     """Cart for the base plate, with holder and sample; returns the sample's designator."""
     b.group("cart")
+    b.unit("cart with holder and sample")
     c, bear = rig.cart, rig.bearing
     plate = b.place("CT", cart.cart_plate(rig), (roll, 0, c.clearance))
     shim, wheel = cart.axle_shim(rig), bearing(c.bearing)
@@ -121,6 +123,7 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
 
 def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height: float, roller: bool) -> str:
     """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's) designator."""
+    b.unit("force axis")
     travel = rig.design.calibration.axis_travel
     resolution = rig.design.calibration.micrometer_resolution
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height

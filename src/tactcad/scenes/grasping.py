@@ -117,6 +117,7 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
     that the weights lie on."""
     design = rig.design
     b.group("axis")
+    b.unit("vertical axis")
     front = BAR_FRONT + BAR
     zc = rig.carriage_middle + lift
     carriage = b.place("CG", bought.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
@@ -151,6 +152,7 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
         "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under any pad; the "
         f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, shim under the foot.",
     )
+    b.unit("platform with weights")
     under = carried.PLATFORM_UNDER_HEAD
     z = rig.platform_top + lift
     platform = b.place("PF", carried.platform(rig), (0, 0, z - PLATFORM))

@@ -17,7 +17,7 @@ from .ink import Sheet, preliminary
 from .layout import layout_faults
 from .numbered import numbered_pages
 from .page import Page
-from .paper import A3, A3_UPRIGHT, A4, frame
+from .paper import A3, A4, frame
 from .title import HEIGHT, WIDTH, TitleBlock, title_block
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def assembly_sheets(
     numbered, listed = numbered_pages(scene, rows, shapes, list_, block)
     pages = [arranged, *numbered]
     if not listed:
-        pages += _list_pages(list_ or parts_list.laid(rows, parts_list.SIZES[-1]))
+        pages += _list_pages(parts_list.laid(rows, parts_list.SIZES[0]))
     sheets = [_sheet(block, page, n + 1, len(pages)) for n, page in enumerate(pages)]
     for sheet in sheets:
         wrong = layout_faults(sheet)
@@ -68,11 +68,16 @@ def _fits_beside(list_: parts_list.Laid) -> bool:
 
 
 def _list_pages(list_: parts_list.Laid) -> list[Page]:
-    """On A4 where one page is enough, else on upright A3."""
-    room = {paper: paper.area[3] - paper.area[1] - HEIGHT for paper in (A4, A3_UPRIGHT)}
-    paper = next((p for p in room if len(parts_list.pages(list_, room[p])) == 1), A3_UPRIGHT)
-    at = (paper.area[2] - WIDTH, paper.area[3])
-    return [
-        Page(paper, "", tuple(parts_list.drawn(list_, rows, at)[0]), "Parts list")
-        for rows in parts_list.pages(list_, room[paper])
-    ]
+    """On one A4 sheet where that is enough; else on A3 in two columns, the right one over the title block."""
+    for paper, lefts in ((A4, [A4.area[2] - WIDTH]), (A3, [A3.area[0], A3.area[2] - WIDTH])):
+        high = paper.area[3] - paper.area[1]
+        columns = parts_list.columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])
+        if len(columns) == 1:
+            break
+    found = []
+    for n in range(0, len(columns), len(lefts)):
+        items = [
+            item for x, rows in zip(lefts, columns[n : n + len(lefts)]) for item in parts_list.drawn(list_, rows, (x, paper.area[3]))[0]
+        ]
+        found.append(Page(paper, "", tuple(items), "Parts list"))
+    return found

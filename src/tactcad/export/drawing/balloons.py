@@ -35,9 +35,10 @@ FORBIDDEN = 1e6
 
 @dataclass(frozen=True)
 class Balloon:
-    """An item number, the middle of its circle, and the point of the item that its leader ends at; mm of paper."""
+    """An item number, or the letter of a sub-assembly's own view; the middle of its circle, and the point where its leader ends;
+    mm of paper."""
 
-    item: int
+    item: int | str
     centre: Point
     tip: Point
 
@@ -54,8 +55,8 @@ def height(number: str) -> float:
     return TEXT if len(number) < 3 else SMALLER
 
 
-def place(own: Mapping[int, Sequence[Polyline]], lines: Sequence[Polyline], area: Box) -> list[Balloon] | None:
-    """A balloon for each item, by item number; None where they find no place.
+def place(own: Mapping[int | str, Sequence[Polyline]], lines: Sequence[Polyline], area: Box) -> list[Balloon] | None:
+    """A balloon for each item, in their order; None where they find no place.
 
     own    the visible lines of each item (mm of paper)
     lines  every line that a balloon must keep clear of
@@ -96,7 +97,7 @@ def _places(lines: Sequence[Polyline], area: Box) -> list[Point]:
     return found
 
 
-def _tips(some: Sequence[Polyline], own: Mapping[int, Sequence[Polyline]], item: int) -> list[Point]:
+def _tips(some: Sequence[Polyline], own: Mapping[int | str, Sequence[Polyline]], item: int | str) -> list[Point]:
     """Middles of the item's visible lines, the longest first; lines that are another item's too come last."""
     others = {tuple(line) for other, theirs in own.items() if other != item for line in theirs}
     ranked = sorted(some, key=lambda line: (tuple(line) in others, -_length(line), tuple(line)))
@@ -125,7 +126,7 @@ def _lengths(places: np.ndarray, tips: np.ndarray) -> np.ndarray:
 
 
 def _without_faults(
-    items: Sequence[int], lengths: Sequence[np.ndarray], tips: Sequence[Sequence[Point]], places: Sequence[Point]
+    items: Sequence[int | str], lengths: Sequence[np.ndarray], tips: Sequence[Sequence[Point]], places: Sequence[Point]
 ) -> list[Balloon] | None:
     """The shortest solution that has no faults; of two leaders that disturb each other the longer may not be used again."""
     from scipy.optimize import linear_sum_assignment
@@ -139,7 +140,7 @@ def _without_faults(
         balloons = [Balloon(items[i], places[k], tips[i][t]) for i, k, t in zip(rows, columns, used)]
         wrong = faults(balloons)
         if not wrong:
-            return sorted(balloons, key=lambda b: b.item)
+            return balloons
         for worse in {max(pair, key=lambda n: cost[rows[n], columns[n]]) for pair in wrong}:
             i, k = rows[worse], columns[worse]
             lengths[i][k, used[worse]] = FORBIDDEN

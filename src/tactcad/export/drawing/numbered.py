@@ -1,46 +1,47 @@
-"""Views of a scene's parts with their item numbers: exploded, or side by side."""
+"""Views of a scene's parts with their item numbers: exploded, whole or sub-assembly by sub-assembly; or side by side."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.export.bom import BomRow
 from tactcad.export.guide import exploded
-from tactcad.export.windows import Polyline
 from tactcad.scenes.scene import Placement, Scene
 
-from . import balloons, family, parts_list
-from .ink import Item, Stroke, Text
-from .page import EDGE, MARGIN, Page, edges, fewer
-from .paper import A3, A3_UPRIGHT, Paper
-from .scale import ASSEMBLIES, SERIES, factor, shown
-from .title import HEIGHT, WIDTH, TitleBlock
+from . import family, parts_list
+from .apart import Piece, pieces_of, pulled_apart
+from .exploded import (
+    Exploded,
+    alike,
+    exploded_page,
+    exploded_view,
+    length,
+    lengths_alone,
+    room,
+    seen_of_pieces,
+)
+from .ink import Stroke, Text
+from .joints import box_of
+from .page import EDGE, MARGIN, Page, fewer
+from .paper import A3
+from .scale import ASSEMBLIES, factor, shown
+from .title import TitleBlock
+from .units import UnitView, unit_views
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from tactcad.export.picture import View
-
-RIM = 2 * balloons.RADIUS + 8.0  # around an exploded view, for its balloons
-MOST_NUMBERED = 45  # items in one view; more would not find places around it
+GAP = 0.06  # least distance in an exploded view, of the largest extent of what it takes apart
+GAP_OF_UNITS = 0.2  # and where all of it are sub-assemblies
+SEEN = 0.5  # a part counts as seen where this share of its edges is
+WELL = 0.8  # leaders go to parts that are seen nearly as well as the best one like it
+FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance for what is not seen
 
 Box = tuple[float, float, float, float]
-
-
-@dataclass(frozen=True)
-class Exploded:
-    """An exploded view: visible lines (mm, picture plane) of every placement drawn, and the items that it numbers."""
-
-    own: dict[int, list[Polyline]]
-    lines: tuple[Polyline, ...]
-
-    @property
-    def box(self) -> Box:
-        xs, ys = zip(*(p for line in self.lines for p in line))
-        return (min(xs), min(ys), max(xs), max(ys))
 
 
 def numbered_pages(
@@ -48,25 +49,98 @@ def numbered_pages(
 ) -> tuple[list[Page], bool]:
     """Views until every item that has a solid has its number in one, and whether the parts list stands beside one.
 
-    The first is exploded and shows all parts, each further one those that none before it has numbered. Where an exploded
-    view would be too large or too crowded the parts stand side by side instead.
+    A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show follows in
+    further views, and where an exploded view would be too large or too crowded the parts stand side by side.
     """
     from tactcad.export.picture import ABOVE
 
     item = {row.part_no: row.item for row in rows if row.has_solid}
-    left = exploded(scene) if scene.steps else scene.placements
     pages: list[Page] = []
+    where: dict[int, str] = {}  # item -> the view that numbers it
     listed = False
-    while left:
-        view = _exploded_view(fewer(left), item, shapes, ABOVE)
-        label = f"{chr(ord('A') + len(pages))}: {'what the views before it do not number' if pages else 'exploded'}"
-        made = _exploded_page(view, label, None if listed else list_) if view.own else None
-        if made is None:
+
+    def add(view: Exploded, title: str, further: Sequence[str], letters: Sequence[str], small: bool) -> bool:
+        """A page for the view, where it finds room: it numbers what none before it does."""
+        nonlocal listed
+        fresh = view.labelled(lambda label: label in letters or label not in where)
+        letter = title.partition(":")[0]
+        made = exploded_page(fresh, (title, *further, *_elsewhere(view, where)), None if listed else list_, small) if fresh.own else None
+        if made:
+            pages.append(made[0])
+            listed = listed or made[1]
+            where.update({label: letter for label in fresh.own if isinstance(label, int)})
+        return made is not None
+
+    views = unit_views(scene)
+    titles = {view.letter: view.title for view in views}
+    for unit in views:
+        letters = [piece.letter for piece in unit.pieces if piece.letter]
+        add(_taken_apart(unit, item, shapes), f"{unit.letter}: {unit.title}, exploded", [f"{n}: {titles[n]}" for n in letters], letters, True)
+    left = scene.placements if views or not scene.steps else exploded(scene)
+    letter = len(views)
+    while left := tuple(p for p in left if item[p.part.part_no] not in where):
+        pieces = pieces_of(scene, fewer(left)) if views else [Piece((p,)) for p in fewer(left)]
+        if views:
+            pieces = pulled_apart(scene, pieces, GAP * _extent(pieces), {})
+        view = exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
+        title = f"{ascii_uppercase[letter]}: {'what the views before it do not number' if pages else 'exploded'}"
+        if not add(view, title, (), (), bool(pages)):
             return pages + _family_pages(left, item, shapes, block), listed
-        pages.append(made[0])
-        listed = listed or made[1]
-        left = tuple(p for p in left if item[p.part.part_no] not in view.own)
+        letter += 1
     return pages, listed
+
+
+def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
+    """Which items of the view have their numbers in one before it."""
+    items = [label for label in view.own if label in where]
+    return [f"Also here: {', '.join(f'{n} (see {where[n]})' for n in items)}"] if items else []
+
+
+def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
+    """The unit exploded; what is hardly seen is pulled out farther, as long as that shows more."""
+    from tactcad.export.picture import ABOVE
+
+    if not unit.pieces:
+        pieces = [Piece((p,)) for p in fewer(exploded(unit.scene))]
+        return exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
+    pieces = _fewer_pieces(unit.pieces)
+    gap = (GAP_OF_UNITS if all(piece.letter for piece in pieces) else GAP) * _extent(pieces)
+    alone = lengths_alone(pieces, shapes, ABOVE)
+    more: dict[int, float] = {}
+    tried = []
+    for farther in FARTHER:
+        moved = pulled_apart(unit.scene, pieces, gap, more)
+        seen = seen_of_pieces(moved, shapes, ABOVE)
+        shares = [length(some) / whole for some, whole in zip(seen, alone)]
+        hidden = [n for n, best in enumerate(_best_of_alike(pieces, shares)) if best < SEEN]
+        tried.append((len(hidden), moved, seen, shares))
+        if not hidden:
+            break
+        more.update({n: farther * gap for n in hidden})
+    _, moved, seen, shares = min(tried, key=lambda one: one[0])
+    well = {n for n, best in enumerate(_best_of_alike(pieces, shares)) if shares[n] >= WELL * best}
+    return exploded_view(moved, seen, item, well)
+
+
+def _best_of_alike(pieces: Sequence[Piece], shares: Sequence[float]) -> list[float]:
+    """For each piece the largest share that is seen of one like it."""
+    best: dict[tuple, float] = {}
+    for piece, share in zip(pieces, shares):
+        best[alike(piece)] = max(best.get(alike(piece), 0.0), share)
+    return [best[alike(piece)] for piece in pieces]
+
+
+def _fewer_pieces(pieces: Sequence[Piece]) -> list[Piece]:
+    """Without the parts that are left out where there are very many."""
+    kept = {p.designator for p in fewer([p for piece in pieces for p in piece.placements])}
+    thinned = [replace(piece, placements=tuple(p for p in piece.placements if p.designator in kept)) for piece in pieces]
+    return [piece for piece in thinned if piece.placements]
+
+
+def _extent(pieces: Sequence[Piece]) -> float:
+    """The largest of length, width and height of all, mm."""
+    boxes = [box_of(p) for piece in pieces for p in piece.placements]
+    return max(float(max(b[1, k] for b in boxes) - min(b[0, k] for b in boxes)) for k in range(3))
 
 
 def _family_pages(
@@ -80,7 +154,7 @@ def _family_pages(
     own = {
         n: drawing([placed_shape(shapes[p.part.part_no], p.origin, p.rotation)], ABOVE).sharp for n, p in sorted(first.items())
     }
-    x0, y0, x1, y1 = (v + m for v, m in zip(_room(A3, False), (MARGIN, MARGIN, -MARGIN, -MARGIN - 8.0)))
+    x0, y0, x1, y1 = (v + m for v, m in zip(room(A3, False), (MARGIN, MARGIN, -MARGIN, -MARGIN - 8.0)))
     laid = [(scale, made) for scale in ASSEMBLIES if (made := family.pages(own, factor(scale), (x0, y0, x1, y1)))]
     if not laid:
         raise CheckFailure(f"drawings: {block.number}: a part does not fit A3 at {shown(ASSEMBLIES[-1])}; no drawing was written")
@@ -90,54 +164,3 @@ def _family_pages(
         Page(A3, shown(scale), (title, *(Stroke(line, EDGE) for s in page for line in s.lines), *family.drawn(page)), "Assembly drawing")
         for page in made
     ]
-
-
-def _exploded_view(
-    placements: Sequence[Placement], item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape], eye: View
-) -> Exploded:
-    from tactcad.solids.place import placed_shape
-
-    from .assembly_lines import seen_of_each
-
-    lines = seen_of_each([placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in placements], eye)
-    own: dict[int, list[Polyline]] = {}
-    for p, some in zip(placements, lines):
-        if some:
-            own.setdefault(item[p.part.part_no], []).extend(some)
-    numbered = dict(sorted(own.items())[:MOST_NUMBERED])
-    return Exploded(numbered, tuple(sorted({line for some in lines for line in some})))
-
-
-def _exploded_page(view: Exploded, label: str, list_: parts_list.Laid | None) -> tuple[Page, bool] | None:
-    """The view at the largest scale at which its balloons find places, and whether the parts list stands beside it, which
-    it does where that costs no scale. None where the balloons find no place."""
-    bx0, by0, bx1, by1 = view.box
-    choices = [(A3, True), (A3, False), (A3_UPRIGHT, False)] if list_ else [(A3, False), (A3_UPRIGHT, False)]
-    for scale in SERIES:
-        f = factor(scale)
-        for paper, with_list in choices:
-            area = _room(paper, with_list)
-            if (bx1 - bx0) * f + 2 * RIM > area[2] - area[0] or (by1 - by0) * f + 2 * RIM > area[3] - area[1]:
-                continue
-            shift = ((area[0] + area[2] - (bx0 + bx1) * f) / 2, (area[1] + area[3] - (by0 + by1) * f) / 2)
-            drawn = edges(view.lines, f, shift)
-            own = {n: [e.points for e in edges(lines, f, shift)] for n, lines in view.own.items()}
-            found = balloons.place(own, [e.points for e in drawn], area)
-            if not found:
-                continue
-            items: list[Item] = [*drawn, *balloons.drawn(found)]
-            items.append(Text((area[0] + MARGIN, area[3] - MARGIN - 3.5), label, 3.5))
-            if with_list:
-                items += parts_list.drawn(list_, range(len(list_.cells)), (paper.area[2] - WIDTH, paper.area[3]))[0]
-            kind = "Assembly drawing, parts list" if with_list else "Assembly drawing"
-            return Page(paper, shown(scale), tuple(items), kind), with_list
-    return None
-
-
-def _room(paper: Paper, with_list: bool) -> Box:
-    """Where an exploded view may stand: left of the list, else left of or over the title block, whichever is larger."""
-    x0, y0, x1, y1 = paper.area
-    beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
-    if with_list or (beside[2] - beside[0]) * (beside[3] - beside[1]) > (over[2] - over[0]) * (over[3] - over[1]):
-        return beside
-    return over

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 
 from tactcad.export.bom import BomRow
 
@@ -71,13 +72,14 @@ def heading(size: float) -> float:
     return 2.4 * size
 
 
-def pages(list_: Laid, room: float) -> list[range]:
-    """The rows of each page, where a page leaves `room` mm."""
-    found, start, left = [], 0, room - heading(list_.size)
+def columns(list_: Laid, rooms: Sequence[float]) -> list[range]:
+    """The rows of each column of the list, which have `rooms` mm in turn."""
+    turns = cycle(rooms)
+    found, start, left = [], 0, next(turns) - heading(list_.size)
     for n in range(len(list_.cells)):
         if list_.height(n) > left:
             found.append(range(start, n))
-            start, left = n, room - heading(list_.size)
+            start, left = n, next(turns) - heading(list_.size)
         left -= list_.height(n)
     return [*found, range(start, len(list_.cells))]
 
