@@ -26,6 +26,9 @@ REFUSED = {
     "a tip pressed through a thin sample": ("tip_land_clears_sample", {"sample.thickness": 0.4}),
     "the axle's bore 0.26 mm from the holder's thread": ("axles_fit_plate", {"cart.wheel_base": 47.2}),
     "a calibration that bends a stiff, weak hinge beyond yield": ("calibration_bends_elastically", {"calibration.travel": 0.4}),
+    "a wire recess that parts the ledge from the rear body": (
+        "recess_fits_rear", {"element.recess_offset": 0.0, "element.recess_depth": 3.2},
+    ),
     "the hose fitting on the cart plate": ("port_clears_cart", {"holder.floor": 1.0}),
 }  # fmt: skip
 

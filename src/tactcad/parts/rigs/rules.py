@@ -203,6 +203,22 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
             )
 
 
+def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
+    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    roller = dowel_diameter(c.roller) / 2
+    for load in calibration_loads(layout.design):
+        most = deflection_at_pad_edge(layout, load.place, roller)
+        deflection = c.travel if load.refused else load.deflection
+        if deflection > most:
+            yield (
+                "calibration.travel", f"the pad of element {load.place.number} swings out from under the roller", c.travel,
+                f"at most {c.travel * most / deflection:.4g} mm",
+            )
+
+
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.calibration is None:
@@ -240,22 +256,6 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
         yield ("calibration.travel", "the roller's holder would come down on the neighbouring pads", d.calibration.travel, f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}")
     if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
         yield ("calibration.roller", "roller touches the facing pad", size, "a thinner one")
-
-
-def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
-    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
-    c = layout.design.calibration
-    if c is None:
-        return
-    roller = dowel_diameter(c.roller) / 2
-    for load in calibration_loads(layout.design):
-        most = deflection_at_pad_edge(layout, load.place, roller)
-        deflection = c.travel if load.refused else load.deflection
-        if deflection > most:
-            yield (
-                "calibration.travel", f"the pad of element {load.place.number} swings out from under the roller", c.travel,
-                f"at most {c.travel * most / deflection:.4g} mm",
-            )
 
 
 def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
@@ -366,6 +366,7 @@ RIG_RULES: dict[str, Rule] = {
         tip_land_clears_sample,
         axis_reaches_contact,
         calibration_bends_elastically,
+        roller_stays_on_pad,
         weights_clear_guide,
     )
 }
@@ -373,7 +374,6 @@ RIG_RULES: dict[str, Rule] = {
 FITS: dict[str, tuple[Rule, ...]] = {
     "calibration": (
         stages_reach_pads, mount_clears_carrier, carrier_screws_fit, mount_holes_apart, roller_clears_neighbours,
-        roller_stays_on_pad,
     ),
     "grasping": (
         pads_on_sample, carrier_screws_fit, bar_clears_screws, foot_holes_apart, rail_is_long_enough,
