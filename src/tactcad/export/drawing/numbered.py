@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from string import ascii_uppercase
@@ -12,7 +13,7 @@ from tactcad.export.bom import BomRow
 from tactcad.export.guide import exploded
 from tactcad.scenes.scene import Placement, Scene
 
-from . import family, parts_list
+from . import balloons, family, parts_list
 from .apart import Piece, pieces_of, pulled_apart
 from .exploded import (
     Exploded,
@@ -24,11 +25,11 @@ from .exploded import (
     room,
     seen_of_pieces,
 )
-from .ink import Stroke, Text
+from .ink import Item, Stroke, Text
 from .joints import box_of
 from .page import EDGE, MARGIN, Page, fewer
 from .paper import A3
-from .scale import ASSEMBLIES, factor, shown
+from .scale import ASSEMBLIES, shown
 from .title import TitleBlock
 from .units import UnitView, unit_views
 
@@ -146,7 +147,7 @@ def _extent(pieces: Sequence[Piece]) -> float:
 def _family_pages(
     left: Sequence[Placement], item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape], block: TitleBlock
 ) -> list[Page]:
-    """One of each part, at the largest scale at which they fit one page, or else the smallest at which the largest part does."""
+    """One of each part; the title block has the commonest scale of a page, parts at others say so."""
     from tactcad.export.picture import ABOVE, drawing
     from tactcad.solids.place import placed_shape
 
@@ -155,12 +156,15 @@ def _family_pages(
         n: drawing([placed_shape(shapes[p.part.part_no], p.origin, p.rotation)], ABOVE).sharp for n, p in sorted(first.items())
     }
     x0, y0, x1, y1 = (v + m for v, m in zip(room(A3, False), (MARGIN, MARGIN, -MARGIN, -MARGIN - 8.0)))
-    laid = [(scale, made) for scale in ASSEMBLIES if (made := family.pages(own, factor(scale), (x0, y0, x1, y1)))]
-    if not laid:
+    made = family.pages(own, (x0, y0, x1, y1))
+    if not made:
         raise CheckFailure(f"drawings: {block.number}: a part does not fit A3 at {shown(ASSEMBLIES[-1])}; no drawing was written")
-    scale, made = next((pair for pair in laid if len(pair[1]) == 1), laid[-1])
-    title = Text((x0, y1 + 3.0), "One of each part, in the order of item numbers", 3.5)
-    return [
-        Page(A3, shown(scale), (title, *(Stroke(line, EDGE) for s in page for line in s.lines), *family.drawn(page)), "Assembly drawing")
-        for page in made
-    ]
+    title = Text((x0, y1 + 3.0), "One of each part, in the order of item numbers; scales that differ from the title block's stand below", 3.5)
+    found = []
+    for page in made:
+        main = Counter(part.scale for part in page).most_common(1)[0][0]
+        items: list[Item] = [title, *(Stroke(line, EDGE) for part in page for line in part.lines)]
+        items += balloons.drawn([part.balloon for part in page])
+        items += [Text(part.below, shown(part.scale), 2.5, "middle") for part in page if part.scale != main]
+        found.append(Page(A3, shown(main), tuple(items), "Assembly drawing"))
+    return found
