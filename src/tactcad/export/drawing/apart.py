@@ -151,8 +151,12 @@ def _overlapping(pieces: Sequence[Piece], boxes: Mapping[str, Box], shifts: np.n
 def _sorted_out(
     a: Placement, b: Placement, boxes: Mapping[str, Box], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
-    """Which of two parts is the lower one and along which axis: as they are assembled, where one lies beyond the other; else
-    the later one goes on along its own axis, the way that it came off."""
+    """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as they are assembled,
+    where one lies beyond the other; else the later one goes on along its own axis, the way that it came off."""
+    ends = owner[a.designator], owner[b.designator]
+    for j in joints:
+        if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):
+            return (a, b, j.axis) if owner[j.lower] == ends[0] else (b, a, j.axis)
     p, q = boxes[a.designator], boxes[b.designator]
     beyond = np.maximum(q[0] - p[1], p[0] - q[1])
     if beyond.max() >= -TOUCH:
