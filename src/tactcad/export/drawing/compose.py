@@ -267,8 +267,9 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
 
 
 def _mark_section(board: Board, view: View, front: _Drawn, place: Point) -> bool:
-    x = seen(front.view, (view.section.at, 0.0, 0.0))[0] * factor(front.scale) + place[0]
-    return mark_plane(board, view.section, x, _shifted(_view_box(front), place))
+    f = factor(front.scale)
+    x = seen(front.view, (view.section.at, 0.0, 0.0))[0] * f + place[0]
+    return mark_plane(board, view.section, x, _shifted(tuple(v * f for v in front.view.box), place))
 
 
 def _scaled(curve: Curve, f: float) -> Curve:

@@ -13,9 +13,9 @@ from .plan import Bore, Box, Section
 
 LETTER = 3.5  # height of the letters: a size above that of the dimensions (ISO 128-3)
 PAST = 2.0  # of an axis beyond its hole
-OFF = 1.0  # from the outline to a cutting plane's thick ends
+OFF = 1.5  # from the outline to a cutting plane's thick ends
 HEAD = 3.5  # length of the arrows' heads
-OUT = (5.5, 5.0, 6.0, 7.0, 8.5, 10.0, 12.0, 16.0)  # from the outline to the arrows
+OUT = (6.5, 6.0, 7.0, 8.0, 9.5, 11.0, 13.0, 17.0)  # from the outline to the arrows
 TAILS = (6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0)  # lengths of the arrows
 
 
