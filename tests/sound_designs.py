@@ -294,7 +294,8 @@ def _clamp(d: Draw) -> None:
     offset = d.number("clamp.carrier_screw_offset", counterbore + mounted.d + 1.5, 150.0)
     rear_end = max(spots[-1] + max(web + widest / 2, head + 1), offset + counterbore / 2 + 1)
     length = d.number("element.rear_length", rear_end)
-    start = d.number("element.recess_offset", high=length - corner - 0.01)
+    over = max(d.ledge - recess, 0.0)
+    start = d.number("element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01)
     d.number("gauge.carrier_body_side", d.carrier_least, seat + 0.35 * d.l + start)
 
     # plates

@@ -99,7 +99,10 @@ def _grasping(d: Draw) -> None:
 
 
 def _calibration(d: Draw, into_sample: float) -> None:
-    travel = d.number("calibration.travel", high=min(0.9, d.elastic))
+    # an arm of length A on a pad z below the hinge moves it by z d/A aside: less than half the pad
+    half, below = d.table["element.pad_length"] / 2, d.table["element.pad_height"] + 1.5 + d.h
+    aside = 0.9 * half * (min(map(min, d.arms)) - 2 * half) / below
+    travel = d.number("calibration.travel", high=min(0.9, d.elastic, aside))
     retract = d.number("calibration.retract", high=40.0)
     d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
     d.number("calibration.stage_travel", max(d.far_x, d.far_y))

@@ -26,6 +26,9 @@ REFUSED = {
     "a tip pressed through a thin sample": ("tip_land_clears_sample", {"sample.thickness": 0.4}),
     "the axle's bore 0.26 mm from the holder's thread": ("axles_fit_plate", {"cart.wheel_base": 47.2}),
     "a calibration that bends a stiff, weak hinge beyond yield": ("calibration_bends_elastically", {"calibration.travel": 0.4}),
+    "a wire recess that parts the ledge from the rear body": (
+        "recess_fits_rear", {"element.recess_offset": 0.0, "element.recess_depth": 3.2},
+    ),
     "the hose fitting on the cart plate": ("port_clears_cart", {"holder.floor": 1.0}),
 }  # fmt: skip
 
@@ -46,6 +49,7 @@ PASSES = {
     ),
     "an arm too low for the estimator, pressed in calibration": ({"element.hinge_length": 9.0, "array.row_arms": [[12.0]]}, "calibration"),
     "holder's screws 8.8 mm in the cart plate, whose thread ended at 7.5": ({"holder.floor": 5.2}, "sample-stiffness"),
+    "holder's screws in a cart plate thicker than a drill reaches": ({"cart.thickness": 40.0}, "sample-stiffness"),
     "clamping screws 13 mm in a plate of 20 mm, whose thread ends at 9": ({"clamp.end_plate_thickness": 20.0}, "array"),
     "pads no deeper in the sample than their root fillets": ({"sample.travel": 1.8}, "grasping"),
 }  # fmt: skip

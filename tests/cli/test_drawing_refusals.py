@@ -52,7 +52,7 @@ def test_a_missing_font(command, place, capsys, monkeypatch):
 def test_a_letter_that_the_font_lacks(place, capsys):
     (place / "tiny.toml").write_text(TEXT.replace(TITLE, 'title = "触覚 array"'))
     status, said = refused(place, capsys, "export", "--drawings")
-    assert status == 1 and "has no letter '触'" in said
+    assert status == 2 and "design.title" in said and "触 (U+89E6)" in said
 
 
 @pytest.mark.parametrize("command", [("check", "--shop"), ("release", "--shop")], ids=" ".join)

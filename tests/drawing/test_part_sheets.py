@@ -122,6 +122,8 @@ def test_key_characteristics_are_found_in_the_pdf_and_held_against_the_model(ord
     assert len(key_faults(runs, wider)) == 1
     assert key_faults([*runs, "K1"], keys) and key_faults([r for r in runs if r != "K2"], keys)
     again = runs[runs.index("K1") + 1]
+    bare = [run if run is not again else "0.25" for run in runs]
+    assert key_faults(bare, keys) == ["K1: '0.25' is no value with limits"]
     assert f"{again!r} stands 2 times" in " ".join(key_faults([*runs, again], keys))
     assert "K4" in key_faults(runs, [*keys, Characteristic("one more", 1.0, 1.1, 0.9, True)])[0]
 
@@ -133,6 +135,8 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
     assert any("says 0.26" in fault for fault in drawing_faults(pdf(wrong), wrong, part, macro.design.revision))
     assert any("is not found again" in fault for fault in drawing_faults(pdf(wrong), sheet, part, macro.design.revision))
     assert any("'Q' is missing" in fault for fault in drawing_faults(pdf(sheet), sheet, part, "Q"))
+    other = replace(part, part_no="macro-array-other")
+    assert any("'macro-array-other' is missing" in fault for fault in drawing_faults(pdf(sheet), sheet, other, macro.design.revision))
     two = pdf_bytes([sheet, sheet], "t", "a")
     assert drawing_faults(two, sheet, part, macro.design.revision) == ["2 pages instead of 1"]
     scribbled = replace(sheet, items=(*sheet.items, Text(value.at, "again", 2.5)))

@@ -29,6 +29,7 @@ WITNESSES = {
     "tip_land_clears_sample": {"sample.travel": 2.1},
     "axis_reaches_contact": {"calibration.axis_travel": 0.9},
     "calibration_bends_elastically": {"calibration.travel": 0.4},
+    "roller_stays_on_pad": {"element.pad_height": 30.0},
     "weights_clear_guide": {"grasping.weight_diameter": 60.0},
 }
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from io import StringIO
-from math import cos, sin
+from math import cos, hypot, sin
 
 import pytest
 from variants import variant
@@ -17,7 +17,7 @@ from tactcad.design.messages import InputError
 from tactcad.export import guide
 from tactcad.export.pipeline import export
 from tactcad.export.products import _compare_box
-from tactcad.parts.deflected import deflected_element
+from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.rigs.calibration_loads import calibration_loads
@@ -113,6 +113,19 @@ def test_a_rolled_cart_moves_alone():
     cart = dict(rest.groups)["cart"]
     for a, b in zip(rest.placements, rolled.placements):
         assert b.origin[0] - a.origin[0] == pytest.approx(4.0 if a.designator in cart else 0.0)
+
+
+@pytest.mark.parametrize("sides", ["one", "two"])
+def test_the_roller_leaves_the_pad_where_the_turned_face_ends(sides):
+    """At that deflection the foot of the roller's axis on the turned face is the face's inner end."""
+    two = {"element.body_height": 5.0} if sides == "two" else {}
+    layout = Layout(variant({"element.sides": sides, "element.pad_length": 1.0, "array.row_arms": [[3.0]], **two}))
+    place, r = layout.elements[0], 1.5
+    deflection = deflection_at_pad_edge(layout, place, r)
+    (face,) = (s for s in deflected_element(layout, place, deflection, r).body.outer if s.name == "pad_face")
+    axis = ((layout.pad_inner + layout.pad_outer) / 2, -layout.design.element.pad_height - r + deflection)
+    inner = min(face.start, face.end, key=lambda p: abs(p[0] - place.hinge_x))
+    assert hypot(inner[0] - axis[0], inner[1] - axis[1]) == pytest.approx(r, abs=1e-9)
 
 
 @pytest.mark.parametrize("number", [1, 4])

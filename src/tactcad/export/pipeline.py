@@ -77,6 +77,8 @@ def export(
             progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
             return Exported(Path(out), count, (), (), ())
         _refuse_broken(design)
+        if drawings:
+            _refuse_unprintable(design)
         for reason in why:
             progress.line(f"{out}: {reason}")
         return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail, sheets)
@@ -86,6 +88,13 @@ def _refuse_broken(design: Design) -> None:
     from tactcad.parts.rules import refuse_broken  # loads numpy: not needed where nothing changed
 
     refuse_broken(design)
+
+
+def _refuse_unprintable(design: Design) -> None:
+    from .drawing.fonts import refuse_letters_it_lacks  # loads matplotlib
+
+    texts = design.design
+    refuse_letters_it_lacks({f"design.{name}": getattr(texts, name) for name in ("title", "author", "organisation", "revision")})
 
 
 def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:

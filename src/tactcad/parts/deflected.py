@@ -7,7 +7,7 @@ length; here it kinks at its centre, which moves the arm alike to first order in
 from __future__ import annotations
 
 from dataclasses import replace
-from math import asin, atan2, cos, hypot, pi, sin, tan
+from math import asin, atan2, cos, hypot, inf, pi, sin, sqrt, tan
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 
@@ -24,10 +24,8 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
     A sin(phi + atan2(v, u)) = w with A = hypot(u, v).
     """
     part = element(layout, place)
-    t, h = place.hinge.t, place.hinge.h
-    z = t / 2 if layout.design.element.sides == "one" else h / 2
+    z, w = _heights(layout, place, roller)
     u = -place.load_arm
-    w = -layout.design.element.pad_height - roller - z
     v = w + deflection
     # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
     angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
@@ -42,6 +40,25 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
         characteristics=(),
         finish="",
     )
+
+
+def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -> float:
+    """Deflection, mm, at which the arm has turned the pad's edge towards the hinge under the roller of that radius, mm.
+
+    Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w + d)^2, on
+    the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0. Infinite where no
+    deflection moves it that far.
+    """
+    _, w = _heights(layout, place, roller)
+    half = layout.design.element.pad_length / 2
+    c = 2 * place.load_arm * half - half**2
+    return -w - sqrt(w**2 - c) if c < w**2 else inf
+
+
+def _heights(layout: Layout, place: ElementPlace, roller: float) -> tuple[float, float]:
+    """The hinge's centre over the flat face, and the roller's over it while it touches the pad of the arm at rest, mm."""
+    z = place.hinge.t / 2 if layout.design.element.sides == "one" else place.hinge.h / 2
+    return z, -layout.design.element.pad_height - roller - z
 
 
 def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from itertools import combinations, product
-from math import cos, hypot, pi
+from math import cos, hypot, pi, sqrt
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
@@ -305,6 +305,13 @@ def recess_fits_rear(layout: Layout) -> Iterator[Finding]:
         yield (
             "element.recess_offset", "starts behind the rear end", d.element.recess_offset,
             f"less than rear_length - corner_radius = {d.element.rear_length - d.element.corner_radius:g} mm",
+        )
+    over = max(layout.ledge - d.element.recess_depth, 0.0)
+    neck = hypot(d.element.recess_offset, over)  # from the ledge's corner to the recess's, both without their fillets
+    if neck < d.holes.web - SAME:
+        yield (
+            "element.recess_offset", f"only {neck:g} mm between the recess and the ledge over it", d.element.recess_offset,
+            f"at least {sqrt(d.holes.web**2 - over**2):.4g} mm for holes.web = {d.holes.web:g} mm",
         )
     if layout.design.clamp.spacer_bottom < d.element.recess_depth - SAME:
         yield (

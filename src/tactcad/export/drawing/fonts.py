@@ -5,13 +5,14 @@ Heights are those of ISO 3098-1: the height h of capital letters, in mm.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tactcad.design.messages import CheckFailure
+from tactcad.design.messages import CheckFailure, InputError
 
 if TYPE_CHECKING:
     from matplotlib.ft2font import FT2Font
@@ -54,6 +55,17 @@ def _glyph(letter: str) -> tuple[float, Box]:
     em = face.units_per_EM
     x0, y0, x1, y1 = glyph.bbox
     return glyph.horiAdvance / em, (x0 / em, y0 / em, x1 / em, y1 / em)
+
+
+def refuse_letters_it_lacks(texts: Mapping[str, str]) -> None:
+    """Raises InputError for the first letter of a design's texts, by their path, that the font lacks."""
+    for path, text in texts.items():
+        for letter in text:
+            if not _face().get_char_index(ord(letter)):
+                raise InputError(
+                    path, f"the drawings' font {FAMILY} lacks a letter of it", value=f"{letter} (U+{ord(letter):04X})",
+                    legal="letters of the font, or an export without drawings",
+                )
 
 
 @cache

@@ -8,7 +8,7 @@ from tactcad.contour import chain, circle, rectangle
 
 from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution
 from ..library.screws import METRIC
-from .holes import sunk, tapped_through
+from .holes import sunk, tapped
 from .layout import (
     CARRIAGE_LENGTH,
     GAUGE_SHAFT,
@@ -88,7 +88,7 @@ def stage_moving(travel: float) -> Part:
     """Moving half: slideway at z = 0, threads from the face at the top."""
     half, t = STAGE / 2, STAGE_PLATE
     threads = tuple(
-        tapped_through("mount", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t)
+        tapped("mount", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t)
         for sx in (-1, 1) for sy in (-1, 1)
     )
     return Part(

@@ -12,7 +12,7 @@ from tactcad.design.materials import ALLOYS
 
 from ..description import Characteristic, Extrusion, Hole, Material, Part
 from ..library.screws import METRIC
-from .holes import tapped_through
+from .holes import tapped
 from .layout import RigLayout
 
 STEEL = Material("1.4301 stainless steel", 7900)
@@ -41,7 +41,7 @@ def cart_plate(rig: RigLayout) -> Part:
     h, (length, under) = rig.holder_screw, rig.holder_fixing
     engaged = length - under - rig.holder_body
     holder = tuple(
-        tapped_through("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged) for sx in (-1, 1) for sy in (-1, 1)
+        tapped("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged) for sx in (-1, 1) for sy in (-1, 1)
     )
     return Part(
         part_no=f"{rig.design.name}-cart-plate",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..description import Hole, Vector
-from ..library.screws import METRIC, blind_thread, counterbore_diameter
+from ..library.screws import DRILL_REACH, METRIC, blind_thread, counterbore_diameter
 
 # Full thread deeper than this many diameters only breaks taps; chosen: usual advice is 2 to 3.
 DEEPEST_THREAD = 2.5
@@ -16,10 +16,15 @@ def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, und
     return Hole(name, at, axis, METRIC[thread].clearance, thickness, True, counterbore=counterbore)
 
 
-def tapped_through(name: str, thread: str, at: Vector, axis: Vector, thickness: float, engaged: float = 0.0) -> Hole:
-    """Drilled through; threaded from `at` as deep as is of use, and as deep as the screw reaches that is `engaged` mm in."""
+def tapped(name: str, thread: str, at: Vector, axis: Vector, thickness: float, engaged: float = 0.0) -> Hole:
+    """Drilled through, or blind where the plate is thicker than a drill reaches.
+
+    Threaded from `at` as deep as is of use, and as deep as the screw reaches that is `engaged` mm in.
+    """
     m = METRIC[thread]
     full = min(thickness, max(DEEPEST_THREAD * m.d, engaged))
+    if thickness > DRILL_REACH * m.tap_drill:
+        return tapped_blind(name, thread, at, axis, full)
     return Hole(name, at, axis, m.tap_drill, thickness, True, thread=thread, thread_depth=full)
 
 

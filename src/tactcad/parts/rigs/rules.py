@@ -12,6 +12,7 @@ from math import hypot, pi, tan
 from tactcad.mechanics.rigs import holding_force, tipping_margin
 
 from ..broken import Broken
+from ..deflected import deflection_at_pad_edge
 from ..layout import HOLE_WEB, Layout
 from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
@@ -202,6 +203,22 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
             )
 
 
+def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
+    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    roller = dowel_diameter(c.roller) / 2
+    for load in calibration_loads(layout.design):
+        most = deflection_at_pad_edge(layout, load.place, roller)
+        deflection = c.travel if load.refused else load.deflection
+        if deflection > most:
+            yield (
+                "calibration.travel", f"the pad of element {load.place.number} swings out from under the roller", c.travel,
+                f"at most {c.travel * most / deflection:.4g} mm",
+            )
+
+
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.calibration is None:
@@ -349,6 +366,7 @@ RIG_RULES: dict[str, Rule] = {
         tip_land_clears_sample,
         axis_reaches_contact,
         calibration_bends_elastically,
+        roller_stays_on_pad,
         weights_clear_guide,
     )
 }

@@ -11,7 +11,7 @@ from ..library.dowels import dowel_diameter
 from ..library.screws import METRIC
 from .bought import GAUGE_THREADS, rail_holes
 from .cart import COLOUR, STEEL, plate_alloy
-from .holes import sunk, tapped_blind, tapped_through
+from .holes import sunk, tapped, tapped_blind
 from .layout import BASE, PLATE, PLATE_SCREW, POST, RISER_PITCH, STAGE_HOLE, TIP, TIP_LAND, RigLayout
 
 POST_SCREWS = tuple((sx * 20.0, sy * 5.0) for sx in (-1, 1) for sy in (-1, 1))  # from the post's middle
@@ -51,7 +51,7 @@ def post(rig: RigLayout) -> Part:
     """Post: contour in (x, z) of the scene, front face at local z = 0, two columns of M4 threads."""
     w, t = POST
     features: list[Feature] = [
-        tapped_through("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
+        tapped("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
     ]
     # the base plate's screws reach 9 mm in, more than the usual blind thread has
     features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS]
@@ -76,7 +76,7 @@ def axis_plate(rig: RigLayout) -> Part:
         for sx in (-1, 1) for sy in (-1, 1)
     ]
     features += [
-        tapped_through("gauge_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE)
+        tapped("gauge_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE)
         for sx in (-1, 1) for sy in (-1, 1)
     ]
     return _upright(rig, "axis-plate", "Axis plate", features)
