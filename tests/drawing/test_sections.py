@@ -35,7 +35,7 @@ from tactcad.scenes import make_scene
 pytestmark = pytest.mark.cad
 
 DXF = MadeFrom("dxf/some_B.dxf", "f" * 64)
-CUT = ("holder-body", "holder-lid", "cart-plate", "tip-flat", "tip-roller", "end-plate-head", "riser")
+CUT = ("holder-body", "holder-lid", "cart-plate", "tip-flat", "tip-roller", "end-plate-head", "base-stages")
 WHOLE = ("spacer", "stop-plate", "element-a8mm", "ballast")
 
 
