@@ -36,6 +36,7 @@ pytestmark = pytest.mark.cad
 
 DXF = MadeFrom("dxf/some_B.dxf", "f" * 64)
 CUT = ("holder-body", "holder-lid", "cart-plate", "tip-flat", "tip-roller", "end-plate-head", "base-stages")
+ACROSS_Y = "bar"  # every plane across x through one of its holes would cut another off its axis
 WHOLE = ("spacer", "stop-plate", "element-a8mm", "ballast")
 
 
@@ -86,9 +87,11 @@ def test_the_plane_shows_most_kinds_then_the_deepest():
 
 
 def test_no_plane_cuts_another_hole_off_its_axis_or_runs_along_a_wall():
-    beside = replace(THROUGH, at=(21.4, 5.0, 10.0))
-    assert section(block(BLIND, beside)) is None
-    assert section(block(BLIND, replace(beside, at=(21.6, 5.0, 10.0)))).at == 20.0
+    beside, over = (replace(THROUGH, at=at) for at in ((21.4, 5.0, 10.0), (8.0, 16.4, 10.0)))
+    assert section(block(BLIND, beside, over)) is None
+    assert section(block(BLIND, replace(beside, at=(21.6, 5.0, 10.0)), over)).at == 20.0
+    across = section(block(BLIND, beside, replace(over, at=(8.0, 16.6, 10.0))))
+    assert (across.axis, across.at) == (1, 15.0)
     wall = replace(POCKET, contour=rectangle(-7.0, -14.0, 7.0, -9.0))
     assert section(block(BLIND, wall)).at == 27.0  # x = 20 is the pocket's side
 
@@ -104,7 +107,7 @@ def orders():
     design = variant()
     scenes = [make_scene(design, name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
     parts = {p.part_no.removeprefix("macro-array-"): p for s in scenes for p in s.parts}
-    return {n: Order(design, parts[n], to_bytes(build(parts[n]).wrapped), (DXF,)) for n in (*CUT, *WHOLE)}
+    return {n: Order(design, parts[n], to_bytes(build(parts[n]).wrapped), (DXF,)) for n in (*CUT, ACROSS_Y, *WHOLE)}
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +127,9 @@ def scale_of(sheet) -> float:
 
 
 def plane_of(order: Order) -> float:
-    return section(order.part).at
+    cut = section(order.part)
+    assert cut.axis == (order.part.part_no.endswith(ACROSS_Y))
+    return cut.at
 
 
 def test_plain_parts_have_none(sheets):
@@ -137,24 +142,24 @@ def polygon(contour) -> list[tuple[float, float]]:
     return [s.at(i / n) for s in contour for n in (4000 if isinstance(s, ArcSegment) else 1,) for i in range(n)]
 
 
-def length_at(contour, x: float) -> float:
-    """How much of the line at x lies inside a contour: by its corners, none of which is on the line."""
+def length_at(contour, k: int, x: float) -> float:
+    """How much of the line at x (k = 0) or y (k = 1) lies inside a contour: by its corners, none of which is on the line."""
     x += 1.234e-10
-    points = polygon(contour)
+    points = [(p[k], p[1 - k]) for p in polygon(contour)]
     sides = zip(points, points[1:] + points[:1])
     ys = sorted(a[1] + (x - a[0]) * (b[1] - a[1]) / (b[0] - a[0]) for a, b in sides if (a[0] < x) != (b[0] < x))
     return sum(high - low for low, high in zip(ys[::2], ys[1::2]))
 
 
-def area_at(part: Part, x: float) -> float:
-    """Of the part cut at x, mm2: the stock's rectangle less what pockets and the holes on the plane take off."""
+def area_at(part: Part, k: int, x: float) -> float:
+    """Of the part cut across axis k at x, mm2: the stock's rectangle less what pockets and the holes on the plane take off."""
     body = part.body
-    area = (length_at(body.outer, x) - sum(length_at(c, x) for c in body.openings)) * body.thickness
+    area = (length_at(body.outer, k, x) - sum(length_at(c, k, x) for c in body.openings)) * body.thickness
     for f in part.features:
         if isinstance(f, Pocket):
-            lengths = [length_at(in_part(f, c), x) for c in (f.contour, *f.island)]
+            lengths = [length_at(in_part(f, c), k, x) for c in (f.contour, *f.island)]
             area -= (lengths[0] - sum(lengths[1:])) * f.depth
-        elif isclose(f.at[0], x, abs_tol=1e-9):
+        elif not f.axis[k] and isclose(f.at[k], x, abs_tol=1e-9):
             wide, deep = f.counterbore or (f.diameter, 0.0)
             cone = drill_point_height(f.diameter) if f.drill_point else 0.0
             area -= f.diameter * (f.depth + cone / 2) + (wide - f.diameter) * deep
@@ -169,12 +174,12 @@ def svg_hatching(sheet) -> list[tuple[float, float, float, float]]:
     return [(x0, sheet.size[1] - y0, x1, sheet.size[1] - y1) for x0, y0, x1, y1 in lines]
 
 
-@pytest.mark.parametrize("number", CUT)
+@pytest.mark.parametrize("number", [*CUT, ACROSS_Y])
 def test_the_hatching_has_the_area_of_the_cut_part(number, orders, sheets):
     """Of the written file: lines at 45 degrees, equally spaced, whose length times their spacing is the face's area as
     the description gives it; and the face's polygons have that area to the last digits."""
     sheet, f = sheets[number], scale_of(sheets[number])
-    meant = area_at(orders[number].part, plane_of(orders[number]))
+    meant = area_at(orders[number].part, number == ACROSS_Y, plane_of(orders[number]))
     loops = face_of(sheet).loops
     enclosed = [abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise([*loop, loop[0]]))) / 2 for loop in loops]
     inner = [any(Hatch((other,)).holds(loop[0]) for other in loops if other is not loop) for loop in loops]
@@ -242,7 +247,7 @@ def test_a_cut_thread_is_drawn_as_iso_6410_says(sheets):
 
 
 def test_letters_stand_once_at_each_end_and_once_over_the_section(orders, sheets):
-    for number in CUT:
+    for number in (*CUT, ACROSS_Y):
         (runs,) = pdf_runs(pdf_bytes([sheets[number]], "t", "a"))
         assert runs.count("S") == 2 and runs.count("S-S") == 1, number
         assert layout_faults(sheets[number]) == []
@@ -274,6 +279,21 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
         letters = [t for t in sheet.texts if t.text == "S"]
         assert all(t.at[0] < x for t in letters)
         assert min(p[0] for loop in face_of(sheet).loops for p in loop) > left + f * (x1 - x0)
+
+
+def test_a_plane_across_y_is_seen_from_the_free_side(orders, sheets):
+    """The bar has its end view below the front view: the section is seen from below, so it stands above (first angle)."""
+    sheet, f = sheets[ACROSS_Y], scale_of(sheets[ACROSS_Y])
+    ends = [i.points for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5]
+    heads = [i.points for i in sheet.items if isinstance(i, Fill) and i.role == "cutting"]
+    (y,) = {round(p[1], 6) for end in ends for p in end}
+    x0, y0, x1, y1 = orders[ACROSS_Y].part.body.outer.box
+    left, right = sorted(p[0] for end in ends for p in end)[1:3]
+    assert right - left == pytest.approx((x1 - x0) * f + 3.0)
+    assert len(heads) == 2 and all(tip[1] > p[1] and tip[1] == pytest.approx(y, abs=0.3) for tip, *back in heads for p in back)
+    xs, ys = zip(*(p for loop in face_of(sheet).loops for p in loop))
+    assert (min(xs), max(xs)) == pytest.approx((left + 1.5, right - 1.5))  # in line with the front view
+    assert min(ys) > y + f * (y1 - plane_of(orders[ACROSS_Y]))
 
 
 def test_without_a_place_for_it_the_sheet_goes_without(orders, monkeypatch):

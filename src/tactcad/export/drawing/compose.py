@@ -91,9 +91,9 @@ def _attempt(
     x0, y0, x1, y1 = paper.area
     board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
     _place_notes(board, plan.notes, paper, beside)
-    spread = PLANE if any(v.section for v in plan.views) else 0.0
+    spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
     drawn = [
-        _drawn(v, curves[v.name], scale if not v.window else _detail_scale(v, shrunk), plan.values, 0.0 if n else spread)
+        _drawn(v, curves[v.name], scale if not v.window else _detail_scale(v, shrunk), plan.values, {} if n else spread)
         for n, v in enumerate(plan.views)
     ]
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
@@ -149,8 +149,8 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
     board.keep_out((left, y0, left + room + 2 * MARGIN, top + MARGIN))
 
 
-def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: dict[str, float], spread: float) -> _Drawn:
-    """The view at its scale; dimensions above it stand `spread` mm further off, for the end of a cutting plane."""
+def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: dict[str, float], spread: Mapping[str, float]) -> _Drawn:
+    """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting plane."""
     f = factor(scale)
     if view.window:
         curves = windowed(curves, view.window)
@@ -158,11 +158,11 @@ def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: 
     paper_box = tuple(v * f for v in (view.window or view.box))
     starts = {}
     for r in view.runnings:
-        off = spread if r.side == "top" else 0.0
+        off = spread.get(r.side, 0.0)
         items += running(r, paper_box, f, values, FIRST - 2.0 + off)
         starts[r.side] = FIRST + 22.0 + off
     for side in ("top", "bottom", "left", "right"):
-        items += stacked(view.linears, side, paper_box, f, values, starts.get(side, FIRST + (spread if side == "top" else 0.0)))
+        items += stacked(view.linears, side, paper_box, f, values, starts.get(side, FIRST + spread.get(side, 0.0)))
     for a in view.across:
         items += across(a, f, values)
     for centre, diameter in view.centres:
@@ -267,9 +267,12 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
 
 
 def _mark_section(board: Board, view: View, front: _Drawn, place: Point) -> bool:
-    f = factor(front.scale)
-    x = seen(front.view, (view.section.at, 0.0, 0.0))[0] * f + place[0]
-    return mark_plane(board, view.section, x, _shifted(tuple(v * f for v in front.view.box), place))
+    f, section = factor(front.scale), view.section
+    on = [0.0, 0.0, 0.0]
+    on[section.axis] = section.at
+    at = seen(front.view, tuple(on))[section.axis] * f + place[section.axis]
+    sight = -sum(a * b for a, b in zip(view.eye, (front.view.right, front.view.up)[section.axis]))
+    return mark_plane(board, section, at, sight, _shifted(tuple(v * f for v in front.view.box), place))
 
 
 def _scaled(curve: Curve, f: float) -> Curve:

@@ -32,21 +32,20 @@ def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
     """
     box = Bnd_Box()
     BRepBndLib.Add_s(shape, box)
-    low, high = box.CornerMin(), box.CornerMax()
-    at = view.section.at
-    x0, x1 = (at, high.X() + AROUND) if view.eye[0] < 0 else (low.X() - AROUND, at)
-    kept = BRepPrimAPI_MakeBox(
-        gp_Pnt(x0, low.Y() - AROUND, low.Z() - AROUND), gp_Pnt(x1, high.Y() + AROUND, high.Z() + AROUND)
-    ).Shape()  # fmt: skip
+    low, high = ([p.X(), p.Y(), p.Z()] for p in (box.CornerMin(), box.CornerMax()))
+    low, high = [v - AROUND for v in low], [v + AROUND for v in high]
+    k, at = view.section.axis, view.section.at
+    (low if view.eye[k] < 0 else high)[k] = at
+    kept = BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
     half = BRepAlgoAPI_Common(shape, kept).Shape()
-    loops = [_loop(wire, view) for face in _faces(half, at) for wire in _wires(face)]
+    loops = [_loop(wire, view) for face in _faces(half, k, at) for wire in _wires(face)]
     if not loops:
-        raise CheckFailure(f"drawings: the section at x = {at:g} mm cuts nothing; no drawing was written")
+        raise CheckFailure(f"drawings: the section at {'xy'[k]} = {at:g} mm cuts nothing; no drawing was written")
     return half, Hatch(tuple(sorted(loops)))
 
 
-def _faces(shape: TopoDS_Shape, x: float) -> list[TopoDS_Face]:
-    """Faces in the plane at x."""
+def _faces(shape: TopoDS_Shape, k: int, at: float) -> list[TopoDS_Face]:
+    """Faces in the plane across axis k."""
     found = []
     explorer = TopExp_Explorer(shape, TopAbs_FACE)
     while explorer.More():
@@ -54,7 +53,8 @@ def _faces(shape: TopoDS_Shape, x: float) -> list[TopoDS_Face]:
         surface = BRepAdaptor_Surface(face)
         if surface.GetType() == GeomAbs_Plane:
             plane = surface.Plane()
-            if abs(abs(plane.Axis().Direction().X()) - 1.0) < SAME and abs(plane.Location().X() - x) < SAME:
+            # OCC counts coordinates from 1
+            if abs(abs(plane.Axis().Direction().Coord(k + 1)) - 1.0) < SAME and abs(plane.Location().Coord(k + 1) - at) < SAME:
                 found.append(face)
         explorer.Next()
     return found

@@ -141,9 +141,10 @@ class Bore:
 
 @dataclass(frozen=True)
 class Section:
-    """A cut through the part by the plane x = `at` (mm of the part), its letter, and the holes whose axes lie in it."""
+    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes lie in its plane."""
 
     letter: str
+    axis: int
     at: float
     bores: tuple[Bore, ...] = ()
 

@@ -36,7 +36,7 @@ from .measure import (
     variables,
 )
 from .plan import Callout, Characteristic, Datum, Dimension, Linear, Plan, Running, View, characteristic, seen
-from .section import section_of
+from .section import section_of, section_view
 
 FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
@@ -101,14 +101,14 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = Tru
     views = [front]
     if below:
         views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits))
-    section = section_of(part, found, front) if cut else None
+    section = section_of(part, found, front, below) if cut else None
     aside = [g for g in called if g.axis[0]]
     if aside or not below:
         side = side_view(sketch, part, front, called if aside else [], limits, thickness=not below)
-        views.append(replace(side, section=section, hidden=not section))
-    elif section:
-        side = from_left(part, front)
-        views.append(replace(side, section=section, hidden=False))
+        views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
+    if section and (below or section.axis == 1):
+        view = section_view(front, below, section)
+        views.append(replace(view, box=view_box(view, part)))
     if limits:
         raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
     closed(sketch)
@@ -505,17 +505,12 @@ def _depth_running(
     return Running(side, tuple(stops))
 
 
-def from_left(part: Part, front: View) -> View:
-    """The bare view from the left, which stands to the right of the front view."""
-    view = View("right", tuple(-r for r in front.right), front.up, (0, 0, 0, 0))
-    return replace(view, box=view_box(view, part))
-
-
 def side_view(
     sketch: Sketch, part: Part, front: View, called: Sequence[Group], limits: dict[str, Characteristic], thickness: bool
 ) -> View:
     """The view from the left, beside the front view: thickness, and holes of the x faces."""
-    view = from_left(part, front)
+    view = View("right", tuple(-r for r in front.right), front.up, (0, 0, 0, 0))
+    view = replace(view, box=view_box(view, part))
     mine = [g for g in called if g.axis[0]]
     if mine:
         raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")

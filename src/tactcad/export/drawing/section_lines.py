@@ -60,31 +60,39 @@ def inside(face: Hatch, a: Point, b: Point) -> list[tuple[Point, Point]]:
     return [((a[0] + low * dx, a[1] + low * dy), (a[0] + high * dx, a[1] + high * dy)) for low, high in kept]
 
 
-def mark_plane(board: Board, section: Section, x: float, view: Box) -> bool:
-    """The cutting plane at x in the view that it is taken from (its box on the paper): a chain line with thick ends, arrows
-    in the direction of sight, a letter at each; False where an end finds no place."""
-    _, y0, _, y1 = view
-    for edge, out in ((y1, 1.0), (y0, -1.0)):
-        places = [_end(board, section.letter, (x, edge), out, away, tail) for away in OUT for tail in TAILS]
+def mark_plane(board: Board, section: Section, at: float, sight: float, view: Box) -> bool:
+    """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the section's axis: a
+    chain line with thick ends, arrows along that axis in the direction of `sight` (1 or -1), a letter at each; False where an
+    end finds no place."""
+    k = section.axis
+
+    def there(across: float, along: float) -> Point:
+        return (across, along) if k == 0 else (along, across)
+
+    low, high = view[1 - k], view[3 - k]
+    for edge, out in ((high, 1.0), (low, -1.0)):
+        places = [
+            _end(board, section.letter, [there(at, edge + out * OFF), there(at, edge + out * away)], there(sight, 0.0), tail)
+            for away in OUT for tail in TAILS
+        ]  # fmt: skip
         found = [place for place in places if place]
         if not found:
             return False
         board.add(min(found, key=lambda place: place[0])[1])
-    board.add([segment((x, y0 - OFF), (x, y1 + OFF), CENTRE, "centre")])
+    board.add([segment(there(at, low - OFF), there(at, high + OFF), CENTRE, "centre")])
     return True
 
 
-def _end(board: Board, letter: str, at: Point, out: float, away: float, tail: float) -> tuple[float, Sequence[Item]] | None:
-    """One end of the plane's line with its arrow `away` from the outline, and what it costs; None where it is not free."""
-    x, y = at
-    level = y + out * away
-    thick = Stroke(((x, y + out * OFF), (x, level)), CUTTING, "cutting")
-    start, tip = (x - tail, level), (x - CUTTING.width / 2, level)
-    text = Text((start[0] - ABOVE, level - LETTER / 2), letter, LETTER, "end")
-    quad = text.corners(AROUND)
-    strokes = [(thick.points[0], thick.points[1]), (start, tip)]
-    costs = [board.passed(stroke) for stroke in strokes]
-    if not board.free([quad]) or any(cost is None or cost >= FORBIDDEN for cost in costs):
+def _end(board: Board, letter: str, thick: Sequence[Point], sight: Point, tail: float) -> tuple[float, Sequence[Item]] | None:
+    """One end of the plane's line with an arrow at its outer point, and what it costs; None where it is not free."""
+    (x, y), (ux, uy) = thick[1], sight
+    start, tip = (x - tail * ux, y - tail * uy), (x - CUTTING.width / 2 * ux, y - CUTTING.width / 2 * uy)
+    beyond = ABOVE + (LETTER / 2 if uy else 0.0)
+    at = (start[0] - beyond * ux, start[1] - beyond * uy - LETTER / 2)
+    text = Text(at, letter, LETTER, "middle" if uy else "end" if ux > 0 else "start")
+    costs = [board.passed(stroke) for stroke in (tuple(thick), (start, tip))]
+    if not board.free([text.corners(AROUND)]) or any(cost is None or cost >= FORBIDDEN for cost in costs):
         return None
-    items = [thick, segment(start, tip, THIN, "cutting"), arrow(tip, start, HEAD, "cutting"), text]
-    return tail + away + sum(costs), items
+    line = Stroke(tuple(thick), CUTTING, "cutting")
+    items = [line, segment(start, tip, THIN, "cutting"), arrow(tip, start, HEAD, "cutting"), text]
+    return tail + hypot(thick[1][0] - thick[0][0], thick[1][1] - thick[0][1]) + sum(costs), items
