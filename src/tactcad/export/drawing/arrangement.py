@@ -64,7 +64,8 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
         placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in some]
         (bx, by), (px, py) = boxes[name][:2], places[name]
         items += edges(drawing(placed, view).sharp, f, (px - f * bx, py - f * by))
-    for name, sides in (("front", ("top", "left")), ("plan", ("left",))):
+    # on three sides that face nothing: texts of short dimensions stand beside them
+    for name, sides in (("front", ("top", "left")), ("plan", ("right",))):
         items += [moved(i, *places[name]) for i in _overall(size[name], f, sides)]
     return Page(paper, shown(scale), tuple(items), "Assembly drawing")
 
@@ -83,12 +84,13 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
 
 
 def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
-    """Overall sizes of a view whose lower left corner is (0, 0), as auxiliary dimensions in parentheses."""
+    """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in parentheses."""
     w, h = size
-    values = {"w": w, "h": h}
+    values = {"w": round(w, 1), "h": round(h, 1)}
     items: list[Item] = []
     for side in sides:
-        name, p, q = ("w", (0.0, h), (w, h)) if side in ("top", "bottom") else ("h", (0.0, 0.0), (0.0, h))
+        x = w if side == "right" else 0.0
+        name, p, q = ("w", (0.0, h), (w, h)) if side in ("top", "bottom") else ("h", (x, 0.0), (x, h))
         dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), sign="(", unit=")")
         items += stacked(
             [Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, {**values, "zero": 0.0}, 10.0

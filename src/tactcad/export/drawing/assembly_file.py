@@ -79,7 +79,8 @@ def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRo
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):
-        wrong += [f"sheet {n}: {t!r} is missing" for t in (number, revision, f"{n}/{len(pages)}") if t not in runs]
+        wrong += [f"sheet {n}: {t!r} is missing" for t in (revision, f"{n}/{len(pages)}") if t not in runs]
+        wrong += [f"sheet {n}: {number!r} is missing"] if number not in "".join(runs) else []  # a long one is broken
     numbers = _ballooned(pdf)
     wrong += [
         f"item {row.item} ({row.part_no}) has {numbers.count(row.item)} balloons" for row in rows

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
+from .fonts import ink_box
 from .ink import CENTRE, THIN, Arc, Fill, Item, Point, Stroke, Text, arrow, polar, segment
 from .measure import Values
 from .plan import Across, Box, Linear, Running, Side
@@ -21,6 +22,7 @@ FIRST, PITCH, PITCH_BOXED = 10.0, 8.0, 10.0  # dimension lines from the outline 
 TAIL = 6.0  # of a dimension line whose arrows point inwards
 BEYOND = 12.0  # from the part to the text of a dimension across a web
 ABOVE = 1.0  # from the dimension line to the text
+CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow head, and the white beside a line
 PAD = 1.1  # around the text of a key characteristic
 LABELS = 4.4  # least distance of running dimensions' texts
 
@@ -164,7 +166,8 @@ def _one(
 def _text_on(there: Callable[[float, float], Point], side: Side, o: float, t0: float, text: str, key: int) -> list[Item]:
     """The text above its dimension line, read from below or from the right."""
     x, y = there(t0, o)
-    lift = ABOVE + (PAD - 0.2 if key else 0.0)
+    below = -ink_box(text, HEIGHT)[1]  # parentheses reach below the line of writing, down to the arrow heads
+    lift = max(ABOVE + (PAD - 0.2 if key else 0.0), below + CLEAR_OF_ARROW)
     upright = side in ("left", "right")
     at = (x - lift, y) if upright else (x, y + lift)
     shown = Text(at, text, HEIGHT, angle=90.0 if upright else 0.0)
