@@ -24,6 +24,7 @@ NEED_SOLIDS = {
     "tactcad.checks.run",
     "tactcad.checks.tools",
     "tactcad.export.drawing.assembly_lines",
+    "tactcad.export.drawing.cut",
     "tactcad.export.drawing.hidden_lines",
     "tactcad.export.picture",
     "tactcad.export.step",

@@ -315,7 +315,6 @@ ALSO = {
     "cli/check.py": ("tests/export/test_golden.py", "tests/checks/test_check_report.py"),
     "export/pipeline.py": ("tests/export/test_pipeline.py", "tests/faults/test_machine.py"),
     "export/products.py": ("tests/export/test_pipeline.py",),
-    "export/golden_schema.py": ("tests/export/test_golden.py", "tests/faults/test_other_files.py"),
     "export/manifest.py": ("tests/export/test_manifest.py", "tests/faults/test_other_files.py"),
 }
 

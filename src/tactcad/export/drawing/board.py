@@ -9,7 +9,7 @@ import numpy as np
 
 from .dimension_lines import ARROW, HEIGHT, PAD, boxed, boxed_width, datum, datum_letter
 from .ink import THIN, Fill, Item, Point, Text, arrow, polar, segment
-from .layout import BESIDE_LINE, bounds, chord_meets, quads_meet
+from .layout import BESIDE_LINE, Quad, bounds, chord_meets, quads_meet
 from .plan import Box, Callout, Datum
 
 STEP = 1.7 * HEIGHT  # between lines of a callout
@@ -17,7 +17,10 @@ SHELF = 3.0  # of the leader beside the text
 REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 66.0, 75.0, 85.0, 95.0)  # of leaders
 MOST_TARGETS = 12  # of equal features tried for the leader
 # What a leader pays for crossing: it may pass extension and centre lines, hardly the part, no dimension line.
-CROSSING = {"outline": 12.0, "hidden": 4.0, "dimension": 80.0, "leader": 80.0, "symbol": 80.0, "extension": 6.0, "table": 500.0}
+CROSSING = {"outline": 12.0, "hidden": 4.0, "dimension": 80.0, "leader": 80.0, "symbol": 80.0, "cutting": 80.0, "extension": 6.0, "table": 500.0}
+ALONG = 40.0  # what a leader pays for running along another line, where one is read for the other
+AT_END = 12.0  # what a leader pays at an arc's very end
+NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
 FORBIDDEN = 80.0  # of the costs above: what a datum's stem never crosses
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
@@ -32,7 +35,8 @@ class Board:
         self.taken: list[Box] = []  # no view goes there
         self._chords: list[tuple[float, float, float, float]] = []
         self._roles: list[str] = []
-        self._boxes: list = []
+        self._boxes: list[Quad] = []  # around texts and letters in frames, and what bounds each
+        self._bounds: list[Box] = []
         self._array: np.ndarray | None = None
 
     def add(self, items: Iterable[Item]) -> None:
@@ -40,7 +44,7 @@ class Board:
             self.items.append(item)
             if isinstance(item, Text):
                 if item.text.strip():
-                    self._boxes.append(item.corners(BESIDE_LINE + 0.2))
+                    self._keep_clear(item.corners(BESIDE_LINE + 0.2))
                 continue
             for (ax, ay), (bx, by) in item.chords():
                 self._chords.append((ax, ay, bx, by))
@@ -51,19 +55,30 @@ class Board:
         """No callout's text goes there."""
         self.kept.append(box)
 
+    def _keep_clear(self, quad: Quad) -> None:
+        self._boxes.append(quad)
+        self._bounds.append(bounds(quad))
+
+    def _near(self, box: Box) -> list[Quad]:
+        """Of the texts and framed letters, those whose bounds meet the box."""
+        b = np.array(self._bounds).reshape(-1, 4)
+        x0, y0, x1, y1 = box
+        return [self._boxes[i] for i in np.flatnonzero((b[:, 2] >= x0) & (b[:, 0] <= x1) & (b[:, 3] >= y0) & (b[:, 1] <= y1))]
+
     def callout(self, c: Callout, scale: float, origin: Point) -> bool:
-        """Place a callout of a view at the cheapest free place; False where there is none."""
+        """Place a callout of a view at the cheapest free place, its leader at whichever of the targets; False where there is none."""
         best: tuple[float, list[Item]] | None = None
+        ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
         for reach in REACHES:
             if best and reach >= best[0]:
                 break
-            for n, (at, radius) in enumerate(c.targets[:MOST_TARGETS]):
-                centre = (origin[0] + at[0] * scale, origin[1] + at[1] * scale)
-                for angle in self._directions(c, n):
-                    items, cost = self._tried(c, n, centre, radius * scale, angle, reach)
-                    cost += 0.5 * n
-                    if items and (best is None or cost < best[0]):
-                        best = (cost, items)
+            for tip, angle, extra in ways:
+                if best and reach + extra >= best[0]:
+                    continue
+                items, cost = self._tried(c, tip, angle, reach)
+                cost += extra
+                if items and (best is None or cost < best[0] - 1e-9):
+                    best = (cost, items)
         if best is None:
             return False
         self.add(best[1])
@@ -84,51 +99,48 @@ class Board:
                 foot = [(x + a * uy + b * ux, y - a * ux + b * uy) for a, b in ((-1.9, 0.6), (1.9, 0.6), (1.9, 3.4), (-1.9, 3.4))]
                 blocked = any(x1 > square[0][0] and x0 < square[1][0] and y1 > square[0][1] and y0 < square[2][1] for x0, y0, x1, y1 in self.kept)
                 stem = (outside, middle)
-                legs_free = not any(chord_meets(stem, quad) for quad in self._boxes) and self._crossings(stem) < FORBIDDEN
+                passed = self.passed(stem)
+                legs_free = passed is not None and passed < FORBIDDEN
                 if not blocked and legs_free and not self.hit([square, foot], bounds([*square, *foot])):
                     self.add(items)
+                    self._keep_clear(square)
                     return True
         return False
 
-    def _directions(self, c: Callout, n: int) -> Sequence[float]:
-        if not c.spans:
-            return [15.0 * i for i in range(24)]
-        start, end = c.spans[n]
-        sweep = (end - start) % 360.0 or 360.0
-        # an arc is entered along its radius, from the centre's side: the leader leaves the other way
-        return [start + sweep * share + 180.0 for share in (0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.04, 0.96)]
-
-    def _tried(self, c: Callout, n: int, centre: Point, r: float, angle: float, reach: float) -> tuple[list[Item], float]:
-        """The callout's items in this direction and length, and their cost; none where they do not fit."""
-        if c.spans:
-            tip = polar(centre, r, angle + 180.0)
-            elbow = polar(centre, reach, angle)
-        else:
-            tip = polar(centre, r, angle)
-            elbow = polar(centre, r + reach, angle)
+    def _tried(self, c: Callout, tip: Point, angle: float, reach: float) -> tuple[list[Item], float]:
+        """The callout's items with a leader in this direction and of this length, and their cost; none where they do not fit."""
+        elbow = polar(tip, reach, angle)
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
         texts, extras = _block(c, start, towards)
         quads = [t.corners(AROUND) for t in texts] + [_corners(x) for x in extras if not isinstance(x, Text)]
-        x0, y0, x1, y1 = bounds([p for q in quads for p in q])
-        ax0, ay0, ax1, ay1 = self.area
-        if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
+        if not self.free(quads):
             return [], 0.0
-        if any(x1 > kx0 and x0 < kx1 and y1 > ky0 and y0 < ky1 for kx0, ky0, kx1, ky1 in self.kept):
+        passed = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
+        if None in passed:
             return [], 0.0
-        if self.hit(quads, (x0, y0, x1, y1)):
-            return [], 0.0
-        legs = [(tip, elbow), (elbow, start)]
-        if any(chord_meets(leg, quad) for leg in legs for quad in self._boxes):
-            return [], 0.0
-        cost = reach + sum(self._crossings(leg) for leg in legs) + (4.0 if abs(sin(radians(angle))) > 0.97 else 0.0)
+        cost = reach + sum(passed) + (4.0 if abs(sin(radians(angle))) > 0.97 else 0.0)
         head = [] if c.dot else [arrow(tip, elbow, ARROW, "leader")]
         lines = [segment(tip, elbow, THIN, "leader"), segment(elbow, start, THIN, "leader")]
         return [*lines, *head, *texts, *extras], cost
 
+    def free(self, quads: Sequence[Quad]) -> bool:
+        """Whether texts may stand there: inside the area, on no view, over nothing."""
+        x0, y0, x1, y1 = box = bounds([p for quad in quads for p in quad])
+        ax0, ay0, ax1, ay1 = self.area
+        if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
+            return False
+        if any(x1 > kx0 and x0 < kx1 and y1 > ky0 and y0 < ky1 for kx0, ky0, kx1, ky1 in self.kept):
+            return False
+        return not self.hit(quads, box)
+
+    def passed(self, leg: tuple[Point, Point]) -> float | None:
+        """What a line pays for what it crosses; None where it would run through a text."""
+        return None if any(chord_meets(leg, quad) for quad in self._near(bounds(leg))) else self._crossings(leg)
+
     def hit(self, quads: Sequence, box: Box) -> bool:
         """Whether a text or frame would lie over anything that is there."""
-        if any(quads_meet(q, b) for q in quads for b in self._boxes):
+        if any(quads_meet(q, b) for b in self._near(box) for q in quads):
             return True
         if self._array is None:
             self._array = np.array(self._chords).reshape(-1, 4)
@@ -154,7 +166,25 @@ class Board:
         t = ((rx - px) * vy - (ry - py) * vx) / safe
         s = ((rx - px) * uy - (ry - py) * ux) / safe
         met = (np.abs(det) > 1e-12) & (t * length > 0.4) & (t < 1 - 1e-9) & (s > -1e-9) & (s < 1 + 1e-9)
-        return sum(CROSSING.get(self._roles[i], 20.0 if self._roles[i] == "arrow" else 2.0) for i in np.flatnonzero(met))
+        crossed = sum(CROSSING.get(self._roles[i], 20.0 if self._roles[i] == "arrow" else 2.0) for i in np.flatnonzero(met))
+        along_r, along_s = (((x - px) * ux + (y - py) * uy) / length for x, y in ((rx, ry), (sx, sy)))
+        off = np.abs((rx - px) * uy - (ry - py) * ux) / length
+        shared = np.minimum(np.maximum(along_r, along_s), length) - np.maximum(np.minimum(along_r, along_s), 0.0)
+        beside = (np.abs(det) < PARALLEL * length * np.hypot(vx, vy)) & (off < NEAR) & (shared > 1.0)
+        return crossed + ALONG * bool(beside.any())
+
+
+def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, float, float]]:
+    """Points of the n-th target that a leader may end at, the directions (degrees) in which it leaves them, and what they cost."""
+    (x, y), radius = c.targets[n]
+    centre = (origin[0] + x * scale, origin[1] + y * scale)
+    if not c.spans:
+        return [(polar(centre, radius * scale, 15.0 * i), 15.0 * i, 0.0) for i in range(24)]
+    start, end = c.spans[n]
+    sweep = (end - start) % 360.0 or 360.0
+    # in line with the arc's centre, from within or from outside; near its ends it reads as the edge that joins it
+    normals = [(start + sweep * share, AT_END * abs(2 * share - 1)) for share in (0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.04, 0.96)]
+    return [(polar(centre, radius * scale, a), a + turn, cost) for a, cost in normals for turn in (180.0, 0.0)]
 
 
 def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:

@@ -10,18 +10,21 @@ from tactcad.design.messages import CheckFailure
 from .board import Board
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
-from .ink import CENTRE, THIN, Arc, Item, Point, Sheet, Stroke, Text, box, moved
+from .ink import CENTRE, THIN, Arc, Hatch, Item, Point, Sheet, Stroke, Text, box, moved, points_of
 from .layout import bounds, layout_faults
 from .paper import Paper, frame
-from .plan import Box, Callout, Plan, View
+from .plan import Box, Callout, Plan, View, seen
 from .scale import SERIES, factor, shown
+from .section_lines import bore_lines, letters, mark_plane
 from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
+from .window import windowed
 
-Curve = Stroke | Arc
+Curve = Stroke | Arc | Hatch
 MARGIN = 4.0  # from the frame to anything
 APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
+PLANE = 3.0  # more between a view and its dimensions where a cutting plane ends
 LARGEST = 200.0  # mm of paper: a view is not enlarged beyond
 
 
@@ -43,7 +46,7 @@ class _Drawn:
 
     @property
     def box(self) -> Box:
-        return bounds([p for item in self.items for p in _points(item)])
+        return bounds([p for item in self.items for p in points_of(item)])
 
 
 def compose(
@@ -88,7 +91,11 @@ def _attempt(
     x0, y0, x1, y1 = paper.area
     board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
     _place_notes(board, plan.notes, paper, beside)
-    drawn = [_drawn(v, curves[v.name], scale if not v.window else _detail_scale(v, shrunk), plan.values) for v in plan.views]
+    spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
+    drawn = [
+        _drawn(v, curves[v.name], scale if not v.window else _detail_scale(v, shrunk), plan.values, {} if n else spread)
+        for n, v in enumerate(plan.views)
+    ]
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
         return None, [f"the views at {shown(scale)} do not fit {paper.name}"]
@@ -105,6 +112,8 @@ def _attempt(
     for d in drawn:
         if d.view.window and not _mark_window(board, d.view, factor(scale), places[plan.views[0].name]):
             return None, [f"the letter {d.view.label} finds no place"]
+        if d.view.section and not _mark_section(board, d.view, drawn[0], places[plan.views[0].name]):
+            return None, [f"the cutting plane {letters(d.view.section)} finds no place"]
     lettered = {}
     for d in drawn:
         for edge in d.view.datums:
@@ -140,7 +149,8 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
     board.keep_out((left, y0, left + room + 2 * MARGIN, top + MARGIN))
 
 
-def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: dict[str, float]) -> _Drawn:
+def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: dict[str, float], spread: Mapping[str, float]) -> _Drawn:
+    """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting plane."""
     f = factor(scale)
     if view.window:
         curves = windowed(curves, view.window)
@@ -148,11 +158,11 @@ def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: 
     paper_box = tuple(v * f for v in (view.window or view.box))
     starts = {}
     for r in view.runnings:
-        some = running(r, paper_box, f, values)
-        items += some
-        starts[r.side] = FIRST + 22.0
+        off = spread.get(r.side, 0.0)
+        items += running(r, paper_box, f, values, FIRST - 2.0 + off)
+        starts[r.side] = FIRST + 22.0 + off
     for side in ("top", "bottom", "left", "right"):
-        items += stacked(view.linears, side, paper_box, f, values, starts.get(side, FIRST))
+        items += stacked(view.linears, side, paper_box, f, values, starts.get(side, FIRST + spread.get(side, 0.0)))
     for a in view.across:
         items += across(a, f, values)
     for centre, diameter in view.centres:
@@ -162,9 +172,13 @@ def _drawn(view: View, curves: Sequence[Curve], scale: tuple[int, int], values: 
         items.append(Arc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline"))
     for a, b in view.axes:
         items.append(Stroke(((a[0] * f, a[1] * f), (b[0] * f, b[1] * f)), CENTRE, "centre"))
-    if view.label:
-        x0, _, x1, y1 = bounds([p for item in items for p in _points(item)])
-        items.append(Text(((x0 + x1) / 2, y1 + 4.0), f"{view.label} ({shown(scale)})", LABEL, "middle"))
+    if view.section:
+        face = next(item for item in items if isinstance(item, Hatch))
+        items += [line for bore in view.section.bores for line in bore_lines(bore, f, face)]
+    label = letters(view.section) if view.section else f"{view.label} ({shown(scale)})" if view.label else ""
+    if label:
+        x0, _, x1, y1 = bounds([p for item in items for p in points_of(item)])
+        items.append(Text(((x0 + x1) / 2, y1 + 4.0), label, LABEL, "middle"))
     return _Drawn(view, scale, tuple(items))
 
 
@@ -252,75 +266,21 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
     return False
 
 
-def windowed(curves: Sequence[Curve], window: Box) -> list[Curve]:
-    """What of the curves lies in the window, and thin lines where it cuts through the material."""
-    kept: list[Curve] = []
-    ends: list[Point] = []
-    for curve in curves:
-        if isinstance(curve, Arc) and all(_inside(p, window) for chord in curve.chords() for p in chord):
-            kept.append(curve)
-            continue
-        chords = _fine(curve) if isinstance(curve, Arc) else curve.chords()
-        for chord in chords:
-            cut = _clipped(chord, window)
-            if cut:
-                kept.append(Stroke(cut, curve.line, curve.role))
-                ends += [p for p in cut if curve.role == "outline" and _on_edge(p, window)]
-    return kept + _breaks(ends, window)
-
-
-def _fine(arc: Arc) -> list[tuple[Point, Point]]:
-    points = [arc.at(arc.start + arc.sweep * i / 64) for i in range(65)]
-    return list(zip(points, points[1:]))
-
-
-def _breaks(ends: Sequence[Point], window: Box) -> list[Curve]:
-    """Break lines between pairs of cut edges on each side of the window, with a zigzag in the middle."""
-    x0, y0, x1, y1 = window
-    lines: list[Curve] = []
-    for fixed, k in ((x0, 0), (x1, 0), (y0, 1), (y1, 1)):
-        along = sorted({round(p[1 - k], 6) for p in ends if abs(p[k] - fixed) < 1e-9})
-        for low, high in zip(along[::2], along[1::2]):
-            m, z = (low + high) / 2, min((high - low) / 8, (x1 - x0) / 40)
-            track = [(0, low), (0, m - z), (z, m - z / 2), (-z, m + z / 2), (0, m + z), (0, high)]
-            points = tuple((fixed + u, v) if k == 0 else (v, fixed + u) for u, v in track)
-            lines.append(Stroke(points, THIN, "leader"))
-    return lines
-
-
-def _clipped(chord: tuple[Point, Point], window: Box) -> tuple[Point, Point] | None:
-    """Liang and Barsky's clipping of a straight piece."""
-    (ax, ay), (bx, by) = chord
-    dx, dy = bx - ax, by - ay
-    t0, t1 = 0.0, 1.0
-    for d, low, high in ((dx, window[0] - ax, window[2] - ax), (dy, window[1] - ay, window[3] - ay)):
-        if abs(d) < 1e-12:
-            if low > 0 or high < 0:
-                return None
-            continue
-        enter, leave = sorted((low / d, high / d))
-        t0, t1 = max(t0, enter), min(t1, leave)
-    if t1 - t0 < 1e-9:
-        return None
-    return ((ax + t0 * dx, ay + t0 * dy), (ax + t1 * dx, ay + t1 * dy))
+def _mark_section(board: Board, view: View, front: _Drawn, place: Point) -> bool:
+    f, section = factor(front.scale), view.section
+    on = [0.0, 0.0, 0.0]
+    on[section.axis] = section.at
+    at = seen(front.view, tuple(on))[section.axis] * f + place[section.axis]
+    sight = -sum(a * b for a, b in zip(view.eye, (front.view.right, front.view.up)[section.axis]))
+    return mark_plane(board, section, at, sight, _shifted(tuple(v * f for v in front.view.box), place))
 
 
 def _scaled(curve: Curve, f: float) -> Curve:
+    if isinstance(curve, Hatch):
+        return replace(curve, loops=tuple(tuple((x * f, y * f) for x, y in loop) for loop in curve.loops))
     if isinstance(curve, Arc):
         return replace(curve, centre=(curve.centre[0] * f, curve.centre[1] * f), radius=curve.radius * f)
     return replace(curve, points=tuple((x * f, y * f) for x, y in curve.points))
-
-
-def _inside(p: Point, window: Box) -> bool:
-    return window[0] <= p[0] <= window[2] and window[1] <= p[1] <= window[3]
-
-
-def _on_edge(p: Point, window: Box) -> bool:
-    return min(abs(p[0] - window[0]), abs(p[0] - window[2]), abs(p[1] - window[1]), abs(p[1] - window[3])) < 1e-9
-
-
-def _points(item: Item) -> list[Point]:
-    return list(item.corners()) if isinstance(item, Text) else [p for chord in item.chords() for p in chord]
 
 
 def _corner_points(b: Box) -> list[Point]:

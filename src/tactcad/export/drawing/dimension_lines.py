@@ -174,15 +174,14 @@ def _text_on(there: Callable[[float, float], Point], side: Side, o: float, t0: f
     return boxed(shown, key) if key else [shown]
 
 
-def running(r: Running, box: Box, scale: float, values: Values) -> list[Item]:
-    """Dimensions from one origin: one dimension line with an arrow at every stop, texts in line with the extension."""
+def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST - 2.0) -> list[Item]:
+    """Dimensions from one origin: one dimension line with an arrow at every stop, `o` from the box, texts in line with the extension."""
     there = placer(r.side, box)
     stops = sorted(
         ((*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops), key=lambda stop: stop[0]
     )
     origin = next(s for s, _, d in stops if d is None)
     places = _spread([s for s, _, _ in stops], LABELS)
-    o = FIRST - 2.0
     items: list[Item] = [segment(there(stops[0][0], o), there(stops[-1][0], o))]
     for n, ((s, foot, d), label) in enumerate(zip(stops, places)):
         bend = o + (3.0 if abs(label - s) < 1e-6 else 2.0)

@@ -6,7 +6,8 @@ Line types and widths of ISO 128-2:2020, group 0.5 (thick 0.5, thin 0.25); dashe
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, cos, hypot, radians, sin
+from functools import cached_property
+from math import ceil, cos, hypot, radians, sin, sqrt
 from typing import Literal
 
 from .fonts import ink_box, width
@@ -16,7 +17,7 @@ Point = tuple[float, float]
 # What a line or text is for. Texts of the part and of the paper alike may not touch any line; a watermark may.
 Role = Literal[
     "outline", "hidden", "smooth", "centre", "extension", "dimension", "leader", "symbol", "frame", "table", "note",
-    "watermark",
+    "watermark", "hatch", "cutting",
 ]  # fmt: skip
 
 
@@ -34,7 +35,9 @@ THIN = LineType("thin", 0.25)  # 01.1: dimension, extension, leader lines
 SMOOTH = LineType("smooth", 0.18)  # 01.1: tangent edges, and grids of tables
 HIDDEN = LineType("hidden", 0.25, (3.0, 0.75))  # 02.1: 12 d and 3 d
 CENTRE = LineType("centre", 0.25, (6.0, 0.75, 0.25, 0.75))  # 04.1: 24 d, 3 d, dot, 3 d
+CUTTING = LineType("cutting", 0.5)  # ends of a cutting plane's line, a dash each: 04.2
 FRAME = LineType("frame", 0.7)  # ISO 5457
+HATCHING = (1.0, 3.0)  # least and largest distance of hatching lines; ISO 128-2 asks for 0.7 at least
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,50 @@ class Text:
         return tuple((x + c * u - s * v, y + s * u + c * v) for u, v in local)
 
 
-Item = Stroke | Arc | Fill | Text
+@dataclass(frozen=True)
+class Hatch:
+    """A cut face between closed polygons (holes among them, by even and odd), hatched at 45 degrees (ISO 128-50)."""
+
+    loops: tuple[tuple[Point, ...], ...]
+    line: LineType = THIN
+    role: Role = "hatch"
+
+    @cached_property
+    def spacing(self) -> float:
+        """mm between lines: an eighth of the face's narrower extent, in HATCHING."""
+        extents = [max(values) - min(values) for values in zip(*(p for loop in self.loops for p in loop))]
+        return min(max(min(extents) / 8, HATCHING[0]), HATCHING[1])
+
+    def chords(self) -> tuple[tuple[Point, Point], ...]:
+        """The hatching lines, y - x = k sqrt(2) spacing: of one pattern for all areas of the face."""
+        return self._lines
+
+    @cached_property
+    def _lines(self) -> tuple[tuple[Point, Point], ...]:
+        step = self.spacing * sqrt(2.0)
+        met: dict[int, list[float]] = {}  # x + y where the outlines meet line k
+        for (ax, ay), (bx, by) in self.outlines():
+            a, b = (ay - ax) / step, (by - bx) / step
+            for k in range(ceil(min(a, b)), ceil(max(a, b))):
+                share = (k - a) / (b - a)
+                met.setdefault(k, []).append(ax + ay + share * (bx + by - ax - ay))
+        found = []
+        for k, places in sorted(met.items()):
+            places.sort()
+            found += [tuple(((w - k * step) / 2, (w + k * step) / 2) for w in ends) for ends in zip(places[::2], places[1::2])]
+        return tuple(found)
+
+    def outlines(self) -> list[tuple[Point, Point]]:
+        """Sides of the polygons."""
+        return [side for loop in self.loops for side in zip(loop, loop[1:] + loop[:1])]
+
+    def holds(self, p: Point) -> bool:
+        """Whether a point lies in the hatched area."""
+        x, y = p
+        return sum((a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) for a, b in self.outlines()) % 2 == 1
+
+
+Item = Stroke | Arc | Fill | Hatch | Text
 
 
 @dataclass(frozen=True)
@@ -144,6 +190,15 @@ class Sheet:
     @property
     def texts(self) -> tuple[Text, ...]:
         return tuple(item for item in self.items if isinstance(item, Text))
+
+
+def points_of(item: Item) -> list[Point]:
+    """Points that the item's bounds follow from."""
+    if isinstance(item, Text):
+        return list(item.corners())
+    if isinstance(item, Hatch):
+        return [p for loop in item.loops for p in loop]
+    return [p for chord in item.chords() for p in chord]
 
 
 def polar(origin: Point, distance: float, angle: float) -> Point:
@@ -179,6 +234,8 @@ def moved(item: Item, dx: float, dy: float) -> Item:
         return replace(item, centre=there(item.centre))
     if isinstance(item, Text):
         return replace(item, at=there(item.at))
+    if isinstance(item, Hatch):
+        return replace(item, loops=tuple(tuple(there(p) for p in loop) for loop in item.loops))
     return replace(item, points=tuple(there(p) for p in item.points))
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import hypot
 
-from .ink import Arc, Fill, Item, Point, Sheet, Stroke, Text
+from .ink import Arc, Fill, Hatch, Item, Point, Sheet, Stroke, Text, points_of
 from .paper import LEFT, OTHER
 
 # Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's width.
@@ -34,15 +34,15 @@ class _Drawn:
 
 
 def layout_faults(sheet: Sheet) -> list[str]:
-    """Every fault, a line each: texts over texts or lines, anything outside the frame, dimension lines across others."""
+    """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
     drawn = list(_pieces(sheet.items))
-    return [*_text_on_text(texts), *_text_on_line(texts, drawn), *_outside(sheet), *_dimension_lines(drawn)]
+    return [*_text_on_text(texts), *_text_on_line(texts, drawn), *_text_on_hatching(texts, sheet.items), *_outside(sheet), *_dimension_lines(drawn)]
 
 
 def _pieces(items: Sequence[Item]) -> Iterator[_Drawn]:
     for n, item in enumerate(items):
-        if isinstance(item, Stroke | Arc | Fill):
+        if isinstance(item, Stroke | Arc | Fill | Hatch):
             half = 0.0 if isinstance(item, Fill) else item.line.width / 2
             for chord in item.chords():
                 yield _Drawn(chord, half, item.role, n)
@@ -60,6 +60,13 @@ def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Drawn]) -> Iterator[st
         hit = text_hits(text, drawn)
         if hit:
             yield f"text {text.text!r} at {_shown(text.at)} over a line ({', '.join(sorted(hit))})"
+
+
+def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[str]:
+    """A text in a hatched area, be it between two lines; one across its edge stands over a line anyway."""
+    for text in texts:
+        if any(item.holds(corner) for item in items if isinstance(item, Hatch) for corner in text.corners()):
+            yield f"text {text.text!r} at {_shown(text.at)} over hatching"
 
 
 def text_hits(text: Text, drawn: Sequence[_Drawn]) -> set[str]:
@@ -82,8 +89,7 @@ def _outside(sheet: Sheet) -> Iterator[str]:
     w, h = sheet.size
     for item in sheet.items:
         inside = (0.0, 0.0, w, h) if item.role in ("frame", "watermark") else (LEFT, OTHER, w - OTHER, h - OTHER)
-        points = item.corners() if isinstance(item, Text) else [p for chord in item.chords() for p in chord]
-        x0, y0, x1, y1 = bounds(points)
+        x0, y0, x1, y1 = bounds(points_of(item))
         if x0 < inside[0] or y0 < inside[1] or x1 > inside[2] or y1 > inside[3]:
             what = f"text {item.text!r}" if isinstance(item, Text) else f"a line ({item.role})"
             yield f"{what} at {_shown((x0, y0))} lies outside the {'paper' if item.role == 'frame' else 'frame'}"

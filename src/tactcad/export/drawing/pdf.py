@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .fonts import em, font_file
-from .ink import Arc, Fill, Item, LineType, Sheet, Text
+from .ink import Arc, Fill, Hatch, Item, LineType, Sheet, Stroke, Text
 
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
@@ -47,6 +47,10 @@ def _draw(canvas: Canvas, item: Item) -> None:
     if isinstance(item, Arc):
         (x, y), r = item.centre, item.radius
         path.arc(x - r, y - r, x + r, y + r, item.start, item.sweep)
+    elif isinstance(item, Hatch):
+        for a, b in item.chords():
+            path.moveTo(*a)
+            path.lineTo(*b)
     else:
         path.moveTo(*item.points[0])
         for point in item.points[1:]:
@@ -56,7 +60,7 @@ def _draw(canvas: Canvas, item: Item) -> None:
         canvas.setFillGray(0)
         canvas.drawPath(path, stroke=0, fill=1)
         return
-    if not isinstance(item, Arc) and item.closed:
+    if isinstance(item, Stroke) and item.closed:
         path.close()
     _pen(canvas, item.line)
     canvas.drawPath(path, stroke=1, fill=0)

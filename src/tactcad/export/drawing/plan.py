@@ -128,11 +128,33 @@ class Datum:
 
 
 @dataclass(frozen=True)
+class Bore:
+    """A hole cut along its axis, in the view's own mm: axis, nominal diameter of its thread (0: none), the thread's axis from
+    its start to the end of full thread, and whether that end lies inside the hole."""
+
+    face: Point
+    end: Point
+    thread: float = 0.0
+    threaded: tuple[Point, Point] = ((0.0, 0.0), (0.0, 0.0))
+    ends_inside: bool = False
+
+
+@dataclass(frozen=True)
+class Section:
+    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes lie in its plane."""
+
+    letter: str
+    axis: int
+    at: float
+    bores: tuple[Bore, ...] = ()
+
+
+@dataclass(frozen=True)
 class View:
     """One view: eye and up in the part's frame, its box in the view's own mm, and what is written on it.
 
     A `window` cuts out what a detail shows; its letter is the view's `label`, and it is drawn as large as
-    `room` (mm of paper) lets, but no smaller than `least` : 1.
+    `room` (mm of paper) lets, but no smaller than `least` : 1. Of a `section` what lies before its plane is taken away.
     """
 
     name: str
@@ -152,6 +174,7 @@ class View:
     centres: tuple[tuple[Point, float], ...] = ()  # circles that carry centre lines
     threads: tuple[tuple[Point, float], ...] = ()  # seen along their axis: middle, nominal diameter
     axes: tuple[tuple[Point, Point], ...] = ()  # other centre lines
+    section: Section | None = None
 
     @property
     def right(self) -> Vector:
@@ -164,6 +187,11 @@ class View:
         stops = [d for running in self.runnings for d, _ in running.stops if d]
         called = [d for callout in self.callouts for d in callout.dimensions]
         return (*(s.dimension for s in self.linears), *(s.dimension for s in self.across), *stops, *called)
+
+
+def seen(view: View, p: Vector) -> Point:
+    """A point of the part in the view's plane."""
+    return (sum(a * b for a, b in zip(view.right, p)) + 0.0, sum(a * b for a, b in zip(view.up, p)) + 0.0)
 
 
 @dataclass(frozen=True)

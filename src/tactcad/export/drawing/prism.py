@@ -15,6 +15,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Hole, Part, Pocket, Vector
 
+from .contours import contours
 from .holes import Group, groups, rounds
 from .ink import Point
 from .measure import (
@@ -34,7 +35,8 @@ from .measure import (
     size,
     variables,
 )
-from .plan import Callout, Characteristic, Datum, Dimension, Linear, Plan, Running, View, characteristic
+from .plan import Callout, Characteristic, Datum, Dimension, Linear, Plan, Running, View, characteristic, seen
+from .section import section_of, section_view
 
 FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
@@ -80,19 +82,8 @@ class Sketch:
         return dimension
 
 
-def contours(part: Part) -> list[tuple[str, Contour]]:
-    """Every contour of the part by its variables' name."""
-    body = part.body
-    named = [("outer", body.outer), *((f"opening{i}", c) for i, c in enumerate(body.openings))]
-    for k, f in enumerate(part.features):
-        if isinstance(f, Pocket):
-            named.append((f"pocket{k}", in_part(f, f.contour)))
-            named += [(f"island{k}.{i}", in_part(f, c)) for i, c in enumerate(f.island)]
-    return named
-
-
-def prism_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
-    """The plan of any extruded part. Raises CheckFailure where a characteristic or a variable stays without dimension."""
+def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = True) -> Plan:
+    """The plan of any extruded part, with a section where it is of use and `cut` asks for it. Raises CheckFailure where a characteristic or a variable stays without dimension."""
     body = part.body
     assert isinstance(body, Extrusion)
     sketch = Sketch(part)
@@ -110,9 +101,14 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str]) -> Plan:
     views = [front]
     if below:
         views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits))
+    section = section_of(part, found, front, below) if cut else None
     aside = [g for g in called if g.axis[0]]
     if aside or not below:
-        views.append(side_view(sketch, part, front, called if aside else [], limits, thickness=not below))
+        side = side_view(sketch, part, front, called if aside else [], limits, thickness=not below)
+        views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
+    if section and (below or section.axis == 1):
+        view = section_view(front, below, section)
+        views.append(replace(view, box=view_box(view, part)))
     if limits:
         raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
     closed(sketch)
@@ -140,11 +136,6 @@ def _below_eye(found: Sequence, up: Vector) -> Vector | None:
     if not upper + lower:
         return None
     return up if upper >= lower else tuple(-u for u in up)
-
-
-def seen(view: View, p: Vector) -> Point:
-    """A point of the part in the view's plane."""
-    return (sum(a * b for a, b in zip(view.right, p)) + 0.0, sum(a * b for a, b in zip(view.up, p)) + 0.0)
 
 
 def view_box(view: View, part: Part) -> tuple[float, float, float, float]:
@@ -192,13 +183,13 @@ def _front_view(
 
 
 def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
-    """Letters on the two edges that the running dimensions start from: the longest there."""
+    """Letters on the two edges that the running dimensions start from: on the longest there that has room."""
     lines = [(seen(view, (*s.start, 0.0)), seen(view, (*s.end, 0.0))) for s in outer if isinstance(s, Line)]
     found = []
     for letter, k, away in (("B", 0, (-1.0, 0.0)), ("C", 1, (0.0, -1.0))):
         on = [(p, q) for p, q in lines if max(abs(p[k] - view.box[k]), abs(q[k] - view.box[k])) < ALIKE]
-        if on:
-            found.append(Datum(letter, *max(on, key=lambda e: abs(e[0][1 - k] - e[1][1 - k])), away))
+        longest = sorted(on, key=lambda e: -round(abs(e[0][1 - k] - e[1][1 - k]), 6))
+        found += [Datum(letter, *edge, away) for edge in longest]
     return tuple(found)
 
 
@@ -319,8 +310,14 @@ def _edge_level(sketch: Sketch, name: str, axis: str, value: float) -> Level:
 def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
     for d in g.dimensions:
         sketch.must(d)
-    targets = tuple((seen(view, r.at), _widest(r.hole) / 2) for r in g.holes)
-    return Callout(g.lines, targets, g.dimensions)
+    targets = [(seen(view, r.at), _widest(r.hole) / 2) for r in g.holes]
+    return Callout(g.lines, tuple(sorted(targets, key=lambda t: _to_outside(view, t[0]))), g.dimensions)
+
+
+def _to_outside(view: View, p: Point) -> float:
+    """Way from a point of the view to the nearest side of its box, mm: leaders are shortest from where it is small."""
+    u0, v0, u1, v1 = view.box
+    return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
 
 
 def _widest(h: Hole) -> float:
@@ -352,11 +349,17 @@ def _pocket_callouts(sketch: Sketch, view: View, part: Part, limits: dict[str, C
         label = f.name.replace("_", " ")
         if f.island:
             label = f"{label} groove" if f.island[0].as_circle() else f"faced off {label}"
-        contour = in_part(f, f.contour)
-        target = contour.segments[0].at(0.5)
-        spot = (seen(view, (*target, 0.0)), 0.0)
-        callouts.append(Callout((f"{label} {text} {depth}".replace("  ", " "),), (spot,), tuple(used)))
+        spots = _edge_targets(view, in_part(f, f.contour))
+        callouts.append(Callout((f"{label} {text} {depth}".replace("  ", " "),), spots, tuple(used)))
     return callouts
+
+
+def _edge_targets(view: View, contour: Contour) -> tuple[tuple[Point, float], ...]:
+    """Where a leader may touch a contour: anywhere on a circle, else the middles of its segments."""
+    if circle := contour.as_circle():
+        return ((seen(view, (*circle[0], 0.0)), circle[1]),)
+    middles = [seen(view, (*s.at(0.5), 0.0)) for s in contour]
+    return tuple((p, 0.0) for p in sorted(middles, key=lambda p: _to_outside(view, p)))
 
 
 def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension | None:

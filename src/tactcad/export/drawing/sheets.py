@@ -8,20 +8,21 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import Extrusion, Part
+from tactcad.parts.description import Extrusion, Part, Vector
 
 from ..workers import end_with
-from .compose import NoPlace, compose
+from .compose import Curve, NoPlace, compose
 from .element import element_plan
 from .gate import drawing_faults
 from .ink import Sheet, preliminary
 from .notes import MadeFrom, notes_of
 from .paper import A3, A4
-from .plan import Plan
+from .plan import Plan, Section, View
 from .prism import prism_plan
 from .title import TitleBlock
 
@@ -54,34 +55,46 @@ class Written:
     svg: bytes
 
 
-def part_plan(part: Part, design: Design, files: Sequence[MadeFrom], tall: bool = False) -> Plan:
-    """What the part's sheet shows; an element's as that of a `tall` one where asked for. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
+def part_plan(part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False) -> Plan:
+    """What the part's sheet shows; `spare` asks for less: an element's as that of a tall one, a prism's without section. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
     names = {s.name for s in part.body.outer}
     notes = notes_of(part, files)
     if {"pad_face", "stop_land"} <= names:
-        return element_plan(part, design, notes, tall)
-    return prism_plan(part, design, notes)
+        return element_plan(part, design, notes, spare)
+    return prism_plan(part, design, notes, not spare)
 
 
 def part_sheet(order: Order) -> Sheet:
     """The finished sheet, its layout clean."""
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
+    from .cut import cut
     from .hidden_lines import projected
 
-    design, part = order.design, order.part
-    plan = part_plan(part, design, order.files)
     shape = from_bytes(order.shape)
-    curves = {view.name: projected(shape, view.eye, view.right) for view in plan.views}
+
+    @cache
+    def curves(eye: Vector, up: Vector, section: Section | None) -> list[Curve]:
+        view = View("", eye, up, (0.0, 0.0, 0.0, 0.0), section=section)
+        if section is None:
+            return projected(shape, eye, view.right)
+        half, face = cut(shape, view)
+        return [face, *projected(half, eye, view.right)]
+
+    def composed(plan: Plan) -> Sheet:
+        return compose(plan, {v.name: curves(v.eye, v.up, v.section) for v in plan.views}, title, (A4, A3))
+
+    design, part = order.design, order.part
     title = title_of(design, part, order.draft)
+    plan = part_plan(part, design, order.files)
     try:
-        sheet = compose(plan, curves, title, (A4, A3))
+        sheet = composed(plan)
     except NoPlace:
-        if all(view.window is None for view in plan.views):
+        if all(view.window is None and view.section is None for view in plan.views):
             raise
-        sheet = compose(part_plan(part, design, order.files, tall=True), curves, title, (A4, A3))
+        sheet = composed(part_plan(part, design, order.files, spare=True))
     return preliminary(sheet) if order.draft else sheet
 
 

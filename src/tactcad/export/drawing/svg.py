@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from .fonts import FAMILY, em
-from .ink import Arc, Fill, Item, LineType, Point, Sheet, Text
+from .ink import Arc, Fill, Hatch, Item, LineType, Point, Sheet, Text
 
 GREY = "#c9ced4"
 
@@ -33,6 +33,8 @@ def _drawn(item: Item, h: float) -> str:
         return f'<path class="{item.role}" fill="#000000" d="{_polyline(item.points, h)}Z"/>'
     if isinstance(item, Arc):
         return f'<path class="{item.role}" {_pen(item.line)} d="{_arc(item, h)}"/>'
+    if isinstance(item, Hatch):
+        return f'<path class="{item.role}" {_pen(item.line)} d="{"".join(_polyline(chord, h) for chord in item.chords())}"/>'
     return f'<path class="{item.role}" {_pen(item.line)} d="{_polyline(item.points, h)}{"Z" if item.closed else ""}"/>'
 
 
