@@ -55,6 +55,18 @@ def test_every_benchmark_runs_in_smoke_mode(name, tmp_path, capsys):
     check_contents(name, entry["tables"])
 
 
+def test_a_fault_in_one_benchmark_loses_nothing_of_the_others(tmp_path, monkeypatch):
+    from tactcad.studies.bench import element, plan, run
+
+    def broken(plan):
+        return 1 / 0
+
+    monkeypatch.setattr(element, "measure", lambda plan: {"findings": ["Measured."]})
+    monkeypatch.setattr("tactcad.studies.bench.meshes.measure", broken)
+    done = run.run(plan.Plan("smoke", 1, tmp_path), ["meshes", "element"], lambda *_: None)["benchmarks"]
+    assert "ZeroDivisionError in broken" in done["meshes"]["failed"] and done["element"]["findings"] == ["Measured."]
+
+
 def check_contents(name: str, made: dict) -> None:
     """What must be true of the figures whatever the machine."""
     rows = next(iter(made.values()))["rows"]

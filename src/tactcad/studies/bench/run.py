@@ -5,9 +5,11 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import time
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import date
+from pathlib import Path
 
 from tactcad.design.messages import CheckFailure
 
@@ -56,6 +58,9 @@ def _one(name: str, plan: Plan) -> dict:
         entry |= module.measure(plan)
     except CheckFailure as failure:
         entry["failed"] = str(failure)
+    except Exception as error:  # a fault in one does not lose what the others measured in an hour
+        at = traceback.extract_tb(error.__traceback__)[-1]
+        entry["failed"] = f"{type(error).__name__} in {at.name}, line {at.lineno} of {Path(at.filename).name}: {error}"
     return entry | {"seconds": round(time.perf_counter() - started, 1)}
 
 
