@@ -20,6 +20,7 @@ from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
+from tactcad.parts.library.screws import set_screw
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import RigLayout, pad_middles
 from tactcad.scenes import make_scene, scene_names
@@ -226,7 +227,17 @@ def test_a_guide_places_every_part_once_and_shows_its_torques(name):
             assert re.search(rf"[> ]{p.designator}[< ]", page), p.designator
             if p.part.part_no.startswith("ISO4762-M3"):
                 assert guide.torque(p.part) == 0.55
+            if p.part.part_no.startswith("ISO4026-"):
+                assert 0.3 * 0.55 < guide.torque(p.part) < 0.4 * 0.55
         assert "http" not in page  # opens offline
+
+
+def test_set_screws_are_turned_in_by_their_size():
+    """A third of what a cap screw of the size bears, in the step and in the part's row."""
+    for screw, expected in (("M3", 0.2), ("M4", 0.4)):
+        page = guide.page(design := variant({"clamp.screw": screw}), make_scene(design, "array")).decode()
+        assert f"crosswise, to {expected:g} N m, locked" in page and f"<td>{expected:g} N m</td>" in page
+    assert (guide.torque(set_screw("M2", 4)), guide.torque(set_screw("M5", 10))) == (0.05, 0.8)
 
 
 def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():

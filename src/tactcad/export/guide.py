@@ -8,10 +8,10 @@ from html import escape
 
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part, Vector
-from tactcad.parts.library.screws import METRIC
+from tactcad.parts.library.screws import METRIC, seating_torque
 from tactcad.scenes.scene import Placement, Scene, Step
 
-_CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x")
+_SCREW = re.compile(r"ISO(4762|4026)-(M[\d.]+)x")
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.2rem; margin: 2.5rem 0 .3rem; }
@@ -57,9 +57,11 @@ def _moved(p: Placement, way: Vector, share: float) -> Placement:
 
 
 def torque(part: Part) -> float | None:
-    """Tightening torque of a cap screw, N m; None for other parts."""
-    match = _CAP_SCREW.match(part.part_no)
-    return METRIC[match[1]].torque if match else None
+    """Tightening torque of a cap or set screw, N m; None for other parts."""
+    match = _SCREW.match(part.part_no)
+    if not match:
+        return None
+    return METRIC[match[2]].torque if match[1] == "4762" else seating_torque(match[2])
 
 
 def page(design: Design, scene: Scene) -> bytes:

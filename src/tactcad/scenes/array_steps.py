@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tactcad.parts.description import Vector
 from tactcad.parts.layout import Layout
+from tactcad.parts.library.screws import seating_torque
 
 from .scene import Step
 
@@ -71,7 +72,7 @@ def array_steps(layout: Layout, designators: tuple[str, ...]) -> tuple[Step, ...
         ),
         step(
             "Hold the stop plate down", named("SS"), (0, 0, 2.1 * width),
-            "Turn the set screws in, crosswise, to 0.2 N m, locked with a drop of thread lacquer. Check each stop: push every pad with a "
+            f"Turn the set screws in, crosswise, to {seating_torque(d.clamp.screw):g} N m, locked with a drop of thread lacquer. Check each stop: push every pad with a "
             "plastic rod; it must give way and come to a stop, with "
             + ", ".join(sorted({f"{g:g} mm at arm {a:g}" for a, g in _gaps(layout)}, key=lambda s: float(s.split()[-1])))
             + f" (within {d.stop.tolerance:g} mm) on the lever indicator at the tip.",

@@ -17,8 +17,10 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
     if scene.steps:
         lines.append(f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} (tactcad export --guide)")
     lines += _rows(design, scene)
-    if torques := _torques(scene):
+    if torques := _torques(scene, "ISO4762-"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
+    if torques := _torques(scene, "ISO4026-"):
+        lines.append(f"Turn set screws in to {torques}, locked with thread lacquer")
     for step in scene.steps:
         if step.title == COPLANAR:
             within = f"{design.tolerance.pad_height:g} mm"
@@ -41,10 +43,10 @@ def _rows(design: Design, scene: Scene) -> list[str]:
     return lines
 
 
-def _torques(scene: Scene) -> str:
-    """ "M3 0.55 N·m, M4 1.2 N·m" of the cap screws placed."""
+def _torques(scene: Scene, standard: str) -> str:
+    """ "M3 0.55 N·m, M4 1.2 N·m" of the screws of that standard placed."""
     found = {}
     for part in scene.parts:
-        if tight := torque(part):
+        if part.part_no.startswith(standard) and (tight := torque(part)):
             found[part.part_no.split("-")[1].split("x")[0]] = tight
     return ", ".join(f"{thread} {value:g} N·m" for thread, value in sorted(found.items(), key=lambda pair: pair[1]))

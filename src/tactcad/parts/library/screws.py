@@ -77,6 +77,12 @@ def engagement(thread: str) -> float:
     return ENGAGED * METRIC[thread].d
 
 
+def seating_torque(thread: str) -> float:
+    """N m for a set screw that holds a plate down: a third of the cap screw's, to one digit; chosen: thread lacquer keeps
+    it, so that it need not clamp."""
+    return float(f"{METRIC[thread].torque / 3:.1g}")
+
+
 def tapped_depth(thread: str) -> float:
     """Drilled depth below the face, cone included, of a blind hole with 1.5 d + 1 mm of full thread.
 
