@@ -61,6 +61,15 @@ def test_rows_marked_as_worth_choosing_are_the_front():
     assert [r["front"] for r in rows] == [i in front for i in range(len(rows))]
 
 
+def test_a_further_run_takes_the_place_of_what_it_measured_and_is_named():
+    more = {**RESULT, "mode": "full", "seed": 123456, "machine": RESULT["machine"] | {"load": 0.7}, "benchmarks": {"scaling": {"tables": {}}}}
+    both = publish.replaced({k: v for k, v in RESULT.items() if k != "further"}, more)
+    assert both["benchmarks"]["scaling"] == {"tables": {}} and both["benchmarks"]["rungs"] == RESULT["benchmarks"]["rungs"]
+    assert "full run" in render.made_on(both) and "seed 123456" in render.made_on(both) and "load 0.7: scaling." in render.made_on(both)
+    with pytest.raises(InputError, match="its versions differ"):
+        publish.replaced(RESULT, more | {"versions": RESULT["versions"] | {"numpy": "1.0"}})
+
+
 def test_a_report_that_lacks_something_is_not_published(tmp_path):
     (tmp_path / "report.json").write_text('{"schema": "tactcad-bench-1", "benchmarks": {"rungs": {"tables": {}}}}')
     with pytest.raises(InputError, match="not a whole report"):

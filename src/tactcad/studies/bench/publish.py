@@ -1,4 +1,6 @@
-"""A full run's report becomes the published one: `python -m tactcad.studies.bench.publish REPORT` in the checkout.
+"""A run's report becomes the published one: `python -m tactcad.studies.bench.publish REPORT [FURTHER]...` in the checkout.
+
+What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's own, and is named.
 
 Writes benchmarks/results/reference.json and .md, docs/images/bench-*.svg, the converged results that short runs compare
 with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in README.md and docs/.
@@ -8,6 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from tactcad.design.messages import InputError
@@ -23,17 +26,31 @@ REFERENCE = "benchmarks/results/reference.json"
 DOCUMENTS = ("README.md", "docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
 
 
-def load(path: Path) -> dict:
-    """A report's JSON. Raises InputError where it is none, or lacks a benchmark."""
+def load(path: Path, wanted: Iterable[str] = BENCHMARKS) -> dict:
+    """A report's JSON. Raises InputError where it is none, or lacks a benchmark that is wanted."""
     try:
         result = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(str(path), f"cannot be read: {error}") from None
-    lacking = [n for n in BENCHMARKS if "tables" not in result.get("benchmarks", {}).get(n, {})]
+    lacking = [n for n in wanted if "tables" not in result.get("benchmarks", {}).get(n, {})]
     failed = [n for n, entry in result.get("benchmarks", {}).items() if "failed" in entry]
     if result.get("schema") != SCHEMA or lacking or failed:
         raise InputError(str(path), "not a whole report", value=", ".join(lacking + failed), legal=f"schema {SCHEMA}, every benchmark")
     return result
+
+
+def replaced(result: dict, more: dict) -> dict:
+    """The report with what `more` measured in the place of its own, under "further" from which run.
+
+    Raises InputError where they are not from one machine with the same versions.
+    """
+    for key in ("machine", "versions", "peers"):
+        ours, theirs = ({k: v for k, v in r[key].items() if k != "load"} for r in (result, more))
+        if ours != theirs:
+            raise InputError("report", f"the further run is from another place: its {key} differ", value=theirs, legal=str(ours))
+    run = {key: more[key] for key in ("mode", "date", "seed", "seconds")}
+    run |= {"load": more["machine"]["load"], "benchmarks": list(more["benchmarks"])}
+    return result | {"benchmarks": result["benchmarks"] | more["benchmarks"], "further": [*result.get("further", []), run]}
 
 
 def blocks(result: dict) -> dict[str, str]:
@@ -50,9 +67,11 @@ def images(result: dict) -> dict[str, bytes]:
     return {f"{f.name}.svg": standalone(f).encode() for shown in figures(result).values() for f in shown}
 
 
-def publish(report: Path, root: Path) -> list[Path]:
+def publish(report: Path, further: Sequence[Path], root: Path) -> list[Path]:
     """Write everything that is published into the checkout `root`; returns what was written."""
     result = load(report / "report.json")
+    for more in further:
+        result = replaced(result, load(more / "report.json", ()))
     files = {REFERENCE: render.to_json(result), REFERENCE.replace(".json", ".md"): render.to_markdown(result, "../../docs/images")}
     files |= {f"docs/images/{name}": data.decode() for name, data in images(result).items()}
     if (report / truth.SHIPPED).is_file():
@@ -68,5 +87,5 @@ def publish(report: Path, root: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    for path in publish(Path(sys.argv[1]), Path.cwd()):
+    for path in publish(Path(sys.argv[1]), [Path(more) for more in sys.argv[2:]], Path.cwd()):
         print(path)
