@@ -12,6 +12,7 @@ import pytest
 from tactcad.studies.bench import tables
 from tactcad.studies.bench.exponent import fit
 from tactcad.studies.bench.front import dominators, efficient, told
+from tactcad.studies.bench.rungs import errors
 from tactcad.studies.bench.timing import interleaved, of_samples
 
 
@@ -93,3 +94,8 @@ def test_a_table_reads_the_same_in_every_form():
     assert first == "| a | 1.23 | 3 | yes |" and second == "| b \\| c |  | 0 | no |"
     lines = tables.text(TABLE).splitlines()
     assert lines[1].split() == ["name", "time", "wrong", "kept"] and lines[2].split() == ["ms"] and lines[3].split() == ["a", "1.23", "3", "yes"]
+
+
+def test_no_error_smaller_than_that_of_the_converged_elements_is_claimed():
+    found = errors(np.array([1.0, 1.01, np.nan]), np.ones(3), "solid", np.array([2e-4, 2e-4, 2e-4]))
+    assert found == {"solid mean": pytest.approx((2e-4 + 0.01) / 2), "solid worst": pytest.approx(0.01), "solid designs": 2}

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 EXAMPLES = """\
-  tactcad bench                              everything in short: two minutes on a quiet machine
+  tactcad bench                              everything in short: four minutes on two quiet cores
   tactcad bench --full --out bench           for publication: report.json, report.md, tables/*.csv, plots/*.svg
   tactcad bench --only rungs --only meshes   two of them
   tactcad bench --smoke                      does everything run? its figures mean nothing
