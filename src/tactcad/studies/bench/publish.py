@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from tactcad.design.messages import InputError
@@ -26,16 +26,27 @@ REFERENCE = "benchmarks/results/reference.json"
 DOCUMENTS = ("README.md", "docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
 
 
-def load(path: Path, wanted: Iterable[str] = BENCHMARKS) -> dict:
-    """A report's JSON. Raises InputError where it is none, or lacks a benchmark that is wanted."""
+def load(*paths: Path) -> dict:
+    """The JSON of a report, with that of further ones in its place. Raises InputError where one is no report, they do not
+    belong together, or a benchmark is lacking or failed."""
+    first, *further = map(_read, paths)
+    result = first
+    for more in further:
+        result = replaced(result, more)
+    lacking = [n for n in BENCHMARKS if "tables" not in result["benchmarks"].get(n, {})]
+    failed = [n for n, entry in result["benchmarks"].items() if "failed" in entry]
+    if lacking or failed:
+        raise InputError(str(paths[0]), "not a whole report", value=", ".join(lacking + failed), legal="every benchmark")
+    return result
+
+
+def _read(path: Path) -> dict:
     try:
         result = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError) as error:
         raise InputError(str(path), f"cannot be read: {error}") from None
-    lacking = [n for n in wanted if "tables" not in result.get("benchmarks", {}).get(n, {})]
-    failed = [n for n, entry in result.get("benchmarks", {}).items() if "failed" in entry]
-    if result.get("schema") != SCHEMA or lacking or failed:
-        raise InputError(str(path), "not a whole report", value=", ".join(lacking + failed), legal=f"schema {SCHEMA}, every benchmark")
+    if result.get("schema") != SCHEMA:
+        raise InputError(str(path), "not a report", value=str(result.get("schema")), legal=f"schema {SCHEMA}")
     return result
 
 
@@ -69,9 +80,7 @@ def images(result: dict) -> dict[str, bytes]:
 
 def publish(report: Path, further: Sequence[Path], root: Path) -> list[Path]:
     """Write everything that is published into the checkout `root`; returns what was written."""
-    result = load(report / "report.json")
-    for more in further:
-        result = replaced(result, load(more / "report.json", ()))
+    result = load(*(folder / "report.json" for folder in (report, *further)))
     files = {REFERENCE: render.to_json(result), REFERENCE.replace(".json", ".md"): render.to_markdown(result, "../../docs/images")}
     files |= {f"docs/images/{name}": data.decode() for name, data in images(result).items()}
     if (report / truth.SHIPPED).is_file():
