@@ -61,7 +61,10 @@ def replaced(result: dict, more: dict) -> dict:
             raise InputError("report", f"the further run is from another place: its {key} differ", value=theirs, legal=str(ours))
     run = {key: more[key] for key in ("mode", "date", "seed", "seconds")}
     run |= {"load": more["machine"]["load"], "benchmarks": list(more["benchmarks"])}
-    return result | {"benchmarks": result["benchmarks"] | more["benchmarks"], "further": [*result.get("further", []), run]}
+    both = result["benchmarks"] | more["benchmarks"]
+    return result | {
+        "benchmarks": {name: both[name] for name in BENCHMARKS if name in both}, "further": [*result.get("further", []), run],
+    }
 
 
 def blocks(result: dict) -> dict[str, str]:
