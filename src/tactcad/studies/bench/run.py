@@ -58,7 +58,7 @@ def _one(name: str, plan: Plan) -> dict:
         entry |= module.measure(plan)
     except CheckFailure as failure:
         entry["failed"] = str(failure)
-    except Exception as error:  # a fault in one does not lose what the others measured in an hour
+    except Exception as error:  # a fault in one does not lose what the others measured
         at = traceback.extract_tb(error.__traceback__)[-1]
         entry["failed"] = f"{type(error).__name__} in {at.name}, line {at.lineno} of {Path(at.filename).name}: {error}"
     return entry | {"seconds": round(time.perf_counter() - started, 1)}
