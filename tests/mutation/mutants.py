@@ -396,6 +396,7 @@ class Runner:
     def _failed(self, files: list[str], mutant: Mutant | None) -> str:
         """The first of the tests that fails, "" where none does."""
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
+            Path(name).chmod(0o755)  # a test goes on as nobody
             folder = Path(name)
             for part in ("src", "tests", "hardware", "exports/golden", "benchmarks", "packaging", "docs"):
                 shutil.copytree(ROOT / part, folder / part, ignore=shutil.ignore_patterns("__pycache__"))
