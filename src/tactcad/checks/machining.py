@@ -145,7 +145,7 @@ def _threads(part: Part, limit: Machining) -> Iterator[Raw]:
     for h in _holes(part):
         if not h.thread:
             continue
-        d = float(h.thread[1:])
+        d = h.thread_diameter
         if h.thread_depth > limit.thread_reach * d + SAME:
             yield ("thread-depth", h.at, h.thread_depth, limit.thread_reach * d, f"thread {h.name} {h.thread}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters")
         if not h.through:
@@ -187,9 +187,7 @@ def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
     def at(depth: float) -> Vector:
         return tuple(p + depth * a for p, a in zip(h.at, h.axis))
 
-    r = h.diameter / 2
-    if h.thread:
-        r = max(r, float(h.thread[1:]) / 2)
+    r = max(h.diameter, h.thread_diameter) / 2
     point = drill_point_height(h.diameter) if h.drill_point else 0.0
     yield h, at(0.0), at(h.depth if h.through else max(0.0, h.depth + point - r)), r
     if h.counterbore:

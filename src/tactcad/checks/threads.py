@@ -25,8 +25,7 @@ def thread_overlap(first: Placement, second: Placement) -> float:
 
 def _ring(hole: Hole, start: float, end: float) -> float:
     from_, to = thread_range(hole)
-    major = float(hole.thread[1:])
-    return pi / 4 * (major**2 - hole.diameter**2) * max(0.0, min(end, to) - max(start, from_))
+    return pi / 4 * (hole.thread_diameter**2 - hole.diameter**2) * max(0.0, min(end, to) - max(start, from_))
 
 
 def thread_range(hole: Hole) -> tuple[float, float]:

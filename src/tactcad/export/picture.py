@@ -213,14 +213,17 @@ def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
     return [line for line in lines if len(line) > 1]
 
 
-def _polyline(curve: BRepAdaptor_Curve) -> Polyline:
+def on_curve(curve: BRepAdaptor_Curve, chord: float) -> list[gp_Pnt]:
+    """Points along a curve of the kernel: a line's ends, else so close that chords stay within `chord` mm of it."""
     first, last = curve.FirstParameter(), curve.LastParameter()
     if curve.GetType() == GeomAbs_Line:
-        points = [curve.Value(first), curve.Value(last)]
-    else:
-        sampled = GCPnts_QuasiUniformDeflection(curve, CHORD, first, last)
-        points = [sampled.Value(i) for i in range(1, sampled.NbPoints() + 1)]
-    rounded = [(round(p.X(), 3) + 0.0, round(p.Y(), 3) + 0.0) for p in points]
+        return [curve.Value(first), curve.Value(last)]
+    sampled = GCPnts_QuasiUniformDeflection(curve, chord, first, last)
+    return [sampled.Value(i) for i in range(1, sampled.NbPoints() + 1)]
+
+
+def _polyline(curve: BRepAdaptor_Curve) -> Polyline:
+    rounded = [(round(p.X(), 3) + 0.0, round(p.Y(), 3) + 0.0) for p in on_curve(curve, CHORD)]
     kept = tuple(p for i, p in enumerate(rounded) if i == 0 or p != rounded[i - 1])
     return min(kept, kept[::-1])
 

@@ -14,7 +14,6 @@ from .solid import SolidSolution, solve_solid
 ORDER = 4.0
 PLANE_DENSITIES = (3, 6)
 SOLID_MESH = 2  # of fem-solid, where none is asked for
-SOLID_MESHES = (2, 3)
 # Of the solid's share between plane stress and plane strain, observed: 1.9 to 3.3 over 28 designs of the box's
 # edges and of the whole range (measured on densities 1, 2 and 4).
 SHARE_ORDER = 2.5

@@ -88,6 +88,11 @@ class Hole:
     tolerance: str = ""  # "H7" or "+0.006/0"
 
     @property
+    def thread_diameter(self) -> float:
+        """Nominal (major) diameter of its metric thread, mm; 0 without one."""
+        return float(self.thread.removeprefix("M")) if self.thread else 0.0
+
+    @property
     def volume(self) -> float:
         """Material taken off, mm3."""
         r = self.diameter / 2

@@ -527,7 +527,7 @@ STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
 # Rules that need the stop gap or the stiffness, and those without which there is none: what is no hinge has no stiffness.
 ASK_THE_GAP = frozenset(
     {"stop_keeps_rated_deflection", "stop_gap_above_tolerance", "stop_land_fits_arm", "land_stands_over_arm",
-     "calibration_bends_elastically"}
+     "calibration_bends_elastically", "roller_stays_on_pad"}
 )
 NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
 # Rules on contours as drawn and turned, which only a design that keeps the rules before them is sure to have.

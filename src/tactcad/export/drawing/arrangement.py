@@ -90,7 +90,7 @@ def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[
     items: list[Item] = []
     for side in sides:
         x = w if side == "right" else 0.0
-        name, p, q = ("w", (0.0, h), (w, h)) if side in ("top", "bottom") else ("h", (x, 0.0), (x, h))
+        name, p, q = ("w", (0.0, h), (w, h)) if side == "top" else ("h", (x, 0.0), (x, h))
         dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), sign="(", unit=")")
         items += stacked(
             [Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, {**values, "zero": 0.0}, 10.0

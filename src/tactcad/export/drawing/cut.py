@@ -8,14 +8,14 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.BRepTools import BRepTools_WireExplorer
-from OCP.GCPnts import GCPnts_QuasiUniformDeflection
-from OCP.GeomAbs import GeomAbs_Line, GeomAbs_Plane
+from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
 from tactcad.design.messages import CheckFailure
+from tactcad.export.picture import on_curve
 
 from .hidden_lines import CHORD
 from .ink import Hatch, Point
@@ -75,13 +75,7 @@ def _loop(wire: TopoDS_Wire, view: View) -> tuple[Point, ...]:
     explorer = BRepTools_WireExplorer(wire)
     while explorer.More():
         edge = explorer.Current()
-        curve = BRepAdaptor_Curve(edge)
-        first, last = curve.FirstParameter(), curve.LastParameter()
-        if curve.GetType() == GeomAbs_Line:
-            run = [curve.Value(first), curve.Value(last)]
-        else:
-            sampled = GCPnts_QuasiUniformDeflection(curve, CHORD, first, last)
-            run = [sampled.Value(i) for i in range(1, sampled.NbPoints() + 1)]
+        run = on_curve(BRepAdaptor_Curve(edge), CHORD)
         if edge.Orientation() == TopAbs_REVERSED:
             run.reverse()
         points += [tuple(round(v, 6) + 0.0 for v in seen(view, (p.X(), p.Y(), p.Z()))) for p in run[:-1]]

@@ -14,11 +14,13 @@ from tactcad.contour import Arc, Contour, Line
 from tactcad.design.tree import Design
 from tactcad.parts.description import Characteristic, Part
 
+from .callouts import hole_callout, radius_callout
 from .holes import groups, rounds
 from .ink import Point
 from .measure import Level, Slope, Span, conventions, halfway, level
 from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View, characteristic
-from .prism import ALIKE, FRONT, Sketch, closed, hole_callout, key_number, radius_callout, side_view, view_box
+from .prism import FRONT, key_number, side_view
+from .sketch import ALIKE, Sketch, closed, view_box
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail

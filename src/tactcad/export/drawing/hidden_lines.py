@@ -7,15 +7,14 @@ from math import atan2, degrees, hypot
 
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepLib import BRepLib
-from OCP.GCPnts import GCPnts_QuasiUniformDeflection
-from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_Circle
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
-from tactcad.export.picture import exact
+from tactcad.export.picture import exact, on_curve
 from tactcad.parts.description import Vector
 
 from .ink import HIDDEN, VISIBLE, Arc, LineType, Point, Role, Stroke
@@ -64,13 +63,9 @@ def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Curve | None
         if circle.Axis().Direction().Z() < 0:
             a, b = b, a
         return Arc(centre, round(circle.Radius(), 6), _angle(centre, a), _angle(centre, b), line, role)
-    if curve.GetType() == GeomAbs_Line:
-        points = [_point(curve.Value(t)) for t in (first, last)]
-    else:
-        sampled = GCPnts_QuasiUniformDeflection(curve, CHORD, first, last)
-        points = [_point(sampled.Value(i)) for i in range(1, sampled.NbPoints() + 1)]
-        if _straight(points):
-            points = [points[0], points[-1]]
+    points = [_point(p) for p in on_curve(curve, CHORD)]
+    if _straight(points):
+        points = [points[0], points[-1]]
     kept = tuple(p for i, p in enumerate(points) if i == 0 or p != points[i - 1])
     if len(kept) < 2 or hypot(kept[0][0] - kept[-1][0], kept[0][1] - kept[-1][1]) < SAME and len(kept) < 4:
         return None

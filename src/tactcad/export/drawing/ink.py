@@ -32,7 +32,6 @@ class LineType:
 
 VISIBLE = LineType("visible", 0.5)  # 01.2: visible edges and outlines
 THIN = LineType("thin", 0.25)  # 01.1: dimension, extension, leader lines
-SMOOTH = LineType("smooth", 0.18)  # 01.1: tangent edges, and grids of tables
 HIDDEN = LineType("hidden", 0.25, (3.0, 0.75))  # 02.1: 12 d and 3 d
 CENTRE = LineType("centre", 0.25, (6.0, 0.75, 0.25, 0.75))  # 04.1: 24 d, 3 d, dot, 3 d
 CUTTING = LineType("cutting", 0.5)  # ends of a cutting plane's line, a dash each: 04.2

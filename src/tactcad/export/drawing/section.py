@@ -103,12 +103,7 @@ def _cuts_off_axis(found: Sequence[Round], k: int, at: float) -> bool:
 
 
 def _widest(h: Hole) -> float:
-    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0, nominal(h.thread) if h.thread else 0.0)
-
-
-def nominal(thread: str) -> float:
-    """Nominal diameter of a metric thread, mm."""
-    return float(thread.removeprefix("M"))
+    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0, h.thread_diameter)
 
 
 def _runs_along(part: Part, k: int, at: float) -> bool:
@@ -134,4 +129,4 @@ def _bore(view: View, h: Hole) -> Bore:
 
     full = min(counterbore + h.thread_depth, h.depth) if h.thread else 0.0
     ends_inside = not (h.through and isclose(full, h.depth))
-    return Bore(at(0.0), at(h.depth + cone), nominal(h.thread) if h.thread else 0.0, (at(counterbore), at(full)), ends_inside)
+    return Bore(at(0.0), at(h.depth + cone), h.thread_diameter, (at(counterbore), at(full)), ends_inside)

@@ -18,7 +18,6 @@ from tactcad.scenes.scene import Placement, Rotation, Scene
 
 STEEL = Material("steel", 7850.0)
 GAPS = (-0.1, -0.01, -0.001, -0.0001, 0.0, 0.0001, 0.001, 0.01, 0.1)  # mm; negative: they overlap by so much
-ALONG_Z = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 ALONG_X = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0))  # local z runs along x
 
 
