@@ -49,7 +49,7 @@ bench: environment ## speed against accuracy on this machine, in short: tables, 
 
 reference: environment ## the published benchmarks again, in full, on a quiet machine: README, docs, benchmarks/results
 	$(BIN)/tactcad bench --full --out exports/bench
-	$(BIN)/python -m tactcad.studies.bench.publish exports/bench
+	$(BIN)/python -m tactcad.bench.publish exports/bench
 
 nightly: environment ## the long tests
 	$(BIN)/python -m pytest -m nightly

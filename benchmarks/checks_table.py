@@ -37,7 +37,11 @@ def rows(times: Times) -> list[str]:
         cells = times.get(bad.run, ("",) * 3) if bad.run != before else ("",) * 3
         said = finding.message.replace("|", "\\|")
         what = f"{bad.what}, `{bad.test.rpartition('/')[2]}`"
-        lines.append(f"| {bad.run if bad.run != before else ''} | `{name}`{flagged} | {what} | {said} | " + " | ".join(cells) + " |\n")
+        lines.append(
+            f"| {bad.run if bad.run != before else ''} | `{name}`{flagged} | {what} | {said} | "
+            + " | ".join(cells)
+            + " |\n"
+        )
         before = bad.run
     return lines
 
@@ -50,21 +54,27 @@ def known_times(text: str) -> Times:
 
 def measured() -> Times:
     """Seconds of every timed check on the macro array alone, on it with its rigs, and on 2 x 500 elements."""
+    from tactcad.bench import arrays
     from tactcad.checks import report as clocked
     from tactcad.checks.run import run_checks
     from tactcad.export.golden import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
-    from tactcad.studies.bench import arrays
 
     clocked.time = SimpleNamespace(perf_counter=time.process_time)
     shipped = load("macro-array")
     run_checks(shipped, ["array"])  # builds and loads what is kept
     columns = []
-    for design, names in ((shipped, ["array"]), (shipped, scene_names(shipped)), (arrays.of(1000), ["array"])):
+    for design, names in (
+        (shipped, ["array"]),
+        (shipped, scene_names(shipped)),
+        (arrays.of(1000), ["array"]),
+    ):
         report = run_checks(design, names)
         if design is shipped:
-            report.run("golden", check_golden, design, golden_path(ROOT / "hardware" / "macro-array.toml", design))
+            report.run(
+                "golden", check_golden, design, golden_path(ROOT / "hardware" / "macro-array.toml", design)
+            )
         columns.append(report.seconds)
         print({run: f"{s:.3f}" for run, s in report.seconds.items()}, flush=True)
     runs = dict.fromkeys(run for column in columns for run in column)
@@ -74,7 +84,13 @@ def measured() -> Times:
 def shown(seconds: float | None) -> str:
     if seconds is None:
         return "-"
-    return f"{1e3 * seconds:.2g} ms" if seconds < 0.1 else f"{seconds:.2g} s" if seconds < 10 else f"{seconds:.0f} s"
+    return (
+        f"{1e3 * seconds:.2g} ms"
+        if seconds < 0.1
+        else f"{seconds:.2g} s"
+        if seconds < 10
+        else f"{seconds:.0f} s"
+    )
 
 
 def renewed(text: str, times: Times) -> str:
@@ -83,7 +99,9 @@ def renewed(text: str, times: Times) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--times", action="store_true", help="measure the times anew")
     args = parser.parse_args()
     text = DOCUMENT.read_text(encoding="utf-8")

@@ -104,7 +104,9 @@ def too_thick() -> list[Finding]:
     from tactcad.parts.description import Extrusion
     from tactcad.solids.build import build
 
-    return brep(lambda: build(BLOCK), replace(BLOCK, body=Extrusion(BLOCK.body.outer, 5.00001, BLOCK.body.openings)))
+    return brep(
+        lambda: build(BLOCK), replace(BLOCK, body=Extrusion(BLOCK.body.outer, 5.00001, BLOCK.body.openings))
+    )
 
 
 def step_file(spoil: str) -> list[Finding]:
@@ -215,48 +217,103 @@ def left_out() -> list[Finding]:
 def golden() -> list[Finding]:
     from tactcad.export.golden import golden_record, judge
 
-    return judge(golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1})))
+    return judge(
+        golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1}))
+    )
 
 
 BREP, CLEARANCE = "tests/checks/test_brep_and_mesh.py", "tests/checks/test_clearance.py"
 MACHINING = {
-    "mill-corner": "a pocket with sharp corners", "mill-groove": "a groove of 0.9 mm", "mill-floor": "a floor of 0.7 mm",
-    "drill-diameter": "a hole of 0.4 mm", "drill-depth": "a hole 10.1 diameters deep", "drill-floor": "0.7 mm under a blind hole",
-    "counterbore": "0.7 mm left under a screw's head", "thread-depth": "a thread 3.03 diameters deep",
-    "thread-run-out": "0.9 mm between full thread and drilled depth", "hole-wall": "a hole 0.7 mm from the side",
-    "hole-web": "two holes 0.7 mm apart", "turn-slender": "a shaft 12.2 diameters long", "turn-wall": "a ring of 0.25 mm",
-}  # fmt: skip
+    "mill-corner": "a pocket with sharp corners",
+    "mill-groove": "a groove of 0.9 mm",
+    "mill-floor": "a floor of 0.7 mm",
+    "drill-diameter": "a hole of 0.4 mm",
+    "drill-depth": "a hole 10.1 diameters deep",
+    "drill-floor": "0.7 mm under a blind hole",
+    "counterbore": "0.7 mm left under a screw's head",
+    "thread-depth": "a thread 3.03 diameters deep",
+    "thread-run-out": "0.9 mm between full thread and drilled depth",
+    "hole-wall": "a hole 0.7 mm from the side",
+    "hole-web": "two holes 0.7 mm apart",
+    "turn-slender": "a shaft 12.2 diameters long",
+    "turn-wall": "a ring of 0.25 mm",
+}
 WIRECUT = {
-    "closed chain": "an arc that ends 2 nm off its circle", "simple contour": "a bow tie", "openings inside": "an opening over the edge",
-    "inside corner": "a radius of 0.149 mm", "slot width": "a throat of 0.299 mm", "wall": "a fin of 0.799 mm", "hinge": "a hinge of 0.25 mm",
+    "closed chain": "an arc that ends 2 nm off its circle",
+    "simple contour": "a bow tie",
+    "openings inside": "an opening over the edge",
+    "inside corner": "a radius of 0.149 mm",
+    "slot width": "a throat of 0.299 mm",
+    "wall": "a fin of 0.799 mm",
+    "hinge": "a hinge of 0.25 mm",
     "start hole": "a round opening of 0.499 mm",
-}  # fmt: skip
+}
 BAD: dict[str, Bad] = {
-    "overload": Bad("strength", "a gap of 0.2 mm over the 4 mm arm", lambda: strength(stop__gaps={"4": 0.2}), "tests/checks/test_strength_check.py"),
-    "rated-force": Bad("strength", "the shipped arms of 6 mm and more", strength, "tests/checks/test_strength_check.py"),
+    "overload": Bad(
+        "strength",
+        "a gap of 0.2 mm over the 4 mm arm",
+        lambda: strength(stop__gaps={"4": 0.2}),
+        "tests/checks/test_strength_check.py",
+    ),
+    "rated-force": Bad(
+        "strength", "the shipped arms of 6 mm and more", strength, "tests/checks/test_strength_check.py"
+    ),
     "strength": Bad(
-        "strength", "a hinge 3 mm long and 0.02 mm thin",
-        lambda: strength(element__hinge_length=3.0, element__hinge_thickness=0.02, stop__gaps=dict.fromkeys("45678", 0.1)),
+        "strength",
+        "a hinge 3 mm long and 0.02 mm thin",
+        lambda: strength(
+            element__hinge_length=3.0, element__hinge_thickness=0.02, stop__gaps=dict.fromkeys("45678", 0.1)
+        ),
         "tests/checks/test_strength_check.py",
     ),
     "slot-clearance": Bad(
-        "clearance", "a slot of 0.25 mm under a stop gap of 0.6",
-        lambda: clearance(array__row_arms=[[4]], element__hinge_length=0.25, element__fillet_radius=0.1, stop__gaps={"4": 0.6},
-                          element__body_height=3.6, gauge__grid_length=0.2), CLEARANCE,
+        "clearance",
+        "a slot of 0.25 mm under a stop gap of 0.6",
+        lambda: clearance(
+            array__row_arms=[[4]],
+            element__hinge_length=0.25,
+            element__fillet_radius=0.1,
+            stop__gaps={"4": 0.6},
+            element__body_height=3.6,
+            gauge__grid_length=0.2,
+        ),
+        CLEARANCE,
     ),
     "stop-clearance": Bad(
-        "clearance", "a land 0.13 mm high, arms within 0.2",
-        lambda: clearance(array__row_arms=[[4]], stop__gaps={"4": 0.1}, element__body_height=2.83, tolerance__arm_height=0.2), CLEARANCE,
+        "clearance",
+        "a land 0.13 mm high, arms within 0.2",
+        lambda: clearance(
+            array__row_arms=[[4]], stop__gaps={"4": 0.1}, element__body_height=2.83, tolerance__arm_height=0.2
+        ),
+        CLEARANCE,
     ),
     "neighbour-clearance": Bad(
-        "clearance", "spacers of 0.11 mm", lambda: clearance(array__row_arms=[[6, 6]], array__pitch=3.11, array__spacer=0.11), CLEARANCE,
+        "clearance",
+        "spacers of 0.11 mm",
+        lambda: clearance(array__row_arms=[[6, 6]], array__pitch=3.11, array__spacer=0.11),
+        CLEARANCE,
     ),
-    "opposite-clearance": Bad("clearance", "rows 2.2 mm apart", lambda: clearance(array__row_pitch=2.2, array__row_arms=[[4], [4]]), CLEARANCE),
-    "gauge-room": Bad("clearance", "pads 0.27 mm high", lambda: clearance(element__pad_height=0.27, element__pad_root_radius=0.2), CLEARANCE),
+    "opposite-clearance": Bad(
+        "clearance",
+        "rows 2.2 mm apart",
+        lambda: clearance(array__row_pitch=2.2, array__row_arms=[[4], [4]]),
+        CLEARANCE,
+    ),
+    "gauge-room": Bad(
+        "clearance",
+        "pads 0.27 mm high",
+        lambda: clearance(element__pad_height=0.27, element__pad_root_radius=0.2),
+        CLEARANCE,
+    ),
     "lead-room": Bad(
-        "clearance", "a wire recess of 0.2 mm", lambda: clearance(element__recess_depth=0.2, element__corner_radius=0.15), CLEARANCE,
+        "clearance",
+        "a wire recess of 0.2 mm",
+        lambda: clearance(element__recess_depth=0.2, element__corner_radius=0.15),
+        CLEARANCE,
     ),
-    "calibration": Bad("calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"),
+    "calibration": Bad(
+        "calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"
+    ),
     "build": Bad("build", "a part that the kernel calls invalid", unbuildable, BREP),
     "one-solid": Bad("brep", "two boxes", lambda: brep(two_boxes), BREP),
     "brep-valid": Bad("brep", "a prism over a bow tie", lambda: brep(bow_tie), BREP),
@@ -273,15 +330,40 @@ BAD: dict[str, Bad] = {
     "mesh-winding": Bad("mesh", "every triangle turned", lambda: triangles(lambda f: f[:, ::-1]), BREP),
     "mesh-volume": Bad("mesh", "a mesh 2 % too large", scaled, BREP),
     "mesh-area": Bad("mesh", "the same", scaled, BREP),
-    **{name: Bad("wire-cut", what, lambda name=name: wirecut(name), "tests/checks/test_wirecut.py") for name, what in WIRECUT.items()},
-    **{name: Bad("machining", what, lambda name=name: machining(name), "tests/rigs/test_machining.py") for name, what in MACHINING.items()},
-    "overlap": Bad("interference", "cubes 1 um into each other", lambda: interference("overlap of a thousandth"), "tests/checks/test_interference.py"),
-    "undeclared-touch": Bad("interference", "cubes face to face", lambda: interference("faces touch, not declared"), "tests/checks/test_interference.py"),
-    "contact": Bad("interference", "cubes 0.1 mm apart that should touch", lambda: interference("declared, but apart"), "tests/checks/test_interference.py"),
-    "thread": Bad("interference", "a screw 0.1 mm beyond its full thread", thread, "tests/checks/test_interference.py"),
+    **{
+        name: Bad("wire-cut", what, lambda name=name: wirecut(name), "tests/checks/test_wirecut.py")
+        for name, what in WIRECUT.items()
+    },
+    **{
+        name: Bad("machining", what, lambda name=name: machining(name), "tests/rigs/test_machining.py")
+        for name, what in MACHINING.items()
+    },
+    "overlap": Bad(
+        "interference",
+        "cubes 1 um into each other",
+        lambda: interference("overlap of a thousandth"),
+        "tests/checks/test_interference.py",
+    ),
+    "undeclared-touch": Bad(
+        "interference",
+        "cubes face to face",
+        lambda: interference("faces touch, not declared"),
+        "tests/checks/test_interference.py",
+    ),
+    "contact": Bad(
+        "interference",
+        "cubes 0.1 mm apart that should touch",
+        lambda: interference("declared, but apart"),
+        "tests/checks/test_interference.py",
+    ),
+    "thread": Bad(
+        "interference", "a screw 0.1 mm beyond its full thread", thread, "tests/checks/test_interference.py"
+    ),
     "tool-room": Bad("tools", "a bridge 30 mm over the screw", tool, "tests/checks/test_tools.py"),
     "motion": Bad("motion", "a foil of 10 um in the way", motion, "tests/rigs/test_motion.py"),
     "moving-weight": Bad("moving weight", "2 N asked for", moving_weight, "tests/rigs/test_rig_statics.py"),
-    "scene": Bad("scenes left out", "500 N asked for, ballast of 2.9 m", left_out, "tests/checks/test_found_designs.py"),
+    "scene": Bad(
+        "scenes left out", "500 N asked for, ballast of 2.9 m", left_out, "tests/checks/test_found_designs.py"
+    ),
     "golden": Bad("golden", "a sheet of 2.9 mm, same revision", golden, "tests/export/test_golden.py"),
 }

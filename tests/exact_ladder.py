@@ -12,9 +12,17 @@ from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import HingeSection
 
 ORDER = (  # of the values, as the section names them
-    "hinge_thickness", "hinge_length", "fillet_radius", "load_arm", "arm_height", "body_height", "body_length",
-    "poisson", "youngs_modulus", "width",
-)  # fmt: skip
+    "hinge_thickness",
+    "hinge_length",
+    "fillet_radius",
+    "load_arm",
+    "arm_height",
+    "body_height",
+    "body_length",
+    "poisson",
+    "youngs_modulus",
+    "width",
+)
 
 
 def section(values, two):

@@ -26,9 +26,11 @@ from tactcad.design.messages import InputError
 TITLE = "aZ09 -_.,:;/\\\"'<>&#%äßøŁжλ日本語€"
 CHOICES = {
     f"{section}.{name}": f.metadata["spec"].options
-    for section, kind in SECTION_TYPES.items() if section != "origin"
-    for name, f in kind.__dataclass_fields__.items() if isinstance(f.metadata.get("spec"), Choice)
-}  # fmt: skip
+    for section, kind in SECTION_TYPES.items()
+    if section != "origin"
+    for name, f in kind.__dataclass_fields__.items()
+    if isinstance(f.metadata.get("spec"), Choice)
+}
 
 
 def raw_table(number: int, row_lengths: tuple[int, ...], rigs: float) -> dict[str, Any]:
@@ -38,7 +40,9 @@ def raw_table(number: int, row_lengths: tuple[int, ...], rigs: float) -> dict[st
     if random.random() < 0.5:
         redraw(values, random)
     tree = as_table(values)
-    name = "".join(random.choice("abcdefghijklmnopqrstuvwxyz0123456789-") for _ in range(random.randint(1, 38)))
+    name = "".join(
+        random.choice("abcdefghijklmnopqrstuvwxyz0123456789-") for _ in range(random.randint(1, 38))
+    )
     tree["design"] |= {
         "name": f"x{name}x",
         "title": "".join(random.choice(TITLE) for _ in range(random.randint(0, 70))) + "!",
@@ -89,14 +93,21 @@ class Counts:
             rule, names, failures = verdict(tree)
         except Exception as error:  # a crash is a failure as any other, and says where it was
             at = traceback.extract_tb(error.__traceback__)[-1]
-            rule, names, failures = "", (), [f"{type(error).__name__} in {at.name}, line {at.lineno}: {error}"]
+            rule, names, failures = (
+                "",
+                (),
+                [f"{type(error).__name__} in {at.name}, line {at.lineno}: {error}"],
+            )
         if rule:
             self.refused[rule] += 1
         elif not failures:
             self.accepted += 1
             self.scenes.update(names)
         else:
-            self.failed.append(f"{who}: {'; '.join(failures[:3])}" + (f" and {len(failures) - 3} more" if failures[3:] else ""))
+            self.failed.append(
+                f"{who}: {'; '.join(failures[:3])}"
+                + (f" and {len(failures) - 3} more" if failures[3:] else "")
+            )
 
     def __str__(self) -> str:
         refused = sum(self.refused.values())
@@ -136,4 +147,8 @@ SHOP_RULES = frozenset({"inside corner", "slot width", "wall", "start hole"})
 
 def _rule(error: InputError) -> str:
     """The rule's name; a value outside its own range is refused by that range."""
-    return error.what.removeprefix("rule ").split(" ")[0].rstrip(":") if error.what.startswith("rule ") else "range"
+    return (
+        error.what.removeprefix("rule ").split(" ")[0].rstrip(":")
+        if error.what.startswith("rule ")
+        else "range"
+    )

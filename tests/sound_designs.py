@@ -30,9 +30,11 @@ LEAD = 0.25  # mm, AWG 36 with its insulation
 # Numbers by path: what the design file may hold; stop.gaps holds several.
 LEGAL: dict[str, Number] = {
     f"{section}.{f.name}": f.metadata["spec"]
-    for section, kind in SECTION_TYPES.items() if section != "origin"
-    for f in fields(kind) if isinstance(f.metadata.get("spec"), Number)
-}  # fmt: skip
+    for section, kind in SECTION_TYPES.items()
+    if section != "origin"
+    for f in fields(kind)
+    if isinstance(f.metadata.get("spec"), Number)
+}
 
 
 SEEDS = st.integers(0, 2**48)
@@ -51,7 +53,10 @@ class Draw:
         self.table: dict[str, Any] = {}
 
     def choose_fasteners(self) -> None:
-        screw, dowel = self.put("clamp.screw", self.choice(*METRIC)), self.put("clamp.dowel", self.choice(*M6_UPPER))
+        screw, dowel = (
+            self.put("clamp.screw", self.choice(*METRIC)),
+            self.put("clamp.dowel", self.choice(*M6_UPPER)),
+        )
         self.m, self.dowel = METRIC[screw], float(dowel)
         # full thread through the carrier: 1.5 d of the mount's in 3 d of the screw's
         mounts = [name for name in ("M3", "M4", "M5") if METRIC[name].d <= 2 * self.m.d]
@@ -122,9 +127,13 @@ def _stack(d: Draw, row_lengths: tuple[int, ...]) -> list[int]:
     """Rows, sheet and spacer: a stack at least as long as the set screw between the end plates; returns the rows."""
     rows = [d.choice(*row_lengths) for _ in range(d.choice(1, 2))]
     n, least = max(rows), d.m.d + 0.6
-    wide = 1.9 if d.longest_stack < 100 and d.once_in(2) else LEAST_SPACER  # room for the calibration's roller
+    wide = (
+        1.9 if d.longest_stack < 100 and d.once_in(2) else LEAST_SPACER
+    )  # room for the calibration's roller
     spacer = d.number("array.spacer", wide, min(30.0, d.longest_stack / n / 2))
-    sheet = d.number("sheet.thickness", max((least - spacer) / n, LEAD) - spacer, (d.longest_stack - spacer) / n - spacer)
+    sheet = d.number(
+        "sheet.thickness", max((least - spacer) / n, LEAD) - spacer, (d.longest_stack - spacer) / n - spacer
+    )
     d.put("array.pitch", round(sheet + spacer, 3))
     return rows
 
@@ -164,7 +173,10 @@ def _arms(d: Draw, rows: list[int]) -> None:
     over = d.rise + d.corner * tan(pi / 8) + half
     land = d.number("stop.land_length", high=98.8 - over)
     shortest = max(pad + root + half, pad + root + carrier, land + over + 0.1)
-    shortest, longest = min(shortest + 0.002, 100.0), 100.0  # no sliver of half a micrometre beside the pad's root
+    shortest, longest = (
+        min(shortest + 0.002, 100.0),
+        100.0,
+    )  # no sliver of half a micrometre beside the pad's root
     d.arms = [[d.between(shortest, longest) for _ in range(n)] for n in rows]
     d.put("array.row_arms", d.arms)
     _overrides(d)
@@ -198,8 +210,14 @@ def _loads(d: Draw) -> None:
     ratio = d.between(min(max(low, 3e-4), 0.5), min(max(high, 3e-4), 0.5))
     # N for each MPa of yield, so that what passes the closed stop by its lever 1 - L/a and half the hinge's length stays
     # a tenth of it; no overload is smaller than a millionth of a newton
-    force = 0.7 / factor * min(
-        sheet * d.t**2 / (6 * L) * min(3, 0.1 * L / ((1 - L / a) * d.l / 2)) for a in (least, most) for L in [a - pad / 2]
+    force = (
+        0.7
+        / factor
+        * min(
+            sheet * d.t**2 / (6 * L) * min(3, 0.1 * L / ((1 - L / a) * d.l / 2))
+            for a in (least, most)
+            for L in [a - pad / 2]
+        )
     )
     E = d.number("material.youngs_modulus", max(1e3, 1 / ratio, 2e-6 / force / ratio), min(1e6, 5000 / ratio))
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
@@ -241,7 +259,9 @@ def _clamp(d: Draw) -> None:
 
     # stop plate's seat, set screws beside the rear bodies
     gap = d.number("clamp.stop_plate_gap", corner, min(0.3 + (m.d - m.set_point) / 2, spacer + sheet / 2))
-    seat = d.number("element.seat_length", max(corner + gap + 0.5, m.d / 2 + 0.3, m.d + 0.6 - min(map(min, d.arms))))
+    seat = d.number(
+        "element.seat_length", max(corner + gap + 0.5, m.d / 2 + 0.3, m.d + 0.6 - min(map(min, d.arms)))
+    )
 
     # the carrier; a set screw through it reaches down to the stop plate
     fixing = min(n for n in CAP_LENGTHS if n - 1.5 * m.d - 0.8 >= 2 - 1e-9)
@@ -259,23 +279,31 @@ def _clamp(d: Draw) -> None:
     hole = d.number("holes.dowel_hole", pin, pin + 0.05)
     widest = max(m.clearance, hole + upper)
     layers = ceil(3 / floor(d.table["array.pitch"] / LEAD + 1e-9))
-    recess = d.number("element.recess_depth", max(corner + d.bottom, layers * LEAD), max(top / 8, layers * LEAD))
+    recess = d.number(
+        "element.recess_depth", max(corner + d.bottom, layers * LEAD), max(top / 8, layers * LEAD)
+    )
     bottom = d.number("clamp.spacer_bottom", recess, recess + top / 16)
     web = d.number("holes.web", WALL, top / 8)
     drop = d.number("clamp.spacer_drop", high=top / 16)
     under = max(counterbore / 2 + 1, nut_corner / 2 + 0.1, dowel / 2 + 1)
     height = d.number(
-        "holes.height", max(bottom + web + widest / 2, under), min(top - over, top - 0.1 - drop - web - widest / 2)
+        "holes.height",
+        max(bottom + web + widest / 2, under),
+        min(top - over, top - 0.1 - drop - web - widest / 2),
     )
     d.number("clamp.end_plate_bottom", high=height - under)
-    rear = d.number("element.rear_height", max(height + web + widest / 2 + drop, d.ledge + 2 * corner), top - 0.1)
+    rear = d.number(
+        "element.rear_height", max(height + web + widest / 2 + drop, d.ledge + 2 * corner), top - 0.1
+    )
     lowest = max(height + over, rear + 0.1)
     stop_plate = d.number("clamp.stop_plate_thickness", lowest - d.ledge - reach)
     plate_bottom = d.table["clamp.end_plate_bottom"]
     if d.once_in(5):  # given instead of derived: up to where the set screw is just engaged
         on = d.ledge + stop_plate
         lengths = SET_SCREW_LENGTHS[d.table["clamp.screw"]]
-        screw = next((n for n in lengths if on + n - thickness + 1 >= lowest and n >= thickness - 0.9), longest)
+        screw = next(
+            (n for n in lengths if on + n - thickness + 1 >= lowest and n >= thickness - 0.9), longest
+        )
         low = on + max(screw - thickness + 1, 0.1) - plate_bottom
         d.number("clamp.end_plate_height", low, low + thickness - 1 - 1.5 * m.d)
 
@@ -295,14 +323,20 @@ def _clamp(d: Draw) -> None:
     rear_end = max(spots[-1] + max(web + widest / 2, head + 1), offset + counterbore / 2 + 1)
     length = d.number("element.rear_length", rear_end)
     over = max(d.ledge - recess, 0.0)
-    start = d.number("element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01)
+    start = d.number(
+        "element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01
+    )
     d.number("gauge.carrier_body_side", d.carrier_least, seat + 0.35 * d.l + start)
 
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)
     stack = max(map(len, d.arms)) * d.table["array.pitch"] + spacer
     d.number("clamp.end_plate_thickness", max(m.tap_drill + 2, 3), min(drilled, (d.across_mount - stack) / 2))
-    d.number("clamp.mount_pitch_y", max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0), d.across_mount - 10 - 2 * mounted.d)
+    d.number(
+        "clamp.mount_pitch_y",
+        max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0),
+        d.across_mount - 10 - 2 * mounted.d,
+    )
     d.number("clamp.hold_down_pitch", 2 * m.d + 1)
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
@@ -321,9 +355,13 @@ def as_table(values: dict[str, Any]) -> dict[str, Any]:
     """Values by dotted path as the nested dict that TOML gives, with a name for the design."""
     tree: dict[str, Any] = {
         "design": {
-            "name": "drawn", "title": "Drawn by chance", "revision": "A", "date": "2026-11-21",
-            "author": "tactcad", "organisation": "tactcad",
-        },
+            "name": "drawn",
+            "title": "Drawn by chance",
+            "revision": "A",
+            "date": "2026-11-21",
+            "author": "tactcad",
+            "organisation": "tactcad",
+        }
     }
     for path, value in values.items():
         *sections, name = path.split(".")

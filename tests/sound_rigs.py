@@ -45,17 +45,26 @@ def _cart(d: Draw) -> None:
     corner = min(5.0, across / 5)
     around = 2 * ((across / 2 - corner) / cos(pi / 8) + corner + 1.0)
     groove = min(v for v in INSIDE.values() if v >= around) + 2 * GROOVE_WIDTH
-    beside = max((groove / 2 + M3.clearance / 2 + 1) / 2**0.5 + 4, groove / 2 + 1, across / 2 + 5, side / 2 + 7)
+    beside = max(
+        (groove / 2 + M3.clearance / 2 + 1) / 2**0.5 + 4, groove / 2 + 1, across / 2 + 5, side / 2 + 7
+    )
     margin = d.number("holder.margin", beside - side / 2, min((widest - side) / 2, 40 + (across - side) / 2))
     holder = side + 2 * margin
 
     # lid, body, and the screw through both into the cart plate
     hole = d.number("holder.hole_diameter", 0.5, min(5.0, (across - 1) / 4))
-    rings = d.put("holder.rings", float(d.choice(*range(1, 1 + max(1, min(d.most_rings, int((across - 2 * hole) / 2 / (hole + 0.51))))))))
+    rings = d.put(
+        "holder.rings",
+        float(
+            d.choice(*range(1, 1 + max(1, min(d.most_rings, int((across - 2 * hole) / 2 / (hole + 0.51))))))
+        ),
+    )
     holes = 1 + 3 * rings * (rings + 1)
     vacuum = d.number("holder.vacuum")
     d.number("holder.pull", high=holes * pi * hole**2 / 4 * vacuum * 1e-3)
-    plenum = d.number("holder.plenum_depth", GROOVE_DEPTH + 1 + M5.d / 2 + M5.tap_drill / 2 + 0.9, min(16.0, 8 * corner))
+    plenum = d.number(
+        "holder.plenum_depth", GROOVE_DEPTH + 1 + M5.d / 2 + M5.tap_drill / 2 + 0.9, min(16.0, 8 * corner)
+    )
     floor = d.number("holder.floor", 1.5, 22 - plenum)
     lid = d.number("holder.lid_thickness", M3.head_height + 2, min(DRILL_REACH * hole, 28.0 - plenum - floor))
     body = plenum + floor + lid - M3.head_height

@@ -37,9 +37,13 @@ def clone(tmp_path) -> Path:
 
 def make(clone: Path, **environment: str) -> subprocess.CompletedProcess:
     return subprocess.run(
-        ["packaging/environment.sh"], cwd=clone, capture_output=True, text=True, check=False,
+        ["packaging/environment.sh"],
+        cwd=clone,
+        capture_output=True,
+        text=True,
+        check=False,
         env={**os.environ, "PYTHON": str(clone / "python-stand-in"), "LACKS": "", **environment},
-    )  # fmt: skip
+    )
 
 
 def installs(clone: Path) -> int:
@@ -94,7 +98,13 @@ def test_an_interrupted_renewal_is_not_a_finished_one(clone):
 
 
 @pytest.mark.parametrize(
-    "name", ["requirements/pins.txt", "pyproject.toml", "packaging/ocp-shim/pyproject.toml", "packaging/environment.sh"]
+    "name",
+    [
+        "requirements/pins.txt",
+        "pyproject.toml",
+        "packaging/ocp-shim/pyproject.toml",
+        "packaging/environment.sh",
+    ],
 )
 def test_a_change_of_what_is_asked_for_installs_anew(clone, name):
     make(clone)

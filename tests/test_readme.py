@@ -18,7 +18,11 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 def blocks() -> list[str]:
     """Indented blocks of the README, without their indentation."""
-    return [re.sub(r"(?m)^    ", "", b) for b in re.findall(r"(?:(?:^    .*|^)\n)+", README, flags=re.M) if b.strip()]
+    return [
+        re.sub(r"(?m)^    ", "", b)
+        for b in re.findall(r"(?:(?:^    .*|^)\n)+", README, flags=re.M)
+        if b.strip()
+    ]
 
 
 def quoted(first: str) -> str:
@@ -68,7 +72,11 @@ def test_estimate_shown_is_the_one_printed(capsys, monkeypatch):
 
 def test_refusal_shown_is_the_one_printed(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / "hardware" / "macro-array.toml").read_text().replace("fillet_radius = 0.30", "fillet_radius = 0.50")
+    text = (
+        (ROOT / "hardware" / "macro-array.toml")
+        .read_text()
+        .replace("fillet_radius = 0.30", "fillet_radius = 0.50")
+    )
     (tmp_path / "wrong.toml").write_text(text)
     assert main(["export", "wrong.toml"]) == 2
     assert capsys.readouterr().err.strip() == quoted("tactcad: element.fillet_radius").strip()
@@ -77,7 +85,9 @@ def test_refusal_shown_is_the_one_printed(tmp_path, capsys, monkeypatch):
 @pytest.mark.cad
 def test_python_shown_runs():
     script = quoted("from tactcad.parts.designs import load")
-    run = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    run = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert run.returncode == 0, run.stderr
 
 

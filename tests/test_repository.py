@@ -14,7 +14,9 @@ ROOT = Path(__file__).parents[1]
 FORBIDDEN = {
     "a machine's folder": re.compile(r"(?<![\w.~$})-])/(wor[k]|roo[t]|hom[e]|tm[p]|op[t]|User[s])/"),
     "a file address": re.compile(r"file:[/]{2}"),
-    "a registry": re.compile(r"pypi[.]org|pythonhosted[.]org|--(extra-)?index[-]url|--find[-]links", re.IGNORECASE),
+    "a registry": re.compile(
+        r"pypi[.]org|pythonhosted[.]org|--(extra-)?index[-]url|--find[-]links", re.IGNORECASE
+    ),
     "a folder outside the repository": re.compile(r"[.][.]/share[d]\b"),
 }
 
@@ -40,7 +42,13 @@ def test_no_machine_paths_or_registries():
 
 @pytest.mark.parametrize(
     "text",
-    ["cd /wor" + "k/main", 'open("/tm' + 'p/x")', "/hom" + "e/ann/x", "file:/" + "/x", "pip --index" + "-url x"],
+    [
+        "cd /wor" + "k/main",
+        'open("/tm' + 'p/x")',
+        "/hom" + "e/ann/x",
+        "file:/" + "/x",
+        "pip --index" + "-url x",
+    ],
 )
 def test_the_rules_catch_what_they_are_for(text):
     assert violations(text)

@@ -11,7 +11,22 @@ import pytest
 
 SOURCE = Path(__file__).parents[1] / "src"
 ROOMS = (
-    "design", "contour", "mechanics", "parts", "fem", "scenes", "solids", "checks", "export", "studies", "cli",
+    "design",
+    "contour",
+    "mechanics",
+    "fem",
+    "parts",
+    "scenes",
+    "solids",
+    "checks",
+    "drawing",
+    "export",
+    "release",
+    "lab",
+    "paper",
+    "fit",
+    "bench",
+    "cli",
 )
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}
 # Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
@@ -23,15 +38,15 @@ NEED_SOLIDS = {
     "tactcad.checks.motion",
     "tactcad.checks.run",
     "tactcad.checks.tools",
-    "tactcad.export.drawing.assembly_lines",
-    "tactcad.export.drawing.cut",
-    "tactcad.export.drawing.hidden_lines",
-    "tactcad.export.picture",
+    "tactcad.drawing.assembly_lines",
+    "tactcad.drawing.cut",
+    "tactcad.drawing.hidden_lines",
+    "tactcad.drawing.picture",
     "tactcad.export.step",
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.
-PEERS = SOURCE / "tactcad" / "studies" / "bench" / "peers"
+PEERS = SOURCE / "tactcad" / "bench" / "peers"
 
 MODULES = sorted(p for p in (SOURCE / "tactcad").rglob("*.py") if p.parent != PEERS)
 
@@ -102,12 +117,12 @@ def test_kernel_is_imported_only_where_solids_are_made_or_needed(path):
 
 def test_the_listed_modules_exist_and_stand_above_solids():
     assert NEED_SOLIDS <= {dotted(p) for p in MODULES}
-    assert {room(name) for name in NEED_SOLIDS} <= {"checks", "export"}
+    assert {room(name) for name in NEED_SOLIDS} <= {"checks", "drawing", "export"}
 
 
 def test_no_module_imports_a_peers_script():
     assert PEERS.is_dir()
-    scripts = "tactcad.studies.bench.peers"
+    scripts = "tactcad.bench.peers"
     assert not [dotted(p) for p in MODULES if any(name.startswith(scripts) for name in imports_of(p))]
 
 

@@ -58,7 +58,9 @@ def file_faults(path: Path, part: dict, element: dict) -> list[str]:
     section = areas[-1] - sum(areas[:-1]) if areas else 0.0
     if abs(section / part["section_area_mm2"] - 1) > AREA:
         faults.append(f"area {section} mm2, the manifest has {part['section_area_mm2']} mm2")
-    if "-element-" in part["part_no"]:  # nothing but the wire shapes an element: its section makes up its volume
+    if (
+        "-element-" in part["part_no"]
+    ):  # nothing but the wire shapes an element: its section makes up its volume
         thickness = part["box_mm"][1][2] - part["box_mm"][0][2]
         if abs(section * thickness / part["volume_mm3"] - 1) > AREA:
             faults.append(f"area {section} mm2 times {thickness} mm is not {part['volume_mm3']} mm3")
@@ -79,7 +81,10 @@ def ends(entity) -> tuple[tuple[float, float], tuple[float, float]]:
         return (entity.dxf.start.x, entity.dxf.start.y), (entity.dxf.end.x, entity.dxf.end.y)
     d = entity.dxf
     first, last = (0.0, 360.0) if entity.dxftype() == "CIRCLE" else (d.start_angle, d.end_angle)
-    points = [(d.center.x + d.radius * cos(radians(a)), d.center.y + d.radius * sin(radians(a))) for a in (first, last)]
+    points = [
+        (d.center.x + d.radius * cos(radians(a)), d.center.y + d.radius * sin(radians(a)))
+        for a in (first, last)
+    ]
     return points[0], points[1]
 
 
@@ -90,7 +95,12 @@ def closed_loops(entities: list) -> tuple[list[list[tuple]], list[str]]:
         loop = [(left.pop(0), True)]
         start, end = ends(loop[0][0])
         while dist(start, end) > CLOSED:
-            fitting = [(e, way) for e in left for way in (True, False) if dist(ends(e)[0 if way else 1], end) <= CLOSED]
+            fitting = [
+                (e, way)
+                for e in left
+                for way in (True, False)
+                if dist(ends(e)[0 if way else 1], end) <= CLOSED
+            ]
             if not fitting:
                 faults.append(f"a chain is open at ({end[0]:.6f}, {end[1]:.6f})")
                 break

@@ -20,13 +20,18 @@ def step(path):
     shape = Part.Shape()
     shape.read(path)
     found = {
-        "solids": [{"volume": s.Volume, "area": s.Area, "valid": s.isValid(), "closed": s.isClosed()} for s in shape.Solids],
+        "solids": [
+            {"volume": s.Volume, "area": s.Area, "valid": s.isValid(), "closed": s.isClosed()}
+            for s in shape.Solids
+        ],
         "names": [],
     }
     if len(shape.Solids) > 1:
         document = FreeCAD.newDocument("review")
         Import.insert(name=path, docName=document.Name, useLinkGroup=False)
-        found["names"] = [o.Label for o in document.Objects if hasattr(o, "Shape") and len(o.Shape.Solids) == 1]
+        found["names"] = [
+            o.Label for o in document.Objects if hasattr(o, "Shape") and len(o.Shape.Solids) == 1
+        ]
         FreeCAD.closeDocument(document.Name)
     return found
 

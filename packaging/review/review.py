@@ -80,16 +80,30 @@ def review(freecad: list[str], folder: Path) -> list[str]:
         else:
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
     solids = sum(len(found.get("solids", ())) for found in report["files"].values())
-    print(f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees too, {len(wrong)} findings")
+    print(
+        f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees too, {len(wrong)} findings"
+    )
     return wrong
 
 
 def scene_faults(manifest: dict) -> list[str]:
     """Every scene of the export has an assembly, and every assembly the bill of its scene."""
-    bills = {Path(f["path"]).stem.removeprefix("bom").lstrip("-") or "array" for f in manifest["files"] if f["kind"] == "bom"}
+    bills = {
+        Path(f["path"]).stem.removeprefix("bom").lstrip("-") or "array"
+        for f in manifest["files"]
+        if f["kind"] == "bom"
+    }
     stem = f"{manifest['design']}-"
-    models = {Path(f["path"]).stem.rpartition("_")[0].removeprefix(stem) for f in manifest["files"] if f["kind"] == "step-assembly"}
-    return [] if bills == models else [f"assemblies of {', '.join(sorted(models))}, bills of {', '.join(sorted(bills))}"]
+    models = {
+        Path(f["path"]).stem.rpartition("_")[0].removeprefix(stem)
+        for f in manifest["files"]
+        if f["kind"] == "step-assembly"
+    }
+    return (
+        []
+        if bills == models
+        else [f"assemblies of {', '.join(sorted(models))}, bills of {', '.join(sorted(bills))}"]
+    )
 
 
 def bill_of(folder: Path, path: str) -> list[dict]:
@@ -106,7 +120,11 @@ def part_faults(path: str, found: dict, part: dict) -> list[str]:
 
 
 def solid_faults(path: str, solid: dict, part: dict) -> list[str]:
-    wrong = [] if solid["valid"] and solid["closed"] else [f"{path}: {part['part_no']} is not a valid closed solid"]
+    wrong = (
+        []
+        if solid["valid"] and solid["closed"]
+        else [f"{path}: {part['part_no']} is not a valid closed solid"]
+    )
     for name, meant in (("volume", part["volume_mm3"]), ("area", part["area_mm2"])):
         if not isclose(solid[name], meant, rel_tol=AGREES):
             wrong.append(f"{path}: {part['part_no']} has {name} {solid[name]:.9g}, the manifest {meant:.9g}")
@@ -119,8 +137,14 @@ def assembly_faults(path: str, found: dict, bill: list[dict], parts: dict[str, d
     solids = found["solids"]
     wrong = []
     if len(solids) != sum(row["qty"] for row in rows):
-        wrong.append(f"{path}: {len(solids)} solids, the bill of materials has {sum(row['qty'] for row in rows)}")
-    wrong += [f"{path}: an invalid solid of {s['volume']:.6g} mm3" for s in solids if not (s["valid"] and s["closed"])]
+        wrong.append(
+            f"{path}: {len(solids)} solids, the bill of materials has {sum(row['qty'] for row in rows)}"
+        )
+    wrong += [
+        f"{path}: an invalid solid of {s['volume']:.6g} mm3"
+        for s in solids
+        if not (s["valid"] and s["closed"])
+    ]
     meant = sorted(parts[row["part_no"]]["volume_mm3"] for row in rows for _ in range(int(row["qty"])))
     for got, want in zip(sorted(s["volume"] for s in solids), meant):
         if not isclose(got, want, rel_tol=AGREES):
@@ -150,8 +174,10 @@ def cut_faults(path: str, found: dict, part: dict) -> list[str]:
     size = [part["box_mm"][1][i] - part["box_mm"][0][i] for i in (0, 1)]
     wrong = [] if found["closed"] else [f"{path}: an open contour"]
     for name, got, meant in (
-        ("area", found["area"], part["section_area_mm2"]), ("cut length", found["length"], part["cut_length_mm"]),
-        ("width", found["size"][0], size[0]), ("height", found["size"][1], size[1]),
+        ("area", found["area"], part["section_area_mm2"]),
+        ("cut length", found["length"], part["cut_length_mm"]),
+        ("width", found["size"][0], size[0]),
+        ("height", found["size"][1], size[1]),
     ):
         if not isclose(got, meant, rel_tol=AGREES):
             wrong.append(f"{path}: {name} {got:.9g}, the part has {meant:.9g}")

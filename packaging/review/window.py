@@ -28,11 +28,14 @@ UNCOLOURED = [0.8, 0.8, 0.8]  # what FreeCAD gives a shape without a colour
 
 def profile() -> str:
     """A user's settings as FreeCAD keeps them: the four above, and no start page."""
+
     def group(name: str, *inside: str) -> str:
         return f'<FCParamGroup Name="{name}">{"".join(inside)}</FCParamGroup>'
 
     def flags(folder: str) -> list[str]:
-        return [f'<FCBool Name="{n}" Value="{int(on)}"/>' for where, n, on in SETTINGS.values() if where == folder]
+        return [
+            f'<FCBool Name="{n}" Value="{int(on)}"/>' for where, n, on in SETTINGS.values() if where == folder
+        ]
 
     general = group("General", '<FCText Name="AutoloadModule">PartWorkbench</FCText>')
     settings = group("Mod", group("Import", *flags(""), group("hSTEP", *flags("hSTEP"))))
@@ -52,11 +55,20 @@ def shown(program: str, path: Path) -> dict | None:
         (folder / "user.cfg").write_text(profile())
         (folder / "run").mkdir(mode=0o700)
         env = os.environ | {
-            "HOME": name, "QT_QPA_PLATFORM": "offscreen", "XDG_RUNTIME_DIR": str(folder / "run"),
-            "REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json"),
+            "HOME": name,
+            "QT_QPA_PLATFORM": "offscreen",
+            "XDG_RUNTIME_DIR": str(folder / "run"),
+            "REVIEW_FILE": str(path.resolve()),
+            "REVIEW_OUT": str(folder / "out.json"),
         }
         try:
-            subprocess.run([program, "-u", str(folder / "user.cfg"), str(INSIDE)], env=env, capture_output=True, check=False, timeout=SECONDS)
+            subprocess.run(
+                [program, "-u", str(folder / "user.cfg"), str(INSIDE)],
+                env=env,
+                capture_output=True,
+                check=False,
+                timeout=SECONDS,
+            )
             return json.loads((folder / "out.json").read_text())
         except (OSError, ValueError, subprocess.TimeoutExpired):
             return None
@@ -70,10 +82,19 @@ def tree_faults(path: str, tree: dict | None, bill: list[dict]) -> list[str]:
         return [f"{path}: {tree['groups']} assemblies in FreeCAD's tree instead of one"]
     meant = {d: row["part_no"] for row in bill if row["has_solid"] for d in row["designators"].split()}
     seen = {child["label"]: re.sub(r"\d{3}$", "", child["part"]) for child in tree["children"]}
-    plain = {d: re.sub(r"\d{3}$", "", number) for d, number in meant.items()}  # FreeCAD numbers equal names: spacer001
+    plain = {
+        d: re.sub(r"\d{3}$", "", number) for d, number in meant.items()
+    }  # FreeCAD numbers equal names: spacer001
     wrong = [f"{path}: {d} is not in FreeCAD's tree" for d in sorted(set(meant) - set(seen))]
-    wrong += [f"{path}: FreeCAD's tree has {d}, the bill of materials has not" for d in sorted(set(seen) - set(meant))]
-    wrong += [f"{path}: {d} shows {seen[d]} instead of {meant[d]}" for d in sorted(set(seen) & set(meant)) if seen[d] != plain[d]]
+    wrong += [
+        f"{path}: FreeCAD's tree has {d}, the bill of materials has not"
+        for d in sorted(set(seen) - set(meant))
+    ]
+    wrong += [
+        f"{path}: {d} shows {seen[d]} instead of {meant[d]}"
+        for d in sorted(set(seen) & set(meant))
+        if seen[d] != plain[d]
+    ]
     if len(tree["children"]) != len(seen):
         wrong.append(f"{path}: a designator stands twice in FreeCAD's tree")
     bare = sorted({child["part"] for child in tree["children"] if child["colour"] == UNCOLOURED})

@@ -93,7 +93,9 @@ def making(kind: str, name: str) -> Iterator[None]:
 
 def text(record: dict) -> str:
     """The record for a terminal."""
-    loaded = ", ".join(f"{name} ({count})" for name, count in record["loaded"].items()) or "none of the heavy ones"
+    loaded = (
+        ", ".join(f"{name} ({count})" for name, count in record["loaded"].items()) or "none of the heavy ones"
+    )
     lines = [
         f"profile: {record['seconds']:.2f} s, {record['peak_memory_mb']:.0f} MB at most, {record['modules']} modules",
         f"  loaded (modules): {loaded}",
@@ -121,7 +123,9 @@ def _peak_memory_mb() -> float:
         import resource  # not on every system, and only a profile needs it
 
         most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-        return round(most * (1e-6 if sys.platform == "darwin" else 1.024e-3), 1)  # bytes there, kibibytes elsewhere
+        return round(
+            most * (1e-6 if sys.platform == "darwin" else 1.024e-3), 1
+        )  # bytes there, kibibytes elsewhere
     return round(kibibytes * 1.024e-3, 1)
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tactcad.bench import arrays
 from tactcad.design.load import parse
 from tactcad.parts.rules import refuse_broken
-from tactcad.studies.bench import arrays
 
 
 @pytest.mark.parametrize("elements", [2, 10, 20, 30, 40, 100, 300, 400, 1000])

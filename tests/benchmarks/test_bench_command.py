@@ -10,29 +10,40 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
+from tactcad.bench import freecad
+from tactcad.bench.process import measured, python
+from tactcad.bench.run import BENCHMARKS, SCHEMA
 from tactcad.cli.main import main
 from tactcad.fem import calculix
-from tactcad.studies.bench import freecad
-from tactcad.studies.bench.process import measured, python
-from tactcad.studies.bench.run import BENCHMARKS, SCHEMA
 
 
 def follows_schema(result: dict) -> None:
     """The document's promises: keys, types, tables whose rows have only described columns and plain values."""
     assert result["schema"] == SCHEMA and result["mode"] in ("smoke", "short", "full")
     assert isinstance(result["seed"], int) and result["seconds"] > 0 and len(result["date"]) == 10
-    assert {"processor", "cores", "memory_GB", "system", "load"} <= set(result["machine"]) and result["machine"]["cores"] >= 1
+    assert {"processor", "cores", "memory_GB", "system", "load"} <= set(result["machine"]) and result[
+        "machine"
+    ]["cores"] >= 1
     assert {"python", "tactcad", "numpy", "scipy", "scikit-fem", "cadquery-ocp"} <= set(result["versions"])
     assert set(result["peers"]) == {"CalculiX", "FreeCAD"}
     for name, entry in result["benchmarks"].items():
-        assert name in BENCHMARKS and entry["title"] and entry["question"].endswith("?") and entry["seconds"] >= 0
+        assert (
+            name in BENCHMARKS
+            and entry["title"]
+            and entry["question"].endswith("?")
+            and entry["seconds"] >= 0
+        )
         assert "failed" not in entry, entry["failed"]
-        assert all(isinstance(line, str) and line.endswith(".") for line in entry["findings"] + entry["missing"]), entry["findings"]
+        assert all(
+            isinstance(line, str) and line.endswith(".") for line in entry["findings"] + entry["missing"]
+        ), entry["findings"]
         for data in entry["tables"].values():
             assert set(data) == {"title", "columns", "rows", "note"} and data["columns"]
             assert all(set(c) == {"key", "heading", "unit", "scale"} for c in data["columns"])
             for row in data["rows"]:
-                assert all(v is None or isinstance(v, str | bool | int) or math.isfinite(v) for v in row.values())
+                assert all(
+                    v is None or isinstance(v, str | bool | int) or math.isfinite(v) for v in row.values()
+                )
                 assert set(row) & {c["key"] for c in data["columns"]}
 
 
@@ -56,15 +67,17 @@ def test_every_benchmark_runs_in_smoke_mode(name, tmp_path, capsys):
 
 
 def test_a_fault_in_one_benchmark_loses_nothing_of_the_others(tmp_path, monkeypatch):
-    from tactcad.studies.bench import element, plan, run
+    from tactcad.bench import element, plan, run
 
     def broken(plan):
         return 1 / 0
 
     monkeypatch.setattr(element, "measure", lambda plan: {"findings": ["Measured."]})
-    monkeypatch.setattr("tactcad.studies.bench.meshes.measure", broken)
+    monkeypatch.setattr("tactcad.bench.meshes.measure", broken)
     done = run.run(plan.Plan("smoke", 1, tmp_path), ["meshes", "element"], lambda *_: None)["benchmarks"]
-    assert "ZeroDivisionError in broken" in done["meshes"]["failed"] and done["element"]["findings"] == ["Measured."]
+    assert "ZeroDivisionError in broken" in done["meshes"]["failed"] and done["element"]["findings"] == [
+        "Measured."
+    ]
 
 
 def check_contents(name: str, made: dict) -> None:
@@ -72,7 +85,9 @@ def check_contents(name: str, made: dict) -> None:
     rows = next(iter(made.values()))["rows"]
     if name == "rungs":
         by = {row["rung"]: row for row in rows}
-        assert by["solid"]["solid worst"] < 0.004 < 0.05 < by["plane"]["solid worst"], "plane stress is no thick sheet"
+        assert by["solid"]["solid worst"] < 0.004 < 0.05 < by["plane"]["solid worst"], (
+            "plane stress is no thick sheet"
+        )
         assert by["plane"]["plane worst"] < 0.004 and by["short"]["solid worst"] > 0.5
         assert all(row["solid mean"] <= row["solid worst"] for row in rows)
     elif name == "meshes":
@@ -80,17 +95,26 @@ def check_contents(name: str, made: dict) -> None:
         assert [row["worst"] for row in plane] == sorted((row["worst"] for row in plane), reverse=True)
         assert any(row["code"] == "CalculiX" for row in rows) == bool(calculix.executable())
     elif name == "tessellation":
-        assert rows[0]["volume error"] > rows[-1]["volume error"] and rows[0]["triangles"] < rows[-1]["triangles"]
+        assert (
+            rows[0]["volume error"] > rows[-1]["volume error"]
+            and rows[0]["triangles"] < rows[-1]["triangles"]
+        )
     elif name == "interference":
         assert rows[0]["by"] == "kernel" and rows[0]["wrong"] == 0 and rows[1]["wrong"] > 0
         assert all(row["same verdicts"] for row in made["situations"]["rows"])
     elif name == "detail":
         full, light = rows
-        assert light["bytes"] < full["bytes"] and light["solids"] == full["solids"] and full["peak_bytes"] > 100e6
+        assert (
+            light["bytes"] < full["bytes"]
+            and light["solids"] == full["solids"]
+            and full["peak_bytes"] > 100e6
+        )
     elif name == "step":
         assert rows[1]["form"] == "copies" and rows[1]["size ratio"] > 1.0
     elif name == "element":
-        assert {row["program"] for row in rows} == {"tactcad", "bare kernel"} | ({"FreeCAD"} if freecad.version() else set())
+        assert {row["program"] for row in rows} == {"tactcad", "bare kernel"} | (
+            {"FreeCAD"} if freecad.version() else set()
+        )
         assert all(row["off"] < 1e-9 and row["read off"] < 1e-9 for row in rows)
     elif name == "sheets":
         assert rows[0]["sheets"] == rows[1]["sheets"] >= 8 and rows[1]["seconds"] < rows[0]["seconds"]
@@ -106,7 +130,7 @@ def test_a_peer_that_is_not_installed_is_said(tmp_path, capsys, monkeypatch):
 
 
 def test_without_the_kernel_it_says_so_and_measures_the_rest(monkeypatch, capsys):
-    from tactcad.studies.bench import run
+    from tactcad.bench import run
 
     monkeypatch.setattr(run, "_kernel", lambda: False)
     assert main(["bench", "--smoke", "--only", "tessellation"]) == 0
@@ -114,8 +138,8 @@ def test_without_the_kernel_it_says_so_and_measures_the_rest(monkeypatch, capsys
 
 
 def test_a_benchmark_that_fails_is_reported_and_the_status_is_one(monkeypatch, capsys):
+    from tactcad.bench import meshes
     from tactcad.design.messages import CheckFailure
-    from tactcad.studies.bench import meshes
 
     def fail(plan):
         raise CheckFailure("the mesh is torn")
@@ -127,10 +151,7 @@ def test_a_benchmark_that_fails_is_reported_and_the_status_is_one(monkeypatch, c
 
 @pytest.mark.parametrize(
     "arguments, words",
-    [
-        (["--only", "speed"], ("--only", "speed", "rungs")),
-        (["--seed", "-1"], ("--seed", "-1")),
-    ],
+    [(["--only", "speed"], ("--only", "speed", "rungs")), (["--seed", "-1"], ("--seed", "-1"))],
 )
 def test_bad_arguments_are_refused(arguments, words, capsys):
     assert main(["bench", "--smoke", *arguments]) == 2
@@ -139,7 +160,7 @@ def test_bad_arguments_are_refused(arguments, words, capsys):
 
 
 def test_a_folder_with_other_things_is_refused_before_anything_is_measured(tmp_path, capsys, monkeypatch):
-    from tactcad.studies.bench import run
+    from tactcad.bench import run
 
     monkeypatch.setattr(run, "run", lambda *args: pytest.fail("measured"))
     (tmp_path / "thesis.tex").write_text("mine")
@@ -171,9 +192,9 @@ def test_the_peers_know_nothing_of_tactcad():
 
 @pytest.mark.nightly
 def test_baseline_and_export_write_the_same_number_of_solids(tmp_path):
+    from tactcad.bench import arrays
+    from tactcad.bench.export_times import PLAIN_SCRIPT
     from tactcad.scenes.array import array
-    from tactcad.studies.bench import arrays
-    from tactcad.studies.bench.export_times import PLAIN_SCRIPT
 
     run = measured(python(str(PLAIN_SCRIPT), "10", str(tmp_path / "plain")))
     scene = array(arrays.of(10))

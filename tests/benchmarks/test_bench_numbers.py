@@ -9,11 +9,11 @@ import json
 import numpy as np
 import pytest
 
-from tactcad.studies.bench import tables
-from tactcad.studies.bench.exponent import fit
-from tactcad.studies.bench.front import dominators, efficient, told
-from tactcad.studies.bench.rungs import errors
-from tactcad.studies.bench.timing import interleaved, of_samples
+from tactcad.bench import tables
+from tactcad.bench.exponent import fit
+from tactcad.bench.front import dominators, efficient, told
+from tactcad.bench.rungs import errors
+from tactcad.bench.timing import interleaved, of_samples
 
 
 @pytest.mark.parametrize("p", [0.0, 0.5, 1.0, 2.0])
@@ -81,8 +81,20 @@ def test_samples_of_another_clock():
     assert (found.least, found.median, found.runs) == (1.0, 3.0, 3)
 
 
-ROWS = [{"name": "a", "time": 0.00123456, "wrong": 3, "kept": True}, {"name": "b | c", "time": None, "wrong": 0, "kept": False}]
-TABLE = tables.table("T", [("name", "name", tables.PLAIN), ("time", "time", tables.MILLI), ("wrong", "wrong", tables.PLAIN), ("kept", "kept", tables.PLAIN)], ROWS)
+ROWS = [
+    {"name": "a", "time": 0.00123456, "wrong": 3, "kept": True},
+    {"name": "b | c", "time": None, "wrong": 0, "kept": False},
+]
+TABLE = tables.table(
+    "T",
+    [
+        ("name", "name", tables.PLAIN),
+        ("time", "time", tables.MILLI),
+        ("wrong", "wrong", tables.PLAIN),
+        ("kept", "kept", tables.PLAIN),
+    ],
+    ROWS,
+)
 
 
 def test_a_table_reads_the_same_in_every_form():
@@ -93,9 +105,17 @@ def test_a_table_reads_the_same_in_every_form():
     assert heads == "| name | time, ms | wrong | kept |"
     assert first == "| a | 1.23 | 3 | yes |" and second == "| b \\| c |  | 0 | no |"
     lines = tables.text(TABLE).splitlines()
-    assert lines[1].split() == ["name", "time", "wrong", "kept"] and lines[2].split() == ["ms"] and lines[3].split() == ["a", "1.23", "3", "yes"]
+    assert (
+        lines[1].split() == ["name", "time", "wrong", "kept"]
+        and lines[2].split() == ["ms"]
+        and lines[3].split() == ["a", "1.23", "3", "yes"]
+    )
 
 
 def test_no_error_smaller_than_that_of_the_converged_elements_is_claimed():
     found = errors(np.array([1.0, 1.01, np.nan]), np.ones(3), "solid", np.array([2e-4, 2e-4, 2e-4]))
-    assert found == {"solid mean": pytest.approx((2e-4 + 0.01) / 2), "solid worst": pytest.approx(0.01), "solid designs": 2}
+    assert found == {
+        "solid mean": pytest.approx((2e-4 + 0.01) / 2),
+        "solid worst": pytest.approx(0.01),
+        "solid designs": 2,
+    }

@@ -7,20 +7,28 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from tactcad.studies.bench.figures import Point, _error_against_time, _labelled
-from tactcad.studies.drawing import panels
+from tactcad.bench.figures import Point, _error_against_time, _labelled
+from tactcad.paper.plots import panels
 
 CLUSTER = [
-    Point("short", "closed form", 3.8e-8, 1.1), Point("beam", "closed form", 5.6e-8, 0.97), Point("section", "closed form", 1.5e-7, 1.2),
-    Point("plane", "closed form", 1.2e-7, 0.15), Point("fem-plane", "plane elements", 0.14, 0.12), Point("fem-solid", "solid elements", 1.6, 1e-3),
+    Point("short", "closed form", 3.8e-8, 1.1),
+    Point("beam", "closed form", 5.6e-8, 0.97),
+    Point("section", "closed form", 1.5e-7, 1.2),
+    Point("plane", "closed form", 1.2e-7, 0.15),
+    Point("fem-plane", "plane elements", 0.14, 0.12),
+    Point("fem-solid", "solid elements", 1.6, 1e-3),
     Point("mesh 2", "solid elements", 2.0, 1.2e-3),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize("seed", range(6))
 def test_labels_stand_free_of_each_other_and_of_markers(seed):
     """By the renderer's own extents; the rungs' times as measured, and shuffled by up to half as much again."""
-    shift = np.exp(np.random.default_rng(seed).uniform(-0.4, 0.4, len(CLUSTER))) if seed else np.ones(len(CLUSTER))
+    shift = (
+        np.exp(np.random.default_rng(seed).uniform(-0.4, 0.4, len(CLUSTER)))
+        if seed
+        else np.ones(len(CLUSTER))
+    )
     points = [Point(p.label, p.series, p.seconds * f, p.worst) for p, f in zip(CLUSTER, shift)]
     with panels(1, 2, (12.4, 5.0), width_ratios=(1.7, 1.0)) as (figure, (ax, _)):
         _error_against_time(ax, points, "t", "x", "y")
@@ -42,7 +50,11 @@ def test_what_is_dominated_is_hollow_and_the_front_is_joined():
         _error_against_time(ax, CLUSTER, "t", "x", "y")
         joined, *rest = ax.lines
         markers = [line for line in rest if line.get_marker() not in ("None", "", None)]
-        filled = {(line.get_xdata()[0], line.get_ydata()[0]) for line in markers if line.get_markerfacecolor() != "#ffffff"}
+        filled = {
+            (line.get_xdata()[0], line.get_ydata()[0])
+            for line in markers
+            if line.get_markerfacecolor() != "#ffffff"
+        }
         assert filled == set(zip(joined.get_xdata(), joined.get_ydata()))
         expected = {"short", "beam", "plane", "fem-plane", "fem-solid"}
         assert filled == {(p.seconds, p.worst) for p in CLUSTER if p.label in expected}

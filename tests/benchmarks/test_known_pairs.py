@@ -10,30 +10,40 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from tactcad.bench.interference import Prepared, count_wrong, kernel_verdict, mesh_verdict
+from tactcad.bench.pairs import GAPS, KINDS, known_pairs, lens
 from tactcad.parts.description import Extrusion
-from tactcad.studies.bench.interference import Prepared, count_wrong, kernel_verdict, mesh_verdict
-from tactcad.studies.bench.pairs import GAPS, KINDS, known_pairs, lens
 
 PAIRS = list(known_pairs(2, seed=5))
 
 
-@pytest.mark.parametrize("r, s, d", [(1.0, 1.0, 1.0), (2.0, 0.7, 1.9), (1.0, 3.0, 2.5), (1.0, 1.0, 1.99999), (2.0, 2.0, 1e-3)])
+@pytest.mark.parametrize(
+    "r, s, d", [(1.0, 1.0, 1.0), (2.0, 0.7, 1.9), (1.0, 3.0, 2.5), (1.0, 1.0, 1.99999), (2.0, 2.0, 1e-3)]
+)
 def test_the_area_of_two_circles_is_the_integral(r, s, d):
     def common(x: float) -> float:
         heights = [sqrt(max(q * q - (x - c) ** 2, 0.0)) for q, c in ((r, 0.0), (s, d))]
         return 2 * min(heights)
 
     crossing = (d * d + r * r - s * s) / (2 * d)
-    assert lens(r, s, d) == pytest.approx(quad(common, max(-r, d - s), min(r, d + s), points=[crossing], limit=200)[0], rel=1e-6)
+    assert lens(r, s, d) == pytest.approx(
+        quad(common, max(-r, d - s), min(r, d + s), points=[crossing], limit=200)[0], rel=1e-6
+    )
 
 
 def test_circles_apart_inside_and_equal():
-    assert lens(1.0, 2.0, 3.0) == 0.0 and lens(1.0, 2.0, 0.9) == pi and lens(1.5, 1.5, 0.0) == pytest.approx(pi * 2.25)
+    assert (
+        lens(1.0, 2.0, 3.0) == 0.0
+        and lens(1.0, 2.0, 0.9) == pi
+        and lens(1.5, 1.5, 0.0) == pytest.approx(pi * 2.25)
+    )
 
 
 def test_every_kind_at_every_gap_in_every_round():
     assert Counter((p.kind, p.gap) for p in PAIRS) == {key: 2 for key in product(KINDS, GAPS)}
-    assert all((p.overlap > 1e-6) == (p.gap < 0) for p in PAIRS), "an overlap that the check's limit would let pass proves nothing"
+    assert all((p.overlap > 1e-6) == (p.gap < 0) for p in PAIRS), (
+        "an overlap that the check's limit would let pass proves nothing"
+    )
     assert len({p.placements[0].rotation for p in PAIRS}) == len(PAIRS)
 
 
@@ -56,7 +66,12 @@ def inside(part, points: np.ndarray) -> np.ndarray:
         x0, y0, x1, y1 = contour.box
         return (x0 < x) & (x < x1) & (y0 < y) & (y < y1)
 
-    return within(body.outer) & (z > 0) & (z < body.thickness) & ~np.any([within(c) for c in body.openings] or [x != x], axis=0)
+    return (
+        within(body.outer)
+        & (z > 0)
+        & (z < body.thickness)
+        & ~np.any([within(c) for c in body.openings] or [x != x], axis=0)
+    )
 
 
 @pytest.mark.parametrize("pair", [p for p in PAIRS if p.gap == -0.1][:4], ids=lambda p: p.kind)
@@ -107,7 +122,9 @@ def test_flat_faced_meshes_are_exact_and_round_ones_miss_what_is_thinner_than_th
         made = prepared(pair, 0.5)
         for p in pair.placements:
             flat = not any(c.as_circle() for c in (p.part.body.outer, *p.part.body.openings))
-            assert made.meshes[p.part.part_no, 0.5].volume() == pytest.approx(p.part.volume, rel=1e-9 if flat else 0.1)
+            assert made.meshes[p.part.part_no, 0.5].volume() == pytest.approx(
+                p.part.volume, rel=1e-9 if flat else 0.1
+            )
         wrong[pair.kind] += mesh_verdict(pair.placements, made, 0.5) != pair.verdict
     assert wrong["box on box"] == 0 and wrong["pin in its hole"] > 0 and wrong["pin beside pin"] > 0
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from test_bench_command import follows_schema
 
+from tactcad.bench import publish, render
+from tactcad.bench.front import efficient
+from tactcad.bench.run import BENCHMARKS
 from tactcad.design.messages import InputError
-from tactcad.studies.bench import publish, render
-from tactcad.studies.bench.front import efficient
-from tactcad.studies.bench.run import BENCHMARKS
 
 ROOT = Path(__file__).parents[2]
 RESULT = publish.load(ROOT / publish.REFERENCE)
@@ -22,7 +22,14 @@ def test_the_reference_is_whole_and_says_machine_versions_and_date():
     follows_schema(RESULT)
     assert set(RESULT["benchmarks"]) == set(BENCHMARKS)
     said = render.made_on(RESULT)
-    for word in (RESULT["date"], RESULT["machine"]["processor"], RESULT["versions"]["numpy"], f"seed {RESULT['seed']}", "CalculiX", "FreeCAD"):
+    for word in (
+        RESULT["date"],
+        RESULT["machine"]["processor"],
+        RESULT["versions"]["numpy"],
+        f"seed {RESULT['seed']}",
+        "CalculiX",
+        "FreeCAD",
+    ):
         assert str(word) in said
 
 
@@ -32,7 +39,7 @@ def test_every_block_is_the_reference_results(document):
     found = BLOCK.findall((ROOT / document).read_text("utf-8"))
     assert found
     for name, text in found:
-        assert text == blocks[name], f"{document}: {name}; `python -m tactcad.studies.bench.publish` writes it"
+        assert text == blocks[name], f"{document}: {name}; `python -m tactcad.bench.publish` writes it"
 
 
 def test_readme_lets_one_choose():
@@ -50,9 +57,13 @@ def test_readme_lets_one_choose():
 
 def test_every_plot_is_made_from_the_reference_results():
     images = publish.images(RESULT)
-    assert {f"bench-{n}.svg" for n in ("choose", "rungs", "meshes", "tessellation", "interference", "scaling")} == set(images)
+    assert {
+        f"bench-{n}.svg" for n in ("choose", "rungs", "meshes", "tessellation", "interference", "scaling")
+    } == set(images)
     for name, data in images.items():
-        assert (ROOT / "docs" / "images" / name).read_bytes() == data, f"{name}; `python -m tactcad.studies.bench.publish` writes it"
+        assert (ROOT / "docs" / "images" / name).read_bytes() == data, (
+            f"{name}; `python -m tactcad.bench.publish` writes it"
+        )
 
 
 def test_rows_marked_as_worth_choosing_are_the_front():
@@ -62,15 +73,30 @@ def test_rows_marked_as_worth_choosing_are_the_front():
 
 
 def test_a_further_run_takes_the_place_of_what_it_measured_and_is_named():
-    more = {**RESULT, "mode": "full", "seed": 123456, "machine": RESULT["machine"] | {"load": 0.7}, "benchmarks": {"scaling": {"tables": {}}}}
+    more = {
+        **RESULT,
+        "mode": "full",
+        "seed": 123456,
+        "machine": RESULT["machine"] | {"load": 0.7},
+        "benchmarks": {"scaling": {"tables": {}}},
+    }
     both = publish.replaced({k: v for k, v in RESULT.items() if k != "further"}, more)
-    assert both["benchmarks"]["scaling"] == {"tables": {}} and both["benchmarks"]["rungs"] == RESULT["benchmarks"]["rungs"]
-    assert "full run" in render.made_on(both) and "seed 123456" in render.made_on(both) and "load 0.7: scaling." in render.made_on(both)
+    assert (
+        both["benchmarks"]["scaling"] == {"tables": {}}
+        and both["benchmarks"]["rungs"] == RESULT["benchmarks"]["rungs"]
+    )
+    assert (
+        "full run" in render.made_on(both)
+        and "seed 123456" in render.made_on(both)
+        and "load 0.7: scaling." in render.made_on(both)
+    )
     with pytest.raises(InputError, match="its versions differ"):
         publish.replaced(RESULT, more | {"versions": RESULT["versions"] | {"numpy": "1.0"}})
 
 
 def test_a_report_that_lacks_something_is_not_published(tmp_path):
-    (tmp_path / "report.json").write_text('{"schema": "tactcad-bench-1", "benchmarks": {"rungs": {"tables": {}}}}')
+    (tmp_path / "report.json").write_text(
+        '{"schema": "tactcad-bench-1", "benchmarks": {"rungs": {"tables": {}}}}'
+    )
     with pytest.raises(InputError, match="not a whole report"):
         publish.load(tmp_path / "report.json")

@@ -64,10 +64,7 @@ def _solid_of(shell):
     return solid
 
 
-@pytest.mark.parametrize(
-    ("step", "expected"),
-    [(5e-4, {"tiny-edge"}), (2e-3, set())],
-)
+@pytest.mark.parametrize(("step", "expected"), [(5e-4, {"tiny-edge"}), (2e-3, set())])
 def test_tiny_edges_are_seen_where_they_are(step, expected):
     contour = chain([(0, 0), (10, 0), (10, 4), (10 + step, 4), (10 + step, 8), (0, 8)])
     part = replace(BLOCK, body=Extrusion(contour, 5.0))
@@ -136,7 +133,11 @@ def without_a_face(data: bytes) -> bytes:
 
 def stretched(data: bytes) -> bytes:
     """Every point 1 % further out along x."""
-    return re.sub(rb"CARTESIAN_POINT\('',\(([-0-9.E+]+),", lambda m: b"CARTESIAN_POINT('',(%r," % (1.01 * float(m[1])), data)
+    return re.sub(
+        rb"CARTESIAN_POINT\('',\(([-0-9.E+]+),",
+        lambda m: b"CARTESIAN_POINT('',(%r," % (1.01 * float(m[1])),
+        data,
+    )
 
 
 def cut_off(data: bytes) -> bytes:
@@ -145,10 +146,7 @@ def cut_off(data: bytes) -> bytes:
 
 @pytest.mark.parametrize(
     ("spoil", "expected"),
-    [
-        (without_a_face, {"one-solid"}),
-        (stretched, {"volume", "step-volume", "step-area", "step-box"}),
-    ],
+    [(without_a_face, {"one-solid"}), (stretched, {"volume", "step-volume", "step-area", "step-box"})],
 )
 def test_a_spoilt_step_file_is_seen(shape, spoil, expected):
     data = write_step(shape)
@@ -224,7 +222,9 @@ def test_run_reports_what_cannot_be_built(macro, monkeypatch):
 
     monkeypatch.setattr(run, "build", refuse)
     report = run_checks(macro, ["array"])
-    assert [(f.check, f.severity, f.part) for f in report.failures] == [("build", "fail", "macro-array-carrier")]
+    assert [(f.check, f.severity, f.part) for f in report.failures] == [
+        ("build", "fail", "macro-array-carrier")
+    ]
     assert "interference" not in report.runs
     assert report.runs["brep"] == report.runs["mesh"] == 13
     assert len([f for f in report.findings if f.severity == "flag" and "hinge" in f.check]) == 5

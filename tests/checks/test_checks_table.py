@@ -56,5 +56,9 @@ def test_every_timed_check_has_its_times():
     assert set(times) == {bad.run for bad in BAD.values()}
     assert all(any(cell not in ("", "-") for cell in cells) for cells in times.values())
     source = ast.parse((ROOT / "src" / "tactcad" / "checks" / "run.py").read_text(encoding="utf-8"))
-    timed = {n.args[0].value for n in ast.walk(source) if isinstance(n, ast.Call) and ast.unparse(n.func) == "report.run"}
+    timed = {
+        n.args[0].value
+        for n in ast.walk(source)
+        if isinstance(n, ast.Call) and ast.unparse(n.func) == "report.run"
+    }
     assert timed - {"configurations"} == set(times) - {"golden"}

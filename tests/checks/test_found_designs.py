@@ -17,42 +17,80 @@ TWO = {"array.row_arms": [[8.0], [8.0]]}
 
 REFUSED = {
     "half a micrometre of flat face between pad root and slot": (
-        "no_slivers", {"element.sides": "two", "array.row_arms": [[2.7405]], "element.arm_height": 1.8,
-                       "element.body_height": 2.6, "stop.land_length": 0.2, "gauge.carrier_arm_side": 0.1},
+        "no_slivers",
+        {
+            "element.sides": "two",
+            "array.row_arms": [[2.7405]],
+            "element.arm_height": 1.8,
+            "element.body_height": 2.6,
+            "stop.land_length": 0.2,
+            "gauge.carrier_arm_side": 0.1,
+        },
     ),
     "an M3 tap through 9.1 mm of carrier": ("carrier_can_be_screwed", {"clamp.carrier_thickness": 9.1}),
-    "a 3 mm reamer through 30.5 mm of end plate": ("end_plate_takes_holes", {"clamp.end_plate_thickness": 30.5}),
+    "a 3 mm reamer through 30.5 mm of end plate": (
+        "end_plate_takes_holes",
+        {"clamp.end_plate_thickness": 30.5},
+    ),
     "the flat tip's body pressed into the sample": ("tip_land_clears_sample", {"sample.travel": 2.1}),
     "a tip pressed through a thin sample": ("tip_land_clears_sample", {"sample.thickness": 0.4}),
     "the axle's bore 0.26 mm from the holder's thread": ("axles_fit_plate", {"cart.wheel_base": 47.2}),
-    "a calibration that bends a stiff, weak hinge beyond yield": ("calibration_bends_elastically", {"calibration.travel": 0.4}),
+    "a calibration that bends a stiff, weak hinge beyond yield": (
+        "calibration_bends_elastically",
+        {"calibration.travel": 0.4},
+    ),
     "a wire recess that parts the ledge from the rear body": (
-        "recess_fits_rear", {"element.recess_offset": 0.0, "element.recess_depth": 3.2},
+        "recess_fits_rear",
+        {"element.recess_offset": 0.0, "element.recess_depth": 3.2},
     ),
     "the hose fitting on the cart plate": ("port_clears_cart", {"holder.floor": 1.0}),
-}  # fmt: skip
+}
 
 LEFT_OUT = {
-    "ballast of 2.9 m on the weights' pin": ("ballast_trims_moving_weight", {"grasping.moving_weight": 500.0}),
+    "ballast of 2.9 m on the weights' pin": (
+        "ballast_trims_moving_weight",
+        {"grasping.moving_weight": 500.0},
+    ),
     "ballast of no thickness": ("ballast_trims_moving_weight", {"grasping.moving_weight": 2.74}),
     "the roller's holder on the neighbouring pads": ("roller_clears_neighbours", {"calibration.travel": 1.0}),
     "screws of carrier and bar through each other in the foot": (
-        "foot_holes_apart", {"clamp.mount_pitch_y": 24.1, "array.row_arms": [[3.0]], "clamp.carrier_screw_offset": 3.0,
-                             "gauge.carrier_arm_side": 0.5},
+        "foot_holes_apart",
+        {
+            "clamp.mount_pitch_y": 24.1,
+            "array.row_arms": [[3.0]],
+            "clamp.carrier_screw_offset": 3.0,
+            "gauge.carrier_arm_side": 0.5,
+        },
     ),
-    "heads of the screws into the carrier through each other": ("carrier_screws_fit", {"clamp.mount_pitch_y": 6.0}),
-}  # fmt: skip
+    "heads of the screws into the carrier through each other": (
+        "carrier_screws_fit",
+        {"clamp.mount_pitch_y": 6.0},
+    ),
+}
 
 PASSES = {
     "a flat tip wider than its round body": (
-        {"sheet.thickness": 10.0, "array.pitch": 11.0, "stop.tolerance": 0.015}, "sample-stiffness",
+        {"sheet.thickness": 10.0, "array.pitch": 11.0, "stop.tolerance": 0.015},
+        "sample-stiffness",
     ),
-    "an arm too low for the estimator, pressed in calibration": ({"element.hinge_length": 9.0, "array.row_arms": [[12.0]]}, "calibration"),
-    "holder's screws 8.8 mm in the cart plate, whose thread ended at 7.5": ({"holder.floor": 5.2}, "sample-stiffness"),
-    "holder's screws in a cart plate thicker than a drill reaches": ({"cart.thickness": 40.0}, "sample-stiffness"),
-    "clamping screws 13 mm in a plate of 20 mm, whose thread ends at 9": ({"clamp.end_plate_thickness": 20.0}, "array"),
+    "an arm too low for the estimator, pressed in calibration": (
+        {"element.hinge_length": 9.0, "array.row_arms": [[12.0]]},
+        "calibration",
+    ),
+    "holder's screws 8.8 mm in the cart plate, whose thread ended at 7.5": (
+        {"holder.floor": 5.2},
+        "sample-stiffness",
+    ),
+    "holder's screws in a cart plate thicker than a drill reaches": (
+        {"cart.thickness": 40.0},
+        "sample-stiffness",
+    ),
+    "clamping screws 13 mm in a plate of 20 mm, whose thread ends at 9": (
+        {"clamp.end_plate_thickness": 20.0},
+        "array",
+    ),
     "pads no deeper in the sample than their root fillets": ({"sample.travel": 1.8}, "grasping"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("what", REFUSED)
@@ -92,6 +130,10 @@ def test_set_screws_stand_in_mirrored_places_to_the_last_digit():
     """Two rows' places, rounded to a micrometre's thousandth, once differed in that digit: one hole counted as two."""
     for pitch in (29.917, 7.001, 5.123, 13.77777):
         for apart in (5.0, 6.321, 13.151, 17.0):
-            changes = {"array.row_arms": [[4.0] * 8] * 2, "array.pitch": pitch, "clamp.hold_down_pitch": apart}
+            changes = {
+                "array.row_arms": [[4.0] * 8] * 2,
+                "array.pitch": pitch,
+                "clamp.hold_down_pitch": apart,
+            }
             y = Layout(variant(changes)).hold_down_y
             assert y == tuple(-v for v in reversed(y))

@@ -32,7 +32,9 @@ def pin(name: str, d: float, length: float) -> Part:
 
 CUBE = block("CUBE", 10, 10, 10)
 BORED = block("BORED", 10, 10, 10, Hole("bore", (5, 5, 0), (0, 0, 1), 4.0, 10, True))
-TAPPED = block("TAPPED", 10, 10, 10, Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, 10, True, thread="M4", thread_depth=10))
+TAPPED = block(
+    "TAPPED", 10, 10, 10, Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, 10, True, thread="M4", thread_depth=10)
+)
 PIN = pin("PIN", 4.0, 20.0)
 
 
@@ -64,12 +66,24 @@ CASES = {
     "corners touch, not declared": (two, (CUBE, CUBE, (10, 10, 10)), [("undeclared-touch", "A")]),
     "overlap": (two, (CUBE, CUBE, (9.9, 3, 2)), [("overlap", "A")]),
     "overlap of a thousandth": (two, (CUBE, CUBE, (9.999, 3, 2)), [("overlap", "A")]),
-    "overlap, although touch is declared": (two, (CUBE, CUBE, (9.999, 3, 2), UPRIGHT, "touch"), [("overlap", "A")]),
-    "overlap, although press is declared": (two, (CUBE, CUBE, (9.9, 3, 2), UPRIGHT, "press"), [("overlap", "A")]),
+    "overlap, although touch is declared": (
+        two,
+        (CUBE, CUBE, (9.999, 3, 2), UPRIGHT, "touch"),
+        [("overlap", "A")],
+    ),
+    "overlap, although press is declared": (
+        two,
+        (CUBE, CUBE, (9.9, 3, 2), UPRIGHT, "press"),
+        [("overlap", "A")],
+    ),
     "one inside the other": (two, (CUBE, block("SMALL", 2, 2, 2), (4, 4, 4)), [("overlap", "A")]),
     "the same place": (two, (CUBE, CUBE, (0, 0, 0)), [("overlap", "A")]),
     "declared, but apart": (two, (CUBE, CUBE, (10.1, 0, 0), UPRIGHT, "touch"), [("contact", "A")]),
-    "thread declared, but apart": (two, (TAPPED, pin("ROD", 3.2, 20), (5, 5, -5), UPRIGHT, "thread"), [("contact", "A")]),
+    "thread declared, but apart": (
+        two,
+        (TAPPED, pin("ROD", 3.2, 20), (5, 5, -5), UPRIGHT, "thread"),
+        [("contact", "A")],
+    ),
     "declared, far apart": (two, (CUBE, CUBE, (1000, 0, 0), UPRIGHT, "press"), [("contact", "A")]),
     "pin in its own size, declared": (two, (BORED, PIN, (5, 5, -5), UPRIGHT, "press"), []),
     "pin in its own size, not declared": (two, (BORED, PIN, (5, 5, -5)), [("undeclared-touch", "A")]),
@@ -77,8 +91,12 @@ CASES = {
     "pin too thick": (two, (BORED, pin("THICK", 4.01, 20), (5, 5, -5), UPRIGHT, "press"), [("overlap", "A")]),
     "screw in its thread, declared": (two, (TAPPED, PIN, (5, 5, -5), UPRIGHT, "thread"), []),
     "screw in its thread, not declared": (two, (TAPPED, PIN, (5, 5, -5)), [("overlap", "A")]),
-    "a turned part whose box would not meet": (two, (CUBE, block("BAR", 30, 1, 1), (5, -20, 5), TURNED), [("overlap", "A")]),
-}  # fmt: skip
+    "a turned part whose box would not meet": (
+        two,
+        (CUBE, block("BAR", 30, 1, 1), (5, -20, 5), TURNED),
+        [("overlap", "A")],
+    ),
+}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -88,7 +106,9 @@ def test_two_parts(name):
 
 
 def tapped(depth: float, full: float, counterbore: tuple[float, float] | None = None) -> Part:
-    hole = Hole("tap", (5, 5, 0), (0, 0, 1), 3.3, depth, depth == 10, counterbore, thread="M4", thread_depth=full)
+    hole = Hole(
+        "tap", (5, 5, 0), (0, 0, 1), 3.3, depth, depth == 10, counterbore, thread="M4", thread_depth=full
+    )
     return block("TAPPED", 10, 10, 10, hole)
 
 
@@ -99,10 +119,14 @@ THREADS = {
     "a thicker screw": (tapped(10, 10), pin("M5", 5.0, 20), (5, 5, -5), [("thread", "A")]),
     "beside the hole's axis": (tapped(10, 10), PIN, (5.01, 5, -5), [("thread", "A")]),
     "in no tapped hole": (CUBE, PIN, (5, 5, -5), [("thread", "A")]),
-    "in a hole that is not tapped": (block("DRILLED", 10, 10, 10, Hole("d", (5, 5, 0), (0, 0, 1), 3.3, 10, True)),
-                                     PIN, (5, 5, -5), [("thread", "A")]),
+    "in a hole that is not tapped": (
+        block("DRILLED", 10, 10, 10, Hole("d", (5, 5, 0), (0, 0, 1), 3.3, 10, True)),
+        PIN,
+        (5, 5, -5),
+        [("thread", "A")],
+    ),
     "in the clearance over a thread": (tapped(10, 5, (4.5, 5)), PIN, (5, 5, -10.1), []),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", THREADS)
@@ -137,10 +161,13 @@ def test_every_bad_pair_of_many_is_reported():
 def test_a_verdict_is_not_carried_to_another_situation():
     """Pairs of the same parts, alike but for the last micrometre or a turn, get their own verdicts."""
     placements = [
-        Placement("A1", CUBE), Placement("B1", CUBE, (10.001, 0, 0)),
-        Placement("A2", CUBE, (0, 100, 0)), Placement("B2", CUBE, (9.999, 100, 0)),
-        Placement("A3", CUBE, (0, 200, 0)), Placement("B3", CUBE, (10.001, 200, 0), TURNED),
-    ]  # fmt: skip
+        Placement("A1", CUBE),
+        Placement("B1", CUBE, (10.001, 0, 0)),
+        Placement("A2", CUBE, (0, 100, 0)),
+        Placement("B2", CUBE, (9.999, 100, 0)),
+        Placement("A3", CUBE, (0, 200, 0)),
+        Placement("B3", CUBE, (10.001, 200, 0), TURNED),
+    ]
     # B3, turned about its own corner, lies across x 0.001 to 10.001
     assert checks(placements) == [("overlap", "A2"), ("overlap", "A3")]
 
@@ -173,7 +200,9 @@ def test_near_pairs_against_brute_force(seed):
 
 
 def test_boxes_that_are_a_hair_apart_still_meet():
-    boxes = np.array([[[0, 0, 0], [1, 1, 1]], [[1 + 1e-7, 0, 0], [2, 1, 1]], [[2.001, 0, 0], [3, 1, 1]]], float)
+    boxes = np.array(
+        [[[0, 0, 0], [1, 1, 1]], [[1 + 1e-7, 0, 0], [2, 1, 1]], [[2.001, 0, 0], [3, 1, 1]]], float
+    )
     assert list(near_pairs(boxes)) == [(0, 1)]
 
 

@@ -27,7 +27,13 @@ def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> C
 
     # no shrinking: each example is a whole check, and a failing one says itself what is wrong
     @seed(start)
-    @settings(max_examples=count, deadline=None, database=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate])
+    @settings(
+        max_examples=count,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+        phases=[Phase.generate],
+    )
     @given(st.integers(0, 2**48))
     def each(number):
         counts.judge(f"design {number}", raw_table(number, row_lengths, rigs))

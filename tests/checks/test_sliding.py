@@ -19,10 +19,11 @@ def made(name: str, body, *features) -> Part:
 
 
 STEPPED = made(  # a bar along x that grows thicker, with a hole and a pocket
-    "BAR", Extrusion(chain([(0, 0), (100, 0), (100, 8), (60, 8), (60, 5), (0, 5)]), 6.0),
+    "BAR",
+    Extrusion(chain([(0, 0), (100, 0), (100, 8), (60, 8), (60, 5), (0, 5)]), 6.0),
     Hole("hole", (20, 2.5, 6), (0, 0, -1), 3, 6, True),
     Pocket("pocket", (40, 0, 6), (0, 0, -1), (1, 0, 0), rectangle(-3, -4, 3, -1), 2),
-)  # fmt: skip
+)
 SHAFT = made("SHAFT", Revolution(chain([(0, 0), (3, 0), (3, 30), (2, 30), (2, 50), (0, 50)])))
 
 
@@ -37,14 +38,25 @@ def test_zones_by_hand():
 
 
 def test_a_slope_and_an_arc_change_all_along():
-    wedge = made("W", Extrusion(Contour((Line((0, 0), (10, 0)), Line((10, 0), (0, 5)), Line((0, 5), (0, 0)))), 1.0))
+    wedge = made(
+        "W", Extrusion(Contour((Line((0, 0), (10, 0)), Line((10, 0), (0, 5)), Line((0, 5), (0, 0)))), 1.0)
+    )
     assert zones(wedge)[0] == ((0, 10),)
     assert zones(made("D", Extrusion(circle((5, 0), 4), 1.0)))[0] == ((3, 7),)
 
 
 @pytest.mark.parametrize(
     ("low", "high", "expected"),
-    [(1, 2, 1), (-5, -1, 0), (5, 7, 2), (0.05, 2, None), (-1, 1, None), (2, 3.95, None), (4.5, 4.6, None), (11, 12, 3)],
+    [
+        (1, 2, 1),
+        (-5, -1, 0),
+        (5, 7, 2),
+        (0.05, 2, None),
+        (-1, 1, None),
+        (2, 3.95, None),
+        (4.5, 4.6, None),
+        (11, 12, 3),
+    ],
 )
 def test_stretch(low, high, expected):
     assert stretch(((0.0, 0.0), (4.0, 5.0 - 0.2), (10.0, 10.0)), low, high) == expected

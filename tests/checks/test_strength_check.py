@@ -8,12 +8,12 @@ from variants import variant
 
 from tactcad.checks.strength import check_strength
 from tactcad.design.load import names
+from tactcad.paper import published
 from tactcad.parts.designs import load
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.overload import overloads
 from tactcad.parts.rules import broken_rules
-from tactcad.studies import published
 
 
 @pytest.mark.parametrize("name", names())
@@ -44,7 +44,7 @@ def test_a_gap_that_closes_too_late_is_seen_at_its_element():
 
 def test_the_rated_deflection_is_that_at_yield_over_its_factor():
     """Force and deflection at yield as `tactcad estimate` gives them."""
-    from tactcad.studies.array_estimate import estimate
+    from tactcad.lab.array_estimate import estimate
 
     design = variant({"rating.deflection_factor": 1.3})
     for state, row in zip(overloads(Layout(design)), estimate(Layout(design), "solid")):
@@ -101,7 +101,9 @@ def test_a_rating_beyond_yield_is_flagged_with_what_it_bears():
 
 def test_the_gap_follows_the_overload_force():
     """The gap is made for it: a larger force gets a narrower gap, and no hinge passes its rated deflection."""
-    gaps = [overloads(Layout(variant({"rating.overload_force": force})))[0].gap for force in (2.0, 13.0, 40.0)]
+    gaps = [
+        overloads(Layout(variant({"rating.overload_force": force})))[0].gap for force in (2.0, 13.0, 40.0)
+    ]
     assert gaps[0] > gaps[1] > gaps[2]
     for force in (5.0, 20.0, 40.0):
         design = variant({"rating.overload_force": force})
@@ -117,6 +119,12 @@ def test_a_force_that_no_gap_can_save_the_hinge_from_is_refused_with_the_one_tha
 
 
 def test_out_of_the_estimator_s_range_is_said():
-    design = variant({"element.hinge_length": 3.0, "element.hinge_thickness": 0.02, "stop.gaps": {"4": 0.1, "5": 0.1, "6": 0.1, "7": 0.1, "8": 0.1}})
+    design = variant(
+        {
+            "element.hinge_length": 3.0,
+            "element.hinge_thickness": 0.02,
+            "stop.gaps": {"4": 0.1, "5": 0.1, "6": 0.1, "7": 0.1, "8": 0.1},
+        }
+    )
     findings = check_strength(design)
     assert {f.severity for f in findings} == {"flag"} and "cannot tell" in findings[0].message

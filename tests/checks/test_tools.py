@@ -26,19 +26,26 @@ def block(name: str, x: float, y: float, z: float, *holes: Hole) -> Part:
     return Part(name, name, "milled", ALUMINIUM, Extrusion(rectangle(-x / 2, -y / 2, x / 2, y / 2), z), holes)
 
 
-PLATE = block("PLATE", 20, 20, 10, Hole("tap", (0, 0, 10), (0, 0, -1), 2.5, 10, True, thread="M3", thread_depth=9))
+PLATE = block(
+    "PLATE", 20, 20, 10, Hole("tap", (0, 0, 10), (0, 0, -1), 2.5, 10, True, thread="M3", thread_depth=9)
+)
 BRIDGE = block("BRIDGE", 20, 20, 2)
 DRILLED = block("DRILLED", 20, 20, 2, Hole("key", (0, 0, 0), (0, 0, 1), 3.2, 2, True))
 
 
-def scene(bridge: float, over: Part = BRIDGE, screw: Part | None = None, order=("plate", "bridge", "screw"), **step) -> Scene:
+def scene(
+    bridge: float, over: Part = BRIDGE, screw: Part | None = None, order=("plate", "bridge", "screw"), **step
+) -> Scene:
     """A screw in a plate, its head 3 mm high on it, under a bridge so far over the plate."""
     placed = {
         "plate": Placement("P1", PLATE),
         "bridge": Placement("B1", over, (0, 0, 10 + bridge)),
         "screw": Placement("SC1", screw or cap_screw("M3", 8.0), (0, 0, 10), DOWN),
     }
-    steps = tuple(Step(name, (placed[name].designator,), (0, 0, 0), "", **(step if name == "screw" else {})) for name in order)
+    steps = tuple(
+        Step(name, (placed[name].designator,), (0, 0, 0), "", **(step if name == "screw" else {}))
+        for name in order
+    )
     return Scene("test", tuple(placed.values()), steps=steps)
 
 
@@ -80,7 +87,9 @@ def test_a_socket_over_a_nut_wants_room_beside_it(apart, expected):
     """Two M3 nuts: corners at 6.351/2, and a socket 1.25 mm wider: 7.60 mm between axes is enough, less is not."""
     names = [("NU1", 0.0), ("NU2", apart)]
     nuts = tuple(Placement(name, nut("M3"), (x, 0, 10)) for name, x in names)
-    rods = tuple(Placement(f"TR{n}", threaded_rod("M3", 16.0), (x, 0, 0)) for n, (_, x) in enumerate(names, start=1))
+    rods = tuple(
+        Placement(f"TR{n}", threaded_rod("M3", 16.0), (x, 0, 0)) for n, (_, x) in enumerate(names, start=1)
+    )
     steps = (Step("all", tuple(p.designator for p in (*nuts, *rods)), (0, 0, 0), ""),)
     placed = Scene("test", (*nuts, *rods), steps=steps)
     assert [f.part for f in found(placed)] == expected

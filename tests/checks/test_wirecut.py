@@ -28,19 +28,35 @@ def block(slot: float = 1.0, radius: float = 0.3, web: float = 2.5, kind: str = 
     a, b = 10 + slot / 2, 10 - slot / 2
     return rounded_polygon(
         [
-            Corner((0, 0)), Corner((20, 0)), Corner((20, 8)), Corner((a, 8)),
+            Corner((0, 0)),
+            Corner((20, 0)),
+            Corner((20, 8)),
+            Corner((a, 8)),
             Corner((a, web), radius, f"{kind}_floor", f"{kind}_body_fillet"),
             Corner((b, web), radius, fillet=f"{kind}_arm_fillet"),
-            Corner((b, 8)), Corner((0, 8)),
+            Corner((b, 8)),
+            Corner((0, 8)),
         ]
-    )  # fmt: skip
+    )
 
 
 def keyhole(width: float) -> Contour:
     """20 x 8 with a wide chamber that opens upwards through a narrow throat between two lips."""
     half = width / 2
-    points = [(0, 0, 0), (20, 0, 0), (20, 8, 0), (10 + half, 8, 0), (10 + half, 7, 0), (11, 6, 0.3), (11, 3, 0.3),
-              (9, 3, 0.3), (9, 6, 0.3), (10 - half, 7, 0), (10 - half, 8, 0), (0, 8, 0)]  # fmt: skip
+    points = [
+        (0, 0, 0),
+        (20, 0, 0),
+        (20, 8, 0),
+        (10 + half, 8, 0),
+        (10 + half, 7, 0),
+        (11, 6, 0.3),
+        (11, 3, 0.3),
+        (9, 3, 0.3),
+        (9, 6, 0.3),
+        (10 - half, 7, 0),
+        (10 - half, 8, 0),
+        (0, 8, 0),
+    ]
     return rounded_polygon([Corner((x, y), r) for x, y, r in points])
 
 
@@ -65,7 +81,10 @@ CASES = {
     "closed chain": (part(off_circle(1e-6)), part(off_circle(0.0))),
     "simple contour": (part(BOW_TIE), part(rectangle(0, 0, 9, 9))),
     "simple contour, touching": (part(TOUCHING), part(chain([(0, 0), (9, 0), (9, 9), (0, 9)]))),
-    "openings inside": (part(rectangle(0, 0, 20, 8), circle((1, 4), 2)), part(rectangle(0, 0, 20, 8), circle((2, 4), 2))),
+    "openings inside": (
+        part(rectangle(0, 0, 20, 8), circle((1, 4), 2)),
+        part(rectangle(0, 0, 20, 8), circle((2, 4), 2)),
+    ),
     "openings inside, nested": (
         part(rectangle(0, 0, 20, 8), circle((9, 4), 4), circle((9, 4), 2)),
         part(rectangle(0, 0, 20, 8), circle((5, 4), 4), circle((15, 4), 2)),
@@ -81,8 +100,11 @@ CASES = {
         part(rectangle(0, 0, 20, 8), circle((10, 2.25), 3)),
         part(rectangle(0, 0, 20, 8), circle((10, 2.35), 3)),
     ),
-    "start hole": (part(rectangle(0, 0, 20, 8), circle((5, 4), 0.499)), part(rectangle(0, 0, 20, 8), circle((5, 4), 0.5))),
-}  # fmt: skip
+    "start hole": (
+        part(rectangle(0, 0, 20, 8), circle((5, 4), 0.499)),
+        part(rectangle(0, 0, 20, 8), circle((5, 4), 0.5)),
+    ),
+}
 
 
 @pytest.mark.parametrize("name", CASES)

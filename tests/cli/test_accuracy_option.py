@@ -58,7 +58,11 @@ def test_conflicts_are_refused(args, word, capsys):
 def test_more_than_can_be_kept_is_refused_with_status_one(capsys):
     assert main(["estimate", "--accuracy", "0.0001%"]) == 1
     message = capsys.readouterr().err
-    assert "no rung is known to keep 0.0001 %" in message and "the best is fem-solid" in message and "(element " in message
+    assert (
+        "no rung is known to keep 0.0001 %" in message
+        and "the best is fem-solid" in message
+        and "(element " in message
+    )
 
 
 def test_a_tenth_of_a_per_cent_is_solved_by_solid_elements(capsys, tmp_path):
@@ -72,7 +76,11 @@ def test_a_tenth_of_a_per_cent_is_solved_by_solid_elements(capsys, tmp_path):
 def test_report_names_rung_error_and_time(capsys):
     assert main(["estimate", "--accuracy", "5%"]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last.startswith("chosen for 5 %: solid, K within 0.") and "about" in last and "docs/accuracy.md" in last
+    assert (
+        last.startswith("chosen for 5 %: solid, K within 0.")
+        and "about" in last
+        and "docs/accuracy.md" in last
+    )
 
 
 def batch(tmp_path, rows, *args):
@@ -88,7 +96,9 @@ def test_every_row_of_a_table_has_its_own_rung(tmp_path):
     status, rows = batch(tmp_path, [ROW, outside, impossible], "--accuracy", "1%")
     assert status == 0 and [r["valid"] for r in rows] == ["true", "false", "false"]
     assert rows[0]["model"] == "solid" and 0 < float(rows[0]["expected_error"]) <= 0.01
-    assert "not measured" in rows[1]["reason"] and "poisson" in rows[1]["reason"] and rows[1]["stiffness"] == ""
+    assert (
+        "not measured" in rows[1]["reason"] and "poisson" in rows[1]["reason"] and rows[1]["stiffness"] == ""
+    )
     assert "load inside the slot" in rows[2]["reason"] and rows[2]["expected_error"] == rows[2]["model"] == ""
     from tactcad.mechanics.section import REFERENCE
 

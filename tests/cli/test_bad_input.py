@@ -156,7 +156,11 @@ def test_a_process_ends_without_traceback(tmp_path):
     """The same from outside, where nothing of pytest's can hide a traceback or a second line."""
     (tmp_path / "bad.toml").write_bytes(BAD_FILES["hinge thicker than the arm"][0])
     run = subprocess.run(
-        [sys.executable, "-m", "tactcad", "export", "bad.toml"], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "tactcad", "export", "bad.toml"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert run.returncode == 2
     assert run.stdout == ""
@@ -184,7 +188,9 @@ def test_unknown_commands_and_options_exit_2(capsys):
 
 
 def test_version():
-    run = subprocess.run([sys.executable, "-m", "tactcad", "--version"], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-m", "tactcad", "--version"], capture_output=True, text=True, check=True
+    )
     assert re.fullmatch(r"tactcad \d+\.\d+\.\d+\n", run.stdout)
 
 
@@ -192,6 +198,10 @@ def test_a_closed_pipe_is_no_error():
     """`tactcad schema | head -1` ends quietly."""
     run = subprocess.run(
         f"{sys.executable} -m tactcad schema | head -1; exit ${{PIPESTATUS[0]}}",
-        shell=True, executable="/bin/bash", capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        shell=True,
+        executable="/bin/bash",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert (run.returncode, run.stderr) == (0, "")

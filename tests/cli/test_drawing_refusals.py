@@ -12,10 +12,15 @@ from tactcad.cli.main import main
 
 pytestmark = pytest.mark.cad
 
-TEXT = re.sub(
-    r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "",
-    (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
-).replace('name = "macro-array"', 'name = "tiny"').replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")  # fmt: skip
+TEXT = (
+    re.sub(
+        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)",
+        "",
+        (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
+    )
+    .replace('name = "macro-array"', 'name = "tiny"')
+    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
+)
 
 
 TITLE = 'title = "Macro tactile array 2 x 5"'
@@ -42,11 +47,16 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
 
 @pytest.mark.parametrize("command", [("export", "--drawings"), ("release",)], ids=" ".join)
 def test_a_missing_font(command, place, capsys, monkeypatch):
-    from tactcad.export.drawing import fonts
+    from tactcad.drawing import fonts
 
     monkeypatch.setattr(fonts, "_FILE", Path("mpl-data", "fonts", "ttf", "Gone.ttf"))
     status, said = refused(place, capsys, *command)
-    assert status == 1 and "font DejaVu Sans" in said and "is missing" in said and "no drawing was written" in said
+    assert (
+        status == 1
+        and "font DejaVu Sans" in said
+        and "is missing" in said
+        and "no drawing was written" in said
+    )
 
 
 def test_a_letter_that_the_font_lacks(place, capsys):
@@ -60,7 +70,12 @@ def test_an_unknown_shop_file(command, place, capsys):
     name, option = command
     status = main([name, option, str(place / "no-shop.toml"), str(place / "tiny.toml")])
     captured = capsys.readouterr()
-    assert status == 2 and captured.out == "" and captured.err.count("\n") == 1 and "no-shop.toml" in captured.err
+    assert (
+        status == 2
+        and captured.out == ""
+        and captured.err.count("\n") == 1
+        and "no-shop.toml" in captured.err
+    )
 
 
 @pytest.mark.nightly
@@ -70,12 +85,16 @@ def test_a_part_larger_than_the_sheet(place, capsys):
     text = text.replace("\npitch = 4.0", "\npitch = 50.0").replace("spacer = 1.0", "spacer = 30.0")
     (place / "tiny.toml").write_text(text)
     status, said = refused(place, capsys, "export", "--drawings")
-    assert status == 1 and re.search(r"tiny-(stop-plate|carrier) \([\d.]+ x [\d.]+ mm\)", said) and "no drawing was written" in said
+    assert (
+        status == 1
+        and re.search(r"tiny-(stop-plate|carrier) \([\d.]+ x [\d.]+ mm\)", said)
+        and "no drawing was written" in said
+    )
 
 
 def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
     """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
-    from tactcad.export.drawing import compose
+    from tactcad.drawing import compose
 
     monkeypatch.setattr(compose, "SERIES", ((10, 1),))
     status, said = refused(place, capsys, "export", "--drawings")

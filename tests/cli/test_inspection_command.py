@@ -54,7 +54,9 @@ def refused(tmp_path, capsys, text: str | bytes, *arguments: str) -> str:
 
 
 def line_of(element: str, name: str) -> int:
-    return next(n for n, line in enumerate(BLANK.splitlines(), 1) if f",{element}," in line and f",{name}," in line)
+    return next(
+        n for n, line in enumerate(BLANK.splitlines(), 1) if f",{element}," in line and f",{name}," in line
+    )
 
 
 COLUMN = {name: n for n, name in enumerate(BLANK.splitlines()[0].split(","), 1)}
@@ -86,7 +88,9 @@ def test_measured_dimensions_give_the_ladders_stiffness_of_that_element_alone(tm
         | measured("E4", "sheet thickness", "2.96")
     )
     nominal = hinge_section(LAYOUT, LAYOUT.elements)
-    own = nominal.rows(3).with_(hinge_thickness=0.2541, hinge_length=0.87, load_arm=7.02, arm_height=2.61, width=2.96)
+    own = nominal.rows(3).with_(
+        hinge_thickness=0.2541, hinge_length=0.87, load_arm=7.02, arm_height=2.61, width=2.96
+    )
     for rung in ladder.CLOSED_FORMS:
         rows = estimated(tmp_path, capsys, text, "--model", rung, "--force", "0.5")["elements"]
         assert rows[3]["stiffness"] == pytest.approx(float(ladder.stiffness(own, rung)), rel=1e-12)
@@ -98,18 +102,25 @@ def test_measured_dimensions_give_the_ladders_stiffness_of_that_element_alone(tm
 
 def test_the_short_rungs_interval_is_the_textbooks(tmp_path, capsys):
     """K = E b t^3/(12 l L^2): relative half-widths add as squares with the exponents 3, 1, 1, 2."""
-    text = filled({
-        key: value
-        for name, v, u in (
-            ("hinge thickness", 0.249, 0.0005), ("slot length", 0.881, 0.002), ("load arm", 3.004, 0.003),
-            ("sheet thickness", 3.02, 0.004), ("arm height", 2.6, 0.005),
-        )
-        for key, value in measured("E1", name, str(v), str(u)).items()
-    })  # fmt: skip
+    text = filled(
+        {
+            key: value
+            for name, v, u in (
+                ("hinge thickness", 0.249, 0.0005),
+                ("slot length", 0.881, 0.002),
+                ("load arm", 3.004, 0.003),
+                ("sheet thickness", 3.02, 0.004),
+                ("arm height", 2.6, 0.005),
+            )
+            for key, value in measured("E1", name, str(v), str(u)).items()
+        }
+    )
     row = estimated(tmp_path, capsys, text, "--model", "short")["elements"][0]
     K = 69000 * 3.02 * 0.249**3 / (12 * 0.881 * 3.004**2)
     assert row["stiffness"] == pytest.approx(K, rel=1e-12)
-    relative = ((3 * 0.0005 / 0.249) ** 2 + (0.002 / 0.881) ** 2 + (2 * 0.003 / 3.004) ** 2 + (0.004 / 3.02) ** 2) ** 0.5
+    relative = (
+        (3 * 0.0005 / 0.249) ** 2 + (0.002 / 0.881) ** 2 + (2 * 0.003 / 3.004) ** 2 + (0.004 / 3.02) ** 2
+    ) ** 0.5
     low, high = row["intervals"]["stiffness"]
     assert (high - low) / 2 / K == pytest.approx(relative, rel=1e-4)
     assert (low + high) / 2 == pytest.approx(K)
@@ -119,8 +130,13 @@ def test_interval_covers_what_random_dimensions_within_it_give(tmp_path, capsys)
     """Monte Carlo over the stated uncertainties (k = 2): about 95 % of the stiffnesses lie inside."""
     import numpy as np
 
-    given = {"hinge thickness": (0.2512, 0.001), "slot length": (0.872, 0.004), "load arm": (5.01, 0.01),
-             "arm height": (2.603, 0.004), "sheet thickness": (2.98, 0.004)}  # fmt: skip
+    given = {
+        "hinge thickness": (0.2512, 0.001),
+        "slot length": (0.872, 0.004),
+        "load arm": (5.01, 0.01),
+        "arm height": (2.603, 0.004),
+        "sheet thickness": (2.98, 0.004),
+    }
     cells = {}
     for name, (value, u) in given.items():
         cells |= measured("E3", name, str(value), str(u))
@@ -144,13 +160,23 @@ def test_verdicts(tmp_path, capsys):
         | measured("E7", "pad height over the dowel hole's centre", "6.7")
     )
     document = estimated(tmp_path, capsys, text)
-    verdicts = {(r["number"], r["characteristic"]): r["verdict"] for r in document["readings"] if r["measured"] is not None}
+    verdicts = {
+        (r["number"], r["characteristic"]): r["verdict"]
+        for r in document["readings"]
+        if r["measured"] is not None
+    }
     t = [verdicts[n, "hinge thickness"] for n in range(1, 6)]
     assert t == ["inside", "outside", "undecided", "outside", "inside"]
-    assert verdicts[6, "stop gap"] == "outside" and verdicts[7, "pad height over the dowel hole's centre"] == "inside"
+    assert (
+        verdicts[6, "stop gap"] == "outside"
+        and verdicts[7, "pad height over the dowel hole's centre"] == "inside"
+    )
     assert main(["estimate", "--inspection", str(tmp_path / "sheet.csv")]) == 0
     shown = capsys.readouterr().out
-    assert f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line {line_of('E2', 'hinge thickness')})" in shown
+    assert (
+        f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line {line_of('E2', 'hinge thickness')})"
+        in shown
+    )
     assert "undecided" in shown and "not measured: arm height, every element: nominal" in shown
     assert "no uncertainty given: hinge thickness, no. 2, 5: taken as exact" in shown
 
@@ -213,27 +239,51 @@ def replaced(line: int, old: str, new: str) -> str:
 BAD = {
     "another design": (BLANK.replace("macro-array,", "soft-tissue,"), ":2:1: design"),
     "another revision": (BLANK.replace(f",{LAYOUT.design.design.revision},E", ",ZZ,E"), ":2:2: revision"),
-    "one row of another revision": (replaced(E5, f",{LAYOUT.design.design.revision},", ",ZZ,"), f":{E5}:2: revision"),
+    "one row of another revision": (
+        replaced(E5, f",{LAYOUT.design.design.revision},", ",ZZ,"),
+        f":{E5}:2: revision",
+    ),
     "changed nominal": (replaced(E5, ",0.25,", ",0.26,"), f":{E5}:{COLUMN['nominal']}: nominal"),
     "widened limit": (replaced(E5, ",0.255,", ",0.26,"), f":{E5}:{COLUMN['upper']}: upper"),
-    "nominal that a spreadsheet took for a date": (replaced(E5, ",0.25,", ",25. Jan,"), f":{E5}:{COLUMN['nominal']}: nominal"),
+    "nominal that a spreadsheet took for a date": (
+        replaced(E5, ",0.25,", ",25. Jan,"),
+        f":{E5}:{COLUMN['nominal']}: nominal",
+    ),
     "unknown element": (replaced(E5, ",E5,", ",E11,"), f":{E5}:3: element"),
-    "unknown dimension": (replaced(E5, "hinge thickness", "hinge width"), f":{E5}:{COLUMN['characteristic']}: "),
+    "unknown dimension": (
+        replaced(E5, "hinge thickness", "hinge width"),
+        f":{E5}:{COLUMN['characteristic']}: ",
+    ),
     "another part": (replaced(E5, "-a6mm", "-a7mm"), f":{E5}:{COLUMN['part_no']}: part_no"),
     "another unit": (replaced(E5, ",mm,", ",um,"), f":{E5}:{COLUMN['unit']}: unit"),
-    "word": (t5("ok"), T), "NaN": (t5("nan"), T), "infinity": (t5("inf"), T), "underscore": (t5("0_25"), T),
-    "other digits": (t5("٠.٢٥"), T), "unit beside the number": (t5("0.25 mm"), T), "formula": (t5("=0.25"), T),
-    "two numbers": (t5("0.249/0.251"), T), "overflow": (t5("1e999"), T),
-    "zero": (t5("0"), T), "negative": (t5("-0.25"), T),
-    "micrometres": (t5("251.2"), T), "metres": (t5("0.000251"), T), "inches": (t5("0.00985"), T),
+    "word": (t5("ok"), T),
+    "NaN": (t5("nan"), T),
+    "infinity": (t5("inf"), T),
+    "underscore": (t5("0_25"), T),
+    "other digits": (t5("٠.٢٥"), T),
+    "unit beside the number": (t5("0.25 mm"), T),
+    "formula": (t5("=0.25"), T),
+    "two numbers": (t5("0.249/0.251"), T),
+    "overflow": (t5("1e999"), T),
+    "zero": (t5("0"), T),
+    "negative": (t5("-0.25"), T),
+    "micrometres": (t5("251.2"), T),
+    "metres": (t5("0.000251"), T),
+    "inches": (t5("0.00985"), T),
     "decimal comma, quoted": (t5("0,251"), T),
     "decimal comma in a sheet of points": (semicolons(t5("0,251"), comma=False), T),
-    "decimal point in a sheet of commas": (semicolons(BLANK, True).replace(";mm;;", ";mm;0.251;", 1), ":2:11: measured"),
+    "decimal point in a sheet of commas": (
+        semicolons(BLANK, True).replace(";mm;;", ";mm;0.251;", 1),
+        ":2:11: measured",
+    ),
     "decimal comma that splits the cell": (replaced(E5, ",mm,,", ",mm,0,251,"), f":{E5}:{len(COLUMN) + 1}: "),
     "uncertainty in micrometres": (t5("0.251", "1"), f":{E5}:{COLUMN['uncertainty_k2']}: "),
     "negative uncertainty": (t5("0.251", "-0.001"), f":{E5}:{COLUMN['uncertainty_k2']}: "),
     "uncertainty of nothing": (t5("", "0.001"), f":{E5}:{COLUMN['uncertainty_k2']}: "),
-    "a row twice": (BLANK + BLANK.splitlines(True)[-1], f":{BLANK.count(chr(10)) + 1}:{COLUMN['characteristic']}: "),
+    "a row twice": (
+        BLANK + BLANK.splitlines(True)[-1],
+        f":{BLANK.count(chr(10)) + 1}:{COLUMN['characteristic']}: ",
+    ),
     "a row left out": ("".join(BLANK.splitlines(True)[:-1]), f":{BLANK.count(chr(10))}:1: "),
     "cut off in a row": (BLANK[: BLANK.rindex(",mm,")], f":{BLANK.count(chr(10))}:"),
     "cut off after a row": (BLANK[: BLANK.index("macro-array", 2000)], ":"),
@@ -241,11 +291,14 @@ BAD = {
     "no header": ("".join(BLANK.splitlines(True)[1:]), ":1:"),
     "column left out": (BLANK.replace("measured", "meas", 1), ":1:"),
     "column twice": (BLANK.replace("where", "measured", 1), f":1:{COLUMN['where']}: "),
-    "empty": ("", ":1:1: "), "blank lines": ("\n\n\n", ":1:1: "),
-    "UTF-16": (BLANK.encode("utf-16"), ":1:1: "), "latin-1": (t5("0.25\xb5").encode("latin-1"), f":{E5}:"),
-    "NUL": (t5("0.2\0"), f":{E5}:1: "), "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ":1:1: "),
+    "empty": ("", ":1:1: "),
+    "blank lines": ("\n\n\n", ":1:1: "),
+    "UTF-16": (BLANK.encode("utf-16"), ":1:1: "),
+    "latin-1": (t5("0.25\xb5").encode("latin-1"), f":{E5}:"),
+    "NUL": (t5("0.2\0"), f":{E5}:1: "),
+    "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), ":1:1: "),
     "open quote": (replaced(E5, ",mm,", ',"mm,'), ":"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("fault", BAD)
@@ -263,7 +316,9 @@ def test_units_are_guessed_in_the_message(tmp_path, capsys):
 
 def test_requests_that_do_not_go_together(tmp_path, capsys):
     for arguments, named in (
-        (("--model", "fem-plane"), "--model"), (("--out", "x.csv"), "--out"), (("--batch", "x.csv", "--out", "y.csv"), "--batch"),
+        (("--model", "fem-plane"), "--model"),
+        (("--out", "x.csv"), "--out"),
+        (("--batch", "x.csv", "--out", "y.csv"), "--batch"),
         (("--force", "0"), "--force"),
     ):
         path = tmp_path / "sheet.csv"

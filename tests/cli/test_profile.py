@@ -24,7 +24,9 @@ def run(*arguments, cwd, script="-m"):
     environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH", "HOME")}
     environment |= {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "TACTCAD_CACHE": str(cwd / "cache")}
     command = [sys.executable, "-m", "tactcad"] if script == "-m" else [sys.executable, "-c", script]
-    done = subprocess.run([*command, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [*command, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+    )
     return done
 
 
@@ -69,8 +71,8 @@ from tactcad.export.dxf import check_dxf, dxf_bytes
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene, scene_names
-from tactcad.studies.inspection_sheet import read_sheet
-import tactcad.studies.as_made, tactcad.export.strength, tactcad.export.bom
+from tactcad.lab.inspection_sheet import read_sheet
+import tactcad.lab.as_made, tactcad.export.strength, tactcad.scenes.bom
 design = load(sys.argv[1])
 for name in scene_names(design):
     for part in make_scene(design, name).parts:

@@ -29,7 +29,12 @@ def slot(length: float, r: float) -> Contour:
     """Stadium about the origin: two half circles and two lines."""
     h = length / 2
     return Contour(
-        (Line((-h, -r), (h, -r)), Arc((h, -r), (h, r), (h, 0.0), True), Line((h, r), (-h, r)), Arc((-h, r), (-h, -r), (-h, 0.0), True))
+        (
+            Line((-h, -r), (h, -r)),
+            Arc((h, -r), (h, r), (h, 0.0), True),
+            Line((h, r), (-h, r)),
+            Arc((-h, r), (-h, -r), (-h, 0.0), True),
+        )
     )
 
 
@@ -43,7 +48,12 @@ def by_quadrature(contour: Contour, f) -> float:
         else:
             (cx, cy), r, w0, w = s.centre, s.radius, s.start_angle, s.sweep
             total += mpmath.quad(
-                lambda u: f(cx + r * mpmath.cos(w0 + u * w), cy + r * mpmath.sin(w0 + u * w)) * r * mpmath.cos(w0 + u * w) * w,  # noqa: B023
+                lambda u: (
+                    f(cx + r * mpmath.cos(w0 + u * w), cy + r * mpmath.sin(w0 + u * w))
+                    * r
+                    * mpmath.cos(w0 + u * w)
+                    * w
+                ),  # noqa: B023
                 mpmath.linspace(0, 1, 9),
             )
     return float(total)
@@ -121,7 +131,11 @@ def test_a_far_away_contour_keeps_its_digits():
     moved = []
     for s in near:
         a, b = ((p[0] + shift, p[1] - shift) for p in (s.start, s.end))
-        moved.append(Line(a, b) if isinstance(s, Line) else Arc(a, b, (s.centre[0] + shift, s.centre[1] - shift), s.ccw))
+        moved.append(
+            Line(a, b)
+            if isinstance(s, Line)
+            else Arc(a, b, (s.centre[0] + shift, s.centre[1] - shift), s.ccw)
+        )
     far = Contour(tuple(moved))
     assert far.area == pytest.approx(near.area, rel=1e-9)
     assert far.centroid == pytest.approx((shift, -shift), abs=1e-8)
@@ -129,7 +143,15 @@ def test_a_far_away_contour_keeps_its_digits():
 
 def test_polygons_of_the_arcs_converge_to_area_and_centroid():
     """Chords of n pieces miss the area as 1/n^2: refining by 2 takes the error to a quarter."""
-    contour = rounded_polygon([Corner((0, 0), 1.0), Corner((6, 0), 0.5), Corner((6, 4), 1.2), Corner((2, 2), 0.4), Corner((0, 5), 0.3)])
+    contour = rounded_polygon(
+        [
+            Corner((0, 0), 1.0),
+            Corner((6, 0), 0.5),
+            Corner((6, 4), 1.2),
+            Corner((2, 2), 0.4),
+            Corner((0, 5), 0.3),
+        ]
+    )
     errors = []
     for n in (8, 16, 32, 64):
         area, cx, cy = shoelace(as_polygon(contour, n))
@@ -162,7 +184,12 @@ def test_boxes_of_arcs_hold_every_point_and_are_reached(first, sweep, ccw):
     points = [arc.at(k / 2000) for k in range(2001)]
     x0, y0, x1, y1 = Contour((arc, Line(b, a))).box
     xs, ys = zip(*points)
-    for got, reached in ((x0, min(xs)), (y0, min(ys)), (-x1, min(-x for x in xs)), (-y1, min(-y for y in ys))):
+    for got, reached in (
+        (x0, min(xs)),
+        (y0, min(ys)),
+        (-x1, min(-x for x in xs)),
+        (-y1, min(-y for y in ys)),
+    ):
         assert reached - 1e-5 < got <= reached + 1e-12
 
 
@@ -178,7 +205,9 @@ def test_open_empty_and_zero_chains_are_refused():
 
 
 def test_names():
-    c = rounded_polygon([Corner((0, 0), 0.5, "bottom", "left"), Corner((4, 0), 0.0, "slope"), Corner((0, 3), 0.0, "wall")])
+    c = rounded_polygon(
+        [Corner((0, 0), 0.5, "bottom", "left"), Corner((4, 0), 0.0, "slope"), Corner((0, 3), 0.0, "wall")]
+    )
     assert {s.name for s in c} == {"bottom", "left", "slope", "wall"}
     assert isinstance(c.named("left"), Arc) and isinstance(c.named("bottom"), Line)
     with pytest.raises(KeyError):
@@ -195,7 +224,10 @@ def random_polygon(seed: int) -> list[tuple[float, float]]:
     chance = random.Random(seed)
     n = chance.randint(4, 9)
     return [
-        (r * cos(2 * pi * (k + chance.uniform(-0.3, 0.3)) / n), r * sin(2 * pi * (k + chance.uniform(-0.3, 0.3)) / n))
+        (
+            r * cos(2 * pi * (k + chance.uniform(-0.3, 0.3)) / n),
+            r * sin(2 * pi * (k + chance.uniform(-0.3, 0.3)) / n),
+        )
         for k, r in ((k, chance.uniform(3, 10)) for k in range(n))
     ]
 
@@ -209,7 +241,11 @@ def test_fillets_are_tangent_have_their_radius_and_their_closed_form_area(seed):
     assert len(contour) == 2 * len(points)
     area, saved = shoelace(points)[0], 0.0
     for i, p in enumerate(points):
-        before, arc, after = contour.named(f"edge {(i - 1) % len(points)}"), contour.named(f"fillet {i}"), contour.named(f"edge {i}")
+        before, arc, after = (
+            contour.named(f"edge {(i - 1) % len(points)}"),
+            contour.named(f"fillet {i}"),
+            contour.named(f"edge {i}"),
+        )
         assert arc.radius == pytest.approx(radius, rel=1e-12)
         for line, at in ((before, arc.start), (after, arc.end)):
             ux, uy = (line.end[0] - line.start[0]) / line.length, (line.end[1] - line.start[1]) / line.length
@@ -218,7 +254,9 @@ def test_fillets_are_tangent_have_their_radius_and_their_closed_form_area(seed):
             # and the arc runs on in the line's direction
             side = 1 if arc.ccw else -1
             assert -ry * side * ux + rx * side * uy > 0.999 * radius
-        assert hypot(p[0] - arc.centre[0], p[1] - arc.centre[1]) == pytest.approx(radius / cos(arc.sweep / 2), rel=1e-9)
+        assert hypot(p[0] - arc.centre[0], p[1] - arc.centre[1]) == pytest.approx(
+            radius / cos(arc.sweep / 2), rel=1e-9
+        )
         turn = abs(arc.sweep)
         saved += (1 if arc.ccw else -1) * radius**2 * (tan(turn / 2) - turn / 2)
     assert contour.signed_area == pytest.approx(area - saved, rel=1e-10)
@@ -264,7 +302,16 @@ def test_a_fillet_that_uses_up_an_edge_between_sharp_corners(turned):
 
 def test_inside_fillets_of_unlike_radii_that_just_meet():
     """An S of two arcs on one edge: the edge vanishes, the arcs join with one tangent."""
-    c = rounded_polygon([Corner((0, 0)), Corner((4, 0), 1.0), Corner((4, 3), 2.0), Corner((9, 3)), Corner((9, 8)), Corner((0, 8))])
+    c = rounded_polygon(
+        [
+            Corner((0, 0)),
+            Corner((4, 0), 1.0),
+            Corner((4, 3), 2.0),
+            Corner((9, 3)),
+            Corner((9, 8)),
+            Corner((0, 8)),
+        ]
+    )
     first, second = (s for s in c if isinstance(s, Arc))
     assert first.end == second.start == pytest.approx((4, 1))
     assert c.area == pytest.approx(9 * 8 - 5 * 3 - (1 - pi / 4) * 1 + (1 - pi / 4) * 4)

@@ -22,9 +22,20 @@ BITE = Contour(  # a square with a bite of more than half a circle
     )
 )
 SLOT = rounded_polygon(
-    [Corner(p, r) for p, r in [((0, 0), 0.3), ((7, 0), 0), ((7, 8), 0.7), ((3, 8), 0), ((3, 4), 0.5), ((2, 4), 0.5),
-                               ((2, 8), 0), ((0, 8), 0)]]
-)  # fmt: skip
+    [
+        Corner(p, r)
+        for p, r in [
+            ((0, 0), 0.3),
+            ((7, 0), 0),
+            ((7, 8), 0.7),
+            ((3, 8), 0),
+            ((3, 4), 0.5),
+            ((2, 4), 0.5),
+            ((2, 8), 0),
+            ((0, 8), 0),
+        ]
+    ]
+)
 SHAPES = {"disc": circle((3, 3), 5), "moon": MOON, "bite": BITE, "slot": SLOT}
 
 
@@ -106,7 +117,10 @@ RAISED = Contour((Arc((4.0, 0.0), (0.0, 0.0), (2.0, 1.0), True), Line((0.0, 0.0)
         (MOON, 2.0),
         (TRIANGLE, 2.0),
         (RAISED, 1 + sqrt(5)),
-        (chain([(0, 0), (9, 0), (9, 1), (1, 1), (1, 9), (0, 9)]), 4 - 2 * sqrt(2)),  # an L: its corner is widest
+        (
+            chain([(0, 0), (9, 0), (9, 1), (1, 1), (1, 9), (0, 9)]),
+            4 - 2 * sqrt(2),
+        ),  # an L: its corner is widest
     ],
 )
 def test_the_largest_circle_that_fits(shape, largest):

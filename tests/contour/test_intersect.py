@@ -80,7 +80,9 @@ def test_distances(a, b, expected):
     assert distance(b, a) == pytest.approx(expected, abs=1e-12)
 
 
-@pytest.mark.parametrize("p, expected", [((0, 3), 2), ((0, 0), 1), ((0, 0.25), 0.75), ((3, 0), 2), ((0, -1), sqrt(2))])
+@pytest.mark.parametrize(
+    "p, expected", [((0, 3), 2), ((0, 0), 1), ((0, 0.25), 0.75), ((3, 0), 2), ((0, -1), sqrt(2))]
+)
 def test_distance_to_an_arc(p, expected):
     assert distance_to(UNIT, p) == pytest.approx(expected, abs=1e-12)
 

@@ -17,8 +17,16 @@ def widths(within: str, outer: Contour, *openings: Contour, below: float = float
 def slotted(width: float, radius: float) -> Contour:
     """A 20 x 8 block with a slot from above, 2.5 mm of material below it."""
     half = width / 2
-    points = [(0, 0, 0), (20, 0, 0), (20, 8, 0), (10 + half, 8, 0), (10 + half, 2.5, radius), (10 - half, 2.5, radius),
-              (10 - half, 8, 0), (0, 8, 0)]  # fmt: skip
+    points = [
+        (0, 0, 0),
+        (20, 0, 0),
+        (20, 8, 0),
+        (10 + half, 8, 0),
+        (10 + half, 2.5, radius),
+        (10 - half, 2.5, radius),
+        (10 - half, 8, 0),
+        (0, 8, 0),
+    ]
     return rounded_polygon([Corner((x, y), r) for x, y, r in points])
 
 
@@ -54,7 +62,9 @@ def test_a_rectangle_turned_by_any_angle(angle):
 def test_webs_between_holes_and_edges():
     found = widths("material", rectangle(0, 0, 20, 10), circle((4, 3), 2), circle((8, 3), 3), below=2.5)
     assert sorted(round(w, 9) for w in found) == [1.5, 1.5, 2.0]
-    assert min(widths("void", rectangle(0, 0, 20, 10), circle((4, 3), 2), circle((8, 3), 3))) == pytest.approx(2.0)
+    assert min(
+        widths("void", rectangle(0, 0, 20, 10), circle((4, 3), 2), circle((8, 3), 3))
+    ) == pytest.approx(2.0)
 
 
 def test_a_corner_that_points_at_a_wall():
@@ -115,7 +125,8 @@ def test_against_dense_points():
 def test_names_say_where():
     outer = Contour(
         tuple(
-            Line(s.start, s.end, name) for s, name in zip(rectangle(0, 0, 8, 0.5), ("below", "right", "above", "left"))
+            Line(s.start, s.end, name)
+            for s, name in zip(rectangle(0, 0, 8, 0.5), ("below", "right", "above", "left"))
         )
     )
     narrowest = necks(outer)[0]

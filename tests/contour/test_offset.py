@@ -12,9 +12,20 @@ from tactcad.contour.offset import offset
 
 L_SHAPE = chain([(0, 0), (9, 0), (9, 1), (1, 1), (1, 9), (0, 9)])
 SLOT = rounded_polygon(
-    [Corner(p, r) for p, r in [((0, 0), 0.3), ((7, 0), 0), ((7, 8), 0.7), ((3, 8), 0), ((3, 4), 0.3), ((2, 4), 0.3),
-                               ((2, 8), 0), ((0, 8), 0)]]
-)  # fmt: skip
+    [
+        Corner(p, r)
+        for p, r in [
+            ((0, 0), 0.3),
+            ((7, 0), 0),
+            ((7, 8), 0.7),
+            ((3, 8), 0),
+            ((3, 4), 0.3),
+            ((2, 4), 0.3),
+            ((2, 8), 0),
+            ((0, 8), 0),
+        ]
+    ]
+)
 SHAPES = {
     "rectangle": rectangle(0, 0, 3, 2),
     "triangle": chain([(0, 0), (4, 0), (0, 3)]),

@@ -15,20 +15,43 @@ GOOD = (HARDWARE / "macro-array.toml").read_text()
 
 # change -> where the message points, what it says, what it calls legal
 BAD_VALUES = {
-    "unknown field": ({"element.hinge_thicknes": 0.25}, "element.hinge_thicknes", "unknown", "element.hinge_thickness"),
+    "unknown field": (
+        {"element.hinge_thicknes": 0.25},
+        "element.hinge_thicknes",
+        "unknown",
+        "element.hinge_thickness",
+    ),
     "unknown table": ({"elements.x": 1}, "elements", "unknown", "element"),
     "unknown field of a rig": ({"sample.stifness": 1}, "sample.stifness", "unknown", "sample.stiffness"),
     "unknown field of an override": (
-        {"element.override.3.hinge": 1}, "element.override.3.hinge", "unknown", "element.override.3.hinge_"
+        {"element.override.3.hinge": 1},
+        "element.override.3.hinge",
+        "unknown",
+        "element.override.3.hinge_",
     ),
-    "missing field": ({"element.hinge_thickness": DROP}, "element.hinge_thickness", "missing", "0.005 to 5 mm"),
+    "missing field": (
+        {"element.hinge_thickness": DROP},
+        "element.hinge_thickness",
+        "missing",
+        "0.005 to 5 mm",
+    ),
     "missing rows": ({"array.row_arms": DROP}, "array.row_arms", "missing", "one or two rows"),
     "missing table": ({"sheet": DROP}, "sheet", "missing", "[sheet]"),
     "value instead of a table": ({"sheet": 3.0}, "sheet", "table", "[sheet]"),
-    "truth value": ({"element.hinge_thickness": True}, "element.hinge_thickness", "not a number", "0.005 to 5 mm"),
+    "truth value": (
+        {"element.hinge_thickness": True},
+        "element.hinge_thickness",
+        "not a number",
+        "0.005 to 5 mm",
+    ),
     "text": ({"element.hinge_thickness": "0.25"}, "element.hinge_thickness", "not a number", "0.005 to 5 mm"),
     "list": ({"element.hinge_thickness": [0.25]}, "element.hinge_thickness", "not a number", "0.005 to 5 mm"),
-    "table": ({"element.hinge_thickness": {"x": 1}}, "element.hinge_thickness", "not a number", "0.005 to 5 mm"),
+    "table": (
+        {"element.hinge_thickness": {"x": 1}},
+        "element.hinge_thickness",
+        "not a number",
+        "0.005 to 5 mm",
+    ),
     "NaN": ({"element.hinge_thickness": float("nan")}, "element.hinge_thickness", "finite", "0.005 to 5 mm"),
     "infinity": ({"array.pitch": float("inf")}, "array.pitch", "finite", "0.2 to 50 mm"),
     "minus infinity": ({"array.pitch": float("-inf")}, "array.pitch", "finite", "0.2 to 50 mm"),
@@ -66,27 +89,56 @@ BAD_VALUES = {
     "date in words": ({"design.date": "today"}, "design.date", "not a day", "YYYY-MM-DD"),
     "no such day": ({"design.date": "2026-02-30"}, "design.date", "not a day", "YYYY-MM-DD"),
     "override of nothing": ({"element.override": 3}, "element.override", "table", "element.override.N"),
-    "override zero": ({"element.override.0.hinge_thickness": 0.2}, "element.override.0", "element number", "1"),
-    "override by word": ({"element.override.E1.hinge_thickness": 0.2}, "element.override.E1", "element number", "1"),
+    "override zero": (
+        {"element.override.0.hinge_thickness": 0.2},
+        "element.override.0",
+        "element number",
+        "1",
+    ),
+    "override by word": (
+        {"element.override.E1.hinge_thickness": 0.2},
+        "element.override.E1",
+        "element number",
+        "1",
+    ),
     "override out of range": (
-        {"element.override.3.hinge_thickness": 0}, "element.override.3.hinge_thickness", "out of range", "mm"
+        {"element.override.3.hinge_thickness": 0},
+        "element.override.3.hinge_thickness",
+        "out of range",
+        "mm",
     ),
     "gap by word": ({"stop.gaps": {"short": 0.1}}, "stop.gaps.short", "arm length", "mm"),
     "gap of zero": ({"stop.gaps": {"4": 0}}, "stop.gaps.4", "out of range", "mm"),
     "gap twice": ({"stop.gaps": {"4": 0.1, "4.0": 0.2}}, "stop.gaps.4.0", "twice", "mm"),
     "gaps as a number": ({"stop.gaps": 0.1}, "stop.gaps", "table", "gap by arm length"),
-    "origin of nothing": ({"origin": {"element.hinge": "paper"}}, "origin.element.hinge", "unknown", "origin.element.hinge_"),
-    "origin that is a number": ({"origin": {"sheet.thickness": 3}}, "origin.sheet.thickness", "not text", "from"),
+    "origin of nothing": (
+        {"origin": {"element.hinge": "paper"}},
+        "origin.element.hinge",
+        "unknown",
+        "origin.element.hinge_",
+    ),
+    "origin that is a number": (
+        {"origin": {"sheet.thickness": 3}},
+        "origin.sheet.thickness",
+        "not text",
+        "from",
+    ),
     "origin of a rig that is not there": ({"sample": DROP}, "origin.sample.", "unknown", ""),
     "key with a line end": (
-        {"element.override.a\nb.hinge_thickness": 1}, "element.override.a\nb", "element number", "1"
+        {"element.override.a\nb.hinge_thickness": 1},
+        "element.override.a\nb",
+        "element number",
+        "1",
     ),
     "gap by a line end": ({"stop.gaps": {"a\x1bb\n": 0.1}}, "stop.gaps.a\x1bb\n", "arm length", "mm"),
     "long key": ({"element." + "x" * 5000: 1}, "element.xxx", "unknown", "tactcad schema"),
     "long key of an override": (
-        {"element.override." + "9" * 5000 + ".hinge_thickness": 1}, "element.override.999", "element number", "1"
+        {"element.override." + "9" * 5000 + ".hinge_thickness": 1},
+        "element.override.999",
+        "element number",
+        "1",
     ),
-}  # fmt: skip
+}
 
 
 def refused(call, *args) -> InputError:

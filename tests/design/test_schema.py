@@ -23,9 +23,24 @@ SCHEMA = json.loads(json.dumps(json_schema()))
 def complaints(value, schema, path="$") -> list[str]:
     """What a JSON Schema checker would say; knows just the words that our schema uses, and refuses others."""
     known = {
-        "$schema", "title", "description", "default", "format", "type", "properties", "required", "additionalProperties",
-        "patternProperties", "minimum", "maximum", "enum", "pattern", "items", "minItems", "maxItems",
-    }  # fmt: skip
+        "$schema",
+        "title",
+        "description",
+        "default",
+        "format",
+        "type",
+        "properties",
+        "required",
+        "additionalProperties",
+        "patternProperties",
+        "minimum",
+        "maximum",
+        "enum",
+        "pattern",
+        "items",
+        "minItems",
+        "maxItems",
+    }
     assert set(schema) <= known, f"{path}: unknown words {set(schema) - known}"
     kinds = {"object": dict, "array": list, "string": str, "number": (int, float)}
     if not isinstance(value, kinds[schema["type"]]) or isinstance(value, bool):
@@ -117,9 +132,27 @@ def test_choices_in_the_schema_are_the_loaders(path):
     assert not accepted(table({path: "something else"}))
 
 
-@pytest.mark.parametrize("path", ["design.name", "design.title", "design.revision", "design.date", "design.author"])
 @pytest.mark.parametrize(
-    "text", ["macro", "A", "AB", "2026-11-21", "", " ", "a b", "../x", "\u00e9", "a\nb", "a\u202eb", "x" * 81, "-a", "a-"]
+    "path", ["design.name", "design.title", "design.revision", "design.date", "design.author"]
+)
+@pytest.mark.parametrize(
+    "text",
+    [
+        "macro",
+        "A",
+        "AB",
+        "2026-11-21",
+        "",
+        " ",
+        "a b",
+        "../x",
+        "\u00e9",
+        "a\nb",
+        "a\u202eb",
+        "x" * 81,
+        "-a",
+        "a-",
+    ],
 )
 def test_text_is_legal_for_the_schema_as_for_the_loader(path, text):
     tree = table({path: text})
@@ -156,7 +189,10 @@ def test_every_table_and_field_stands_in_the_text_with_its_meaning():
 def test_the_command_prints_both():
     for arguments, check in (([], text_schema().strip()), (["--json"], None)):
         run = subprocess.run(
-            [sys.executable, "-m", "tactcad", "schema", *arguments], capture_output=True, text=True, check=True
+            [sys.executable, "-m", "tactcad", "schema", *arguments],
+            capture_output=True,
+            text=True,
+            check=True,
         )
         assert run.stdout.strip() == check if check else json.loads(run.stdout) == SCHEMA
         assert run.stderr == ""

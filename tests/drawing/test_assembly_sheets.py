@@ -11,17 +11,17 @@ import pytest
 from scipy.spatial import cKDTree
 from variants import variant
 
-from tactcad.export.bom import bom_rows
-from tactcad.export.drawing import parts_list
-from tactcad.export.drawing.assembly import assembly_sheets
-from tactcad.export.drawing.assembly_file import assembly_faults, stacked_svg
-from tactcad.export.drawing.gate import pdf_runs
-from tactcad.export.drawing.ink import Arc, Fill, Stroke, Text, preliminary
-from tactcad.export.drawing.layout import layout_faults
-from tactcad.export.drawing.page import MOST_DRAWN, fewer
-from tactcad.export.drawing.pdf import pdf_bytes
+from tactcad.drawing import parts_list
+from tactcad.drawing.assembly import assembly_sheets
+from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
+from tactcad.drawing.gate import pdf_runs
+from tactcad.drawing.ink import Arc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.page import MOST_DRAWN, fewer
+from tactcad.drawing.pdf import pdf_bytes
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes import make_scene
+from tactcad.scenes.bom import bom_rows
 
 pytestmark = pytest.mark.cad
 
@@ -50,10 +50,16 @@ def balloons(sheets) -> dict[int | str, tuple]:
     """Item, or letter of another view -> its circle, the tip of its leader, and the sheet: read off the primitives."""
     found = {}
     for n, sheet in enumerate(sheets):
-        for circle in (i for i in sheet.items if isinstance(i, Arc) and i.role == "symbol" and i.radius == 4.5):
+        for circle in (
+            i for i in sheet.items if isinstance(i, Arc) and i.role == "symbol" and i.radius == 4.5
+        ):
             (text,) = (t for t in sheet.texts if dist(t.at, circle.centre) < 2.0)
             leaders = [
-                i for i in sheet.items if isinstance(i, Stroke) and i.role == "leader" and abs(dist(i.points[0], circle.centre) - 4.5) < 1e-6
+                i
+                for i in sheet.items
+                if isinstance(i, Stroke)
+                and i.role == "leader"
+                and abs(dist(i.points[0], circle.centre) - 4.5) < 1e-6
             ]
             label = int(text.text) if text.text.isdigit() else text.text
             assert len(leaders) == 1 and label not in found
@@ -66,14 +72,20 @@ def test_every_sheet_is_clean_and_says_what_it_is(assembly):
     for n, sheet in enumerate(sheets, 1):
         assert layout_faults(sheet) == []
         texts = [t.text for t in sheet.texts]
-        assert f"{n}/{len(sheets)}" in texts and f"{design.name}-{scene.name}" in texts and design.design.revision in texts
+        assert (
+            f"{n}/{len(sheets)}" in texts
+            and f"{design.name}-{scene.name}" in texts
+            and design.design.revision in texts
+        )
         assert sheet.size in ((420.0, 297.0), (297.0, 420.0), (210.0, 297.0))
     assert re.fullmatch(r"\d+:\d+", next(t.text for t in sheets[0].texts if re.fullmatch(r"\d+:\d+", t.text)))
 
 
 def test_every_item_that_has_a_solid_has_one_balloon(assembly):
     _, _, rows, _, sheets = assembly
-    assert sorted(n for n in balloons(sheets) if isinstance(n, int)) == [row.item for row in rows if row.has_solid]
+    assert sorted(n for n in balloons(sheets) if isinstance(n, int)) == [
+        row.item for row in rows if row.has_solid
+    ]
 
 
 def test_leaders_cross_neither_each_other_nor_a_balloon(assembly):
@@ -101,7 +113,7 @@ def _away(p, a, b) -> float:
 
 def test_every_leader_ends_on_a_part_with_that_number(assembly):
     """Around the end of the leader lie the lines of the part's own picture, drawn alone from the same eye and at the sheet's scale."""
-    from tactcad.export.picture import ABOVE, drawing
+    from tactcad.drawing.picture import ABOVE, drawing
     from tactcad.solids.place import placed_shape
 
     _, scene, rows, shapes, sheets = assembly
@@ -110,14 +122,21 @@ def test_every_leader_ends_on_a_part_with_that_number(assembly):
     for p in [*scene.placements, *(p for ready in scene.ready for p in ready.placements)]:
         by_turn = looks.setdefault(item[p.part.part_no], {})
         if p.rotation not in by_turn:
-            by_turn[p.rotation] = drawing([placed_shape(shapes[p.part.part_no], (0, 0, 0), p.rotation)], ABOVE).sharp
+            by_turn[p.rotation] = drawing(
+                [placed_shape(shapes[p.part.part_no], (0, 0, 0), p.rotation)], ABOVE
+            ).sharp
     for page, sheet in enumerate(sheets):
-        mine = {n: tip for n, (_, tip, there) in balloons(sheets).items() if there == page and isinstance(n, int)}
+        mine = {
+            n: tip for n, (_, tip, there) in balloons(sheets).items() if there == page and isinstance(n, int)
+        }
         if mine:
-            lines = np.array([
-                (i.points[0], i.points[-1]) for i in sheet.items
-                if isinstance(i, Stroke) and i.role == "outline" and i.line.name == "edge"
-            ])  # fmt: skip
+            lines = np.array(
+                [
+                    (i.points[0], i.points[-1])
+                    for i in sheet.items
+                    if isinstance(i, Stroke) and i.role == "outline" and i.line.name == "edge"
+                ]
+            )
             scale = next(t.text for t in sheet.texts if re.fullmatch(r"\d+:\d+", t.text))
             f = int(scale.split(":")[0]) / int(scale.split(":")[1])
             for n, tip in mine.items():
@@ -133,7 +152,10 @@ def _found_again(own, f, tip, lines) -> float:
     corners = np.unique(whole.reshape(-1, 2), axis=0)
     ends = cKDTree(lines.reshape(-1, 2))
     same = cKDTree(lines[:, 1] - lines[:, 0]).query_ball_point(whole[:, 1] - whole[:, 0], 0.02)
-    shifts = np.unique([np.round(lines[k, 0] - edge[0], 2) for edge, some in zip(whole, same) for k in some] or [(1e9, 1e9)], axis=0)
+    shifts = np.unique(
+        [np.round(lines[k, 0] - edge[0], 2) for edge, some in zip(whole, same) for k in some] or [(1e9, 1e9)],
+        axis=0,
+    )
     start, way = chords[:, 0], chords[:, 1] - chords[:, 0]
     best = 0.0
     for shift in shifts:
@@ -156,8 +178,14 @@ def test_a_rig_is_taken_apart_sub_assembly_by_sub_assembly(assembly):
     assert sorted(letters) == sorted(view["letter"] for view in views.values() if view["letter"] != "A")
     assert not [n for n in views["the sub-assemblies"]["shown"] if isinstance(n, int)]
     for name, view in views.items():
-        assert all(item_view in {v["letter"] for v in views.values()} and item_view < view["letter"] for item_view in view["elsewhere"].values())
-    items = {name: {n for n in view["shown"] if isinstance(n, int)} | set(view["elsewhere"]) for name, view in views.items()}
+        assert all(
+            item_view in {v["letter"] for v in views.values()} and item_view < view["letter"]
+            for item_view in view["elsewhere"].values()
+        )
+    items = {
+        name: {n for n in view["shown"] if isinstance(n, int)} | set(view["elsewhere"])
+        for name, view in views.items()
+    }
     assert set().union(*items.values()) == set(at.values())
     groups = dict(scene.groups)
     if "cart" in groups:
@@ -166,8 +194,12 @@ def test_a_rig_is_taken_apart_sub_assembly_by_sub_assembly(assembly):
         assert items[ready.name] == {item[p.part.part_no] for p in ready.placements}
     standing = {d for name in ("BP", "PO", "RI", "RL") for d in at if d.rstrip("0123456789") == name}
     assert {at[d] for d in standing} <= items["stand"]
-    moving = {at[d] for d in groups["axis"]} - set().union(*({item[p.part.part_no] for p in r.placements} for r in scene.ready), set())
-    assert moving <= set().union(*(items[n] for n in items if n in ("vertical axis", "platform with weights", "force axis")))
+    moving = {at[d] for d in groups["axis"]} - set().union(
+        *({item[p.part.part_no] for p in r.placements} for r in scene.ready), set()
+    )
+    assert moving <= set().union(
+        *(items[n] for n in items if n in ("vertical axis", "platform with weights", "force axis"))
+    )
 
 
 def _views(sheets) -> dict[str, dict]:
@@ -204,7 +236,12 @@ def test_the_parts_list_is_the_bill(assembly):
     for row in rows:
         quantity = f"{row.qty:g}" + ("" if row.unit == "pcs" else row.unit)
         assert f"{row.item}{quantity}{row.part_no}{row.description}".replace(" ", "") in text, row.part_no
-    assert assembly_faults(pdf_bytes(sheets, "x", "y"), f"{design.name}-{scene.name}", design.design.revision, rows) == []
+    assert (
+        assembly_faults(
+            pdf_bytes(sheets, "x", "y"), f"{design.name}-{scene.name}", design.design.revision, rows
+        )
+        == []
+    )
 
 
 def test_overall_dimensions_are_the_solids(assembly):
@@ -239,9 +276,16 @@ def test_notes_give_torques_and_the_pads_procedure(assembly):
 def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     design, scene, rows, _, sheets = assembly
     number, revision = f"{design.name}-{scene.name}", design.design.revision
-    faults = lambda sheets, rows=rows, r=revision: assembly_faults(pdf_bytes(sheets, "x", "y"), number, r, rows)  # noqa: E731
-    page = next(n for n, s in enumerate(sheets) if any(isinstance(i, Fill) and i.role == "leader" for i in s.items))
-    ballooned = next(t for t in sheets[page].texts if t.anchor == "middle" and t.role == "note" and t.text.isdigit())
+
+    def faults(sheets, rows=rows, r=revision):
+        return assembly_faults(pdf_bytes(sheets, "x", "y"), number, r, rows)
+
+    page = next(
+        n for n, s in enumerate(sheets) if any(isinstance(i, Fill) and i.role == "leader" for i in s.items)
+    )
+    ballooned = next(
+        t for t in sheets[page].texts if t.anchor == "middle" and t.role == "note" and t.text.isdigit()
+    )
     without = replace(sheets[page], items=tuple(i for i in sheets[page].items if i is not ballooned))
     assert any("has 0 balloons" in f for f in faults([*sheets[:page], without, *sheets[page + 1 :]]))
     assert any("has 2 balloons" in f for f in faults([*sheets, sheets[page]]))
@@ -267,7 +311,9 @@ def test_one_svg_holds_all_sheets_below_each_other(assembly):
     inner = [e for e in root if e.tag.endswith("svg")]
     assert [(float(e.get("width")), float(e.get("height"))) for e in inner] == [s.size for s in sheets]
     heights = [s.size[1] for s in sheets]
-    assert [float(e.get("y")) for e in inner] == pytest.approx([sum(heights[:n]) + 10 * n for n in range(len(heights))])
+    assert [float(e.get("y")) for e in inner] == pytest.approx(
+        [sum(heights[:n]) + 10 * n for n in range(len(heights))]
+    )
     texts = {e.text for e in root.iter() if e.tag.endswith("text")}
     assert {t.text for s in sheets for t in s.texts} <= texts
 

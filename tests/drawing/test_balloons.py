@@ -8,7 +8,7 @@ from math import cos, dist, hypot, pi, sin
 import numpy as np
 import pytest
 
-from tactcad.export.drawing.balloons import APART, CLEAR, RADIUS, SHORTEST, Balloon, drawn, faults, place
+from tactcad.drawing.balloons import APART, CLEAR, RADIUS, SHORTEST, Balloon, drawn, faults, place
 
 AREA = (0.0, 0.0, 200.0, 270.0)
 
@@ -41,7 +41,10 @@ def assert_clean(balloons, own):
             for line in lines:
                 for (x0, y0), (x1, y1) in zip(line, line[1:]):
                     for u in np.linspace(0, 1, 50):
-                        assert hypot(x0 + u * (x1 - x0) - b.centre[0], y0 + u * (y1 - y0) - b.centre[1]) > RADIUS + CLEAR - 1.0
+                        assert (
+                            hypot(x0 + u * (x1 - x0) - b.centre[0], y0 + u * (y1 - y0) - b.centre[1])
+                            > RADIUS + CLEAR - 1.0
+                        )
 
 
 def _on(p, line) -> bool:

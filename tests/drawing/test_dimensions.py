@@ -15,11 +15,11 @@ from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.export.drawing.measure import Radius, Slope, Span, level, variables
-from tactcad.export.drawing.notes import MadeFrom
-from tactcad.export.drawing.plan import Dimension, number
-from tactcad.export.drawing.prism import prism_plan
-from tactcad.export.drawing.sheets import part_plan
+from tactcad.drawing.measure import Radius, Slope, Span, level, variables
+from tactcad.drawing.notes import MadeFrom
+from tactcad.drawing.plan import Dimension, number
+from tactcad.drawing.prism import prism_plan
+from tactcad.drawing.sheets import part_plan
 from tactcad.parts.description import Characteristic, Extrusion, Hole, Material, Part
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import make_scene, scene_names
@@ -28,20 +28,32 @@ FILE = MadeFrom("dxf/x.dxf", "0" * 64)
 DESIGNS = {
     "as shipped": {},
     "slot from both sides": {"element.sides": "two"},
-    "body thicker than the arm": {"element.sides": "two", "element.body_height": 4.0, "element.pad_height": 2.5},
+    "body thicker than the arm": {
+        "element.sides": "two",
+        "element.body_height": 4.0,
+        "element.pad_height": 2.5,
+    },
     "one row, with blanks": {"array.row_arms": [[4, 7]]},
     "full round": {"element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]]},
     "full rounds from both sides": {
-        "element.sides": "two", "element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]],
+        "element.sides": "two",
+        "element.hinge_length": 0.6,
+        "element.fillet_radius": 0.3,
+        "array.row_arms": [[5], [6]],
         "calibration.travel": 0.1,
     },
     "another hinge for one element": {
-        "array.row_arms": [[4, 7], [8, 5]], "element.override": {"2": {"hinge_thickness": 0.3, "hinge_length": 1.0}},
+        "array.row_arms": [[4, 7], [8, 5]],
+        "element.override": {"2": {"hinge_thickness": 0.3, "hinge_length": 1.0}},
     },
-    "odd numbers": {"element.hinge_thickness": 0.2345, "element.pad_height": 1.987, "array.row_arms": [[5.125, 6.375]]},
+    "odd numbers": {
+        "element.hinge_thickness": 0.2345,
+        "element.pad_height": 1.987,
+        "array.row_arms": [[5.125, 6.375]],
+    },
     "long arms": {"array.row_arms": [[40, 20], [6, 8]]},
     "longer than any screw": {"array.row_arms": [[4] * 12, [8] * 12]},
-}  # fmt: skip
+}
 
 
 def plans(changes, base="macro-array"):
@@ -76,7 +88,11 @@ def jacobian(plan, rows) -> np.ndarray:
 
 
 def rank(matrix: np.ndarray) -> int:
-    return int(np.linalg.matrix_rank(matrix / np.linalg.norm(matrix, axis=1, keepdims=True), tol=1e-7)) if len(matrix) else 0
+    return (
+        int(np.linalg.matrix_rank(matrix / np.linalg.norm(matrix, axis=1, keepdims=True), tol=1e-7))
+        if len(matrix)
+        else 0
+    )
 
 
 def test_no_dimension_is_missing_and_none_is_given_twice(some_plans):
@@ -85,7 +101,9 @@ def test_no_dimension_is_missing_and_none_is_given_twice(some_plans):
         said, drawn = jacobian(plan, rows), jacobian(plan, plan.conventions)
         whole = rank(np.vstack([drawn, said]))
         # two motions along the paper are free; the directions of level lines hold the turn
-        free = 2 if any(isinstance(r, Span) for r in plan.conventions) or plan.part.body.outer.as_circle() else 3
+        free = (
+            2 if any(isinstance(r, Span) for r in plan.conventions) or plan.part.body.outer.as_circle() else 3
+        )
         assert whole == len(plan.values) - free, (plan.part.part_no, "missing")
         assert whole == rank(drawn) + len(rows), (plan.part.part_no, "given twice")
 
@@ -120,7 +138,9 @@ def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):
             step = np.linalg.lstsq(matrix, -residual, rcond=1e-9)[0]
             values = {n: values[n] + s for n, s in zip(names, step)}
         assert max(abs(row.of(values) - wanted) for row, wanted in rows) < 2e-3
-        shift = {a: np.median([values[n] - plan.values[n] for n in names if _axis(n) == a] or [0.0]) for a in "xy"}
+        shift = {
+            a: np.median([values[n] - plan.values[n] for n in names if _axis(n) == a] or [0.0]) for a in "xy"
+        }
         off = {n: values[n] - plan.values[n] - shift.get(_axis(n), 0.0) for n in names}
         worst = max(off, key=lambda n: abs(off[n]))
         # numbers are rounded to a micrometre; a corner may carry a few of them
@@ -167,7 +187,11 @@ def test_key_characteristics_stand_once_each_with_their_limits(some_plans):
 
 def test_a_changed_part_changes_its_sheet_by_itself():
     thin, thick = (
-        next(d for d in plans({"element.hinge_thickness": t, "array.row_arms": [[5], [6]]})[1].dimensions if d.key == 1)
+        next(
+            d
+            for d in plans({"element.hinge_thickness": t, "array.row_arms": [[5], [6]]})[1].dimensions
+            if d.key == 1
+        )
         for t in (0.2, 0.3)
     )
     assert thin.name == thick.name == "hinge thickness"
@@ -180,7 +204,15 @@ def test_a_changed_part_changes_its_sheet_by_itself():
 
 def block(*features, characteristics=(), outer=None) -> Part:
     outer = outer or rectangle(0, 0, 40, 30)
-    return Part("BLOCK", "Block", "milled", Material("6061-T6", 2700), Extrusion(outer, 10.0), features, characteristics=characteristics)
+    return Part(
+        "BLOCK",
+        "Block",
+        "milled",
+        Material("6061-T6", 2700),
+        Extrusion(outer, 10.0),
+        features,
+        characteristics=characteristics,
+    )
 
 
 def test_a_characteristic_without_a_dimension_is_refused():
@@ -202,7 +234,9 @@ def test_holes_of_one_row_share_their_extension_line():
 
 
 def test_features_shown_as_equal_have_to_be_equal():
-    part = block(*(Hole("h", (x, 8.0, 10.0), (0, 0, -1), d, 10.0, True) for x, d in ((5.0, 3.0), (15.0, 3.1))))
+    part = block(
+        *(Hole("h", (x, 8.0, 10.0), (0, 0, -1), d, 10.0, True) for x, d in ((5.0, 3.0), (15.0, 3.1)))
+    )
     values = variables(part)
     wrong = Dimension("both", tuple(Span(level("thickness"), level(f"hole{k}.d")) for k in (0, 1)))
     with pytest.raises(ValueError, match="shown as equal"):
@@ -211,7 +245,11 @@ def test_features_shown_as_equal_have_to_be_equal():
 
 def test_a_disc_has_its_diameters_and_its_thickness():
     ring = Part(
-        "RING", "Ring", "turned", Material("steel", 7850), Extrusion(circle((0, 0), 20), 3.0, (circle((0, 0), 8.2),))
+        "RING",
+        "Ring",
+        "turned",
+        Material("steel", 7850),
+        Extrusion(circle((0, 0), 20), 3.0, (circle((0, 0), 8.2),)),
     )
     plan = prism_plan(ring, variant(), ())
     assert sorted(d.text(plan.values) for d in plan.dimensions) == ["3", "⌀20", "⌀8.2"]
@@ -219,14 +257,28 @@ def test_a_disc_has_its_diameters_and_its_thickness():
 
 @pytest.mark.parametrize(
     ("value", "exact", "text"),
-    [(3.0, False, "3"), (0.88, False, "0.88"), (34.392305, False, "34.392"), (1.0025, False, "1.0025"),
-     (0.12345, True, "0.12345"), (11.999999999, False, "12"), (-0.0, False, "0")],
-)  # fmt: skip
+    [
+        (3.0, False, "3"),
+        (0.88, False, "0.88"),
+        (34.392305, False, "34.392"),
+        (1.0025, False, "1.0025"),
+        (0.12345, True, "0.12345"),
+        (11.999999999, False, "12"),
+        (-0.0, False, "0"),
+    ],
+)
 def test_numbers_are_as_short_as_they_can_be(value, exact, text):
     assert number(value, exact) == text
 
 
 def test_radius_and_slope_measure_what_they_say():
-    values = {"outer.0.x": 3.0, "outer.0.y": 4.0, "outer.0.cx": 0.0, "outer.0.cy": 0.0, "outer.1.x": 4.0, "outer.1.y": 5.0}
+    values = {
+        "outer.0.x": 3.0,
+        "outer.0.y": 4.0,
+        "outer.0.cx": 0.0,
+        "outer.0.cy": 0.0,
+        "outer.1.x": 4.0,
+        "outer.1.y": 5.0,
+    }
     assert Radius("outer", 0).of(values) == 5.0
     assert Slope("outer.0", "outer.1").of(values) == pytest.approx(45.0)

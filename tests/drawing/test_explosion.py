@@ -11,9 +11,9 @@ from variants import variant
 
 from tactcad.contour import rectangle
 from tactcad.design.load import from_table
-from tactcad.export.drawing.apart import Piece, pieces_of, pulled_apart
-from tactcad.export.drawing.units import unit_views
-from tactcad.export.extent import projected_box
+from tactcad.drawing.apart import Piece, pieces_of, pulled_apart
+from tactcad.drawing.extent import projected_box
+from tactcad.drawing.units import unit_views
 from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.library.screws import cap_screw
 from tactcad.parts.plates import STEEL
@@ -33,8 +33,9 @@ def shifts(scene: Scene, placements=None) -> dict[str, tuple[float, ...]]:
     moved = pulled_apart(scene, pieces, GAP, {})
     return {
         p.designator: tuple(b - a for a, b in zip(p.origin, q.origin))
-        for piece, there in zip(pieces, moved) for p, q in zip(piece.placements, there.placements)
-    }  # fmt: skip
+        for piece, there in zip(pieces, moved)
+        for p, q in zip(piece.placements, there.placements)
+    }
 
 
 def test_a_lid_and_its_screws_by_hand():
@@ -51,14 +52,24 @@ def test_a_lid_and_its_screws_by_hand():
             Placement("S3", cap_screw("M4", 8.0), (0, -14, 5), ALONG_Y),
         ),
         (
-            Contact("PL", "LI", "touch"), Contact("S1", "LI", "touch"), Contact("S1", "PL", "thread"), Contact("S2", "LI", "touch"),
-            Contact("S2", "PL", "thread"), Contact("PL", "FR", "touch"), Contact("S3", "FR", "touch"), Contact("S3", "PL", "thread"),
+            Contact("PL", "LI", "touch"),
+            Contact("S1", "LI", "touch"),
+            Contact("S1", "PL", "thread"),
+            Contact("S2", "LI", "touch"),
+            Contact("S2", "PL", "thread"),
+            Contact("PL", "FR", "touch"),
+            Contact("S3", "FR", "touch"),
+            Contact("S3", "PL", "thread"),
         ),
-    )  # fmt: skip
+    )
     assert shifts(scene) == {
-        "PL": (0, 0, 0), "LI": (0, 0, GAP), "S1": (0, 0, 12 + 2 * GAP - 4), "S2": (0, 0, 12 + 2 * GAP - 4),
-        "FR": (0, -GAP, 0), "S3": (0, pytest.approx(-14 - 2 * GAP + 14 - 8), 0),
-    }  # fmt: skip
+        "PL": (0, 0, 0),
+        "LI": (0, 0, GAP),
+        "S1": (0, 0, 12 + 2 * GAP - 4),
+        "S2": (0, 0, 12 + 2 * GAP - 4),
+        "FR": (0, -GAP, 0),
+        "S3": (0, pytest.approx(-14 - 2 * GAP + 14 - 8), 0),
+    }
 
 
 def test_equal_parts_on_each_other_stay_together_and_clear_of_the_pin_through_them():
@@ -66,13 +77,17 @@ def test_equal_parts_on_each_other_stay_together_and_clear_of_the_pin_through_th
     scene = Scene(
         "test",
         (
-            Placement("PL", block("PLATE", 40, 40, 10)), Placement("PN", block("PIN", 4, 4, 60), (0, 0, 10)),
+            Placement("PL", block("PLATE", 40, 40, 10)),
+            Placement("PN", block("PIN", 4, 4, 60), (0, 0, 10)),
             *(Placement(f"D{n}", disc, (0, 0, 10.0 + 5 * n)) for n in range(3)),
         ),
         (
-            Contact("PL", "PN", "touch"), Contact("PL", "D0", "touch"), Contact("D0", "D1", "touch"), Contact("D1", "D2", "touch"),
+            Contact("PL", "PN", "touch"),
+            Contact("PL", "D0", "touch"),
+            Contact("D0", "D1", "touch"),
+            Contact("D1", "D2", "touch"),
         ),
-    )  # fmt: skip
+    )
     way = shifts(scene)
     assert way["PN"] == (0, 0, GAP)
     assert way["D0"] == way["D1"] == way["D2"] == (0, 0, 60 + 2 * GAP)  # over the pin's upper end
@@ -80,9 +95,14 @@ def test_equal_parts_on_each_other_stay_together_and_clear_of_the_pin_through_th
 
 def test_what_was_asked_to_come_farther_does_and_what_hangs_on_it_follows():
     scene = Scene(
-        "test", (Placement("A", block("A", 20, 20, 10)), Placement("B", block("B", 10, 10, 5), (0, 0, 10)), Placement("C", block("C", 8, 8, 2), (0, 0, 15))),
+        "test",
+        (
+            Placement("A", block("A", 20, 20, 10)),
+            Placement("B", block("B", 10, 10, 5), (0, 0, 10)),
+            Placement("C", block("C", 8, 8, 2), (0, 0, 15)),
+        ),
         (Contact("A", "B", "touch"), Contact("B", "C", "touch")),
-    )  # fmt: skip
+    )
     moved = pulled_apart(scene, [Piece((p,)) for p in scene.placements], GAP, {1: 40.0})
     assert [piece.placements[0].origin[2] for piece in moved] == [0.0, 10.0 + 40.0, 15.0 + 80.0]
 
@@ -90,7 +110,9 @@ def test_what_was_asked_to_come_farther_does_and_what_hangs_on_it_follows():
 @pytest.mark.parametrize("seed", [None, *range(6)])
 def test_sub_assemblies_of_rigs_come_apart(seed):
     """Of the macro array and of drawn designs that keep every rule."""
-    design = variant() if seed is None else from_table(as_table(sound_table(seed, (1, 2, 3, 5, 8, 13), rigs=True)))
+    design = (
+        variant() if seed is None else from_table(as_table(sound_table(seed, (1, 2, 3, 5, 8, 13), rigs=True)))
+    )
     for name in scene_names(design):
         if name == "array":
             continue
@@ -104,16 +126,25 @@ def test_sub_assemblies_of_rigs_come_apart(seed):
                 continue
             gap = 12 * GAP if all(piece.letter for piece in view.pieces) else GAP
             moved = pulled_apart(scene, view.pieces, gap, {})
-            at = {p.designator: (np.array(p.origin), i) for i, piece in enumerate(moved) for p in piece.placements}
+            at = {
+                p.designator: (np.array(p.origin), i)
+                for i, piece in enumerate(moved)
+                for p in piece.placements
+            }
             before = {p.designator: p for p in scene.placements}
             way = {d: here - np.array(before[d].origin) for d, (here, _) in at.items()}
             for piece in view.pieces:
                 assert len({tuple(np.round(way[p.designator], 6)) for p in piece.placements}) == 1
             for screw, under in on.items():
                 if screw in at and under in at and at[screw][1] != at[under][1]:
-                    outwards = -np.array([row[2] for row in before[screw].rotation])  # a cap screw's local z is where it points
+                    outwards = -np.array(
+                        [row[2] for row in before[screw].rotation]
+                    )  # a cap screw's local z is where it points
                     apart = way[screw] - way[under]
-                    assert apart @ outwards > GAP and np.linalg.norm(apart - (apart @ outwards) * outwards) < 1e-6, screw
+                    assert (
+                        apart @ outwards > GAP
+                        and np.linalg.norm(apart - (apart @ outwards) * outwards) < 1e-6
+                    ), screw
             if {"BP1", "CT1"} <= set(at):  # wheels stand on the plate
                 assert way["CT1"][2] - way["BP1"][2] >= GAP
             boxes = [np.array([_box(p) for p in piece.placements]) for piece in moved]

@@ -5,9 +5,13 @@ from __future__ import annotations
 import multiprocessing
 from concurrent.futures import ProcessPoolExecutor
 
-from tactcad.export.drawing import fonts
+from tactcad.drawing import fonts
 
-LETTERS = [chr(code) for code in (*range(0x21, 0x7F), *range(0xA1, 0x180), *range(0x391, 0x3CA)) if code not in (0xAD, 0x3A2)]
+LETTERS = [
+    chr(code)
+    for code in (*range(0x21, 0x7F), *range(0xA1, 0x180), *range(0x391, 0x3CA))
+    if code not in (0xAD, 0x3A2)
+]
 
 
 def measured(_round: int) -> list[tuple]:

@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from tactcad.export.drawing.ink import THIN, VISIBLE, Arc, Hatch, Sheet, Text, arrow, segment
-from tactcad.export.drawing.layout import layout_faults
-from tactcad.export.drawing.paper import A4, frame
+from tactcad.drawing.ink import THIN, VISIBLE, Arc, Hatch, Sheet, Text, arrow, segment
+from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.paper import A4, frame
 
 
 def faults(*items) -> list[str]:
@@ -29,7 +29,10 @@ BAD = {
     "turned text over text": (Text((62, 98), "7", angle=45), "over text"),
     "dimension line through a text": (segment((50, 101), (90, 101)), r"over a line \(dimension\)"),
     "line that grazes the letters": (segment((50, 99.85), (90, 99.85)), r"over a line"),
-    "slanted leader through a text": (segment((58, 95), (66, 108), THIN, "leader"), r"over a line \(leader\)"),
+    "slanted leader through a text": (
+        segment((58, 95), (66, 108), THIN, "leader"),
+        r"over a line \(leader\)",
+    ),
     "circle through a text": (Arc((60, 112), 11.0, line=VISIBLE), r"over a line \(outline\)"),
     "arrow head over a text": (arrow((61, 101), (70, 101)), "over a line"),
     "text outside the frame": (Text((195, 50), "12345"), "outside the frame"),
@@ -37,15 +40,23 @@ BAD = {
     "frame outside the paper": (segment((30, 30), (-1, 30), role="frame"), "outside the paper"),
     "text in hatching": (Hatch((WIDE,)), Text((60, 140), "12.5", 2.5), "over hatching"),
     "small text between two hatching lines": (Hatch((WIDE,)), Text((60, 142.9), ".", 1.8), "over hatching"),
-    "dimension lines that cross": ((segment((30, 50), (50, 50)), segment((40, 40), (40, 60))), "crosses a line"),
-    "dimension line through the part": ((segment((30, 50), (50, 50)), segment((40, 40), (40, 60), VISIBLE, "outline")), "crosses"),
+    "dimension lines that cross": (
+        (segment((30, 50), (50, 50)), segment((40, 40), (40, 60))),
+        "crosses a line",
+    ),
+    "dimension line through the part": (
+        (segment((30, 50), (50, 50)), segment((40, 40), (40, 60), VISIBLE, "outline")),
+        "crosses",
+    ),
 }
 
 
 @pytest.mark.parametrize("name", BAD)
 def test_a_bad_sheet_fails(name):
     *bad, said = BAD[name]
-    found = faults(TEXT, *(item for items in bad for item in (items if isinstance(items, tuple) else (items,))))
+    found = faults(
+        TEXT, *(item for items in bad for item in (items if isinstance(items, tuple) else (items,)))
+    )
     assert [fault for fault in found if re.search(said, fault)], found
 
 
@@ -54,8 +65,14 @@ GOOD = {
     "line under a text": (segment((50, 99.0), (90, 99.0)),),
     "turned text beside a text": (Text((58, 100), "7", angle=90),),
     "text inside a circle": (Arc((60 + LENGTH / 2, 101.2), 7.0, line=VISIBLE),),
-    "dimension line that ends at an edge": (segment((30, 50), (40, 50)), segment((40, 40), (40, 60), VISIBLE, "outline")),
-    "centre line across a dimension line": (segment((30, 50), (50, 50)), segment((40, 40), (40, 60), THIN, "centre")),
+    "dimension line that ends at an edge": (
+        segment((30, 50), (40, 50)),
+        segment((40, 40), (40, 60), VISIBLE, "outline"),
+    ),
+    "centre line across a dimension line": (
+        segment((30, 50), (50, 50)),
+        segment((40, 40), (40, 60), THIN, "centre"),
+    ),
     "text in a hatched face's hole": (Hatch((WIDE, square(55, 135, 75, 155))), Text((60, 143), "12.5", 2.5)),
     "text beside hatching": (Hatch((WIDE,)), Text((91, 140), "12.5", 2.5)),
     "watermark under everything": (Text((60, 100), "PRELIMINARY", 10, role="watermark"),),

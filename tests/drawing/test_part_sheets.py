@@ -18,17 +18,17 @@ from variants import HARDWARE, variant
 import tactcad
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.export.drawing import fonts, sheets
-from tactcad.export.drawing.compose import compose
-from tactcad.export.drawing.gate import drawing_faults, key_faults, pdf_runs
-from tactcad.export.drawing.ink import Arc, Stroke, Text
-from tactcad.export.drawing.layout import layout_faults
-from tactcad.export.drawing.notes import MadeFrom
-from tactcad.export.drawing.paper import A3, A4
-from tactcad.export.drawing.pdf import pdf_bytes
-from tactcad.export.drawing.prism import prism_plan
-from tactcad.export.drawing.scale import SERIES
-from tactcad.export.drawing.sheets import Order, all_written, part_sheet, title_of, written
+from tactcad.drawing import fonts, sheets
+from tactcad.drawing.compose import compose
+from tactcad.drawing.gate import drawing_faults, key_faults, pdf_runs
+from tactcad.drawing.ink import Arc, Stroke, Text
+from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.notes import MadeFrom
+from tactcad.drawing.paper import A3, A4
+from tactcad.drawing.pdf import pdf_bytes
+from tactcad.drawing.prism import prism_plan
+from tactcad.drawing.scale import SERIES
+from tactcad.drawing.sheets import Order, all_written, part_sheet, title_of, written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
 from tactcad.export.pipeline import export
 from tactcad.parts.description import Characteristic, Extrusion, Material, Part
@@ -45,7 +45,9 @@ def orders(macro, macro_scene, macro_shapes):
     from tactcad.solids.bytes import to_bytes
 
     return {
-        p.part_no: Order(macro, p, to_bytes(macro_shapes[p.part_no]), (DXF,)) for p in macro_scene.parts if not p.bought
+        p.part_no: Order(macro, p, to_bytes(macro_shapes[p.part_no]), (DXF,))
+        for p in macro_scene.parts
+        if not p.bought
     }
 
 
@@ -65,9 +67,17 @@ def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro)
         assert drawing_faults(pdf(sheet), sheet, orders[number].part, macro.design.revision) == []
         (runs,) = pdf_runs(pdf(sheet))
         for text in (
-            number, macro.design.revision, "1/1", macro.design.date, macro.design.title, macro.design.organisation,
-            orders[number].part.name, orders[number].part.material.name, "ISO 2768-1:1989-m", "ISO 2768-2:1989-K",
-        ):  # fmt: skip
+            number,
+            macro.design.revision,
+            "1/1",
+            macro.design.date,
+            macro.design.title,
+            macro.design.organisation,
+            orders[number].part.name,
+            orders[number].part.material.name,
+            "ISO 2768-1:1989-m",
+            "ISO 2768-2:1989-K",
+        ):
             assert text in runs, (number, text)
         assert "f" * 64 in " ".join(runs) and "some_B.dxf" in " ".join(runs)
 
@@ -131,16 +141,29 @@ def test_key_characteristics_are_found_in_the_pdf_and_held_against_the_model(ord
 def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro):
     sheet, part = finished[ELEMENT], orders[ELEMENT].part
     value = next(t for t in sheet.texts if t.text.startswith("0.25 "))
-    wrong = replace(sheet, items=tuple(replace(i, text="0.26 ±0.005") if i is value else i for i in sheet.items))
-    assert any("says 0.26" in fault for fault in drawing_faults(pdf(wrong), wrong, part, macro.design.revision))
-    assert any("is not found again" in fault for fault in drawing_faults(pdf(wrong), sheet, part, macro.design.revision))
+    wrong = replace(
+        sheet, items=tuple(replace(i, text="0.26 ±0.005") if i is value else i for i in sheet.items)
+    )
+    assert any(
+        "says 0.26" in fault for fault in drawing_faults(pdf(wrong), wrong, part, macro.design.revision)
+    )
+    assert any(
+        "is not found again" in fault
+        for fault in drawing_faults(pdf(wrong), sheet, part, macro.design.revision)
+    )
     assert any("'Q' is missing" in fault for fault in drawing_faults(pdf(sheet), sheet, part, "Q"))
     other = replace(part, part_no="macro-array-other")
-    assert any("'macro-array-other' is missing" in fault for fault in drawing_faults(pdf(sheet), sheet, other, macro.design.revision))
+    assert any(
+        "'macro-array-other' is missing" in fault
+        for fault in drawing_faults(pdf(sheet), sheet, other, macro.design.revision)
+    )
     two = pdf_bytes([sheet, sheet], "t", "a")
     assert drawing_faults(two, sheet, part, macro.design.revision) == ["2 pages instead of 1"]
     scribbled = replace(sheet, items=(*sheet.items, Text(value.at, "again", 2.5)))
-    assert any("over text" in fault for fault in drawing_faults(pdf(scribbled), scribbled, part, macro.design.revision))
+    assert any(
+        "over text" in fault
+        for fault in drawing_faults(pdf(scribbled), scribbled, part, macro.design.revision)
+    )
 
 
 def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
@@ -150,15 +173,18 @@ def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     assert [written(order) for order in some[:2]] == side_by_side[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.export.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
         "done = [written(o) for o in reversed(pickle.load(open(sys.argv[1], 'rb')))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in reversed(done)))"
     )
     for seed in ("3", "99"):
         run = subprocess.run(
-            [sys.executable, "-c", script, tmp_path / "orders"], capture_output=True, text=True, check=True,
+            [sys.executable, "-c", script, tmp_path / "orders"],
+            capture_output=True,
+            text=True,
+            check=True,
             env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(tactcad.__file__).parents[1])},
-        )  # fmt: skip
+        )
         assert run.stdout.split() == [hashlib.sha256(d.pdf + d.svg).hexdigest() for d in side_by_side[:2]]
 
 
@@ -173,7 +199,9 @@ def test_a_draft_says_preliminary_and_is_no_final(orders):
 
 def test_a_part_larger_than_the_paper_is_refused(macro):
     size = 4000.0
-    part = Part("LONG", "Long", "milled", Material("6061-T6", 2700), Extrusion(rectangle(0, 0, size, 50), 10.0))
+    part = Part(
+        "LONG", "Long", "milled", Material("6061-T6", 2700), Extrusion(rectangle(0, 0, size, 50), 10.0)
+    )
     plan = prism_plan(part, macro, ())
     curves = {v.name: [Stroke(((0, 0), (size, 0)))] for v in plan.views}
     with pytest.raises(CheckFailure, match=r"LONG \(4000 x 50 mm\) finds no place on A4, A3 at 50:1 to 1:10"):
@@ -224,9 +252,22 @@ def test_export_with_drawings(tmp_path):
     (tmp_path / "d.toml").write_text(
         (HARDWARE / "macro-array.toml").read_text().replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
     )
-    command = [sys.executable, "-c", CHILD, "export", "d.toml", "--scene", "array", "--drawings", "--out", "out"]
+    command = [
+        sys.executable,
+        "-c",
+        CHILD,
+        "export",
+        "d.toml",
+        "--scene",
+        "array",
+        "--drawings",
+        "--out",
+        "out",
+    ]
     environment = {**os.environ, "PYTHONPATH": str(Path(tactcad.__file__).parents[1])}
-    first = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    first = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
     assert json.loads(first.stdout)[0] == 0, first.stderr
     manifest = read_manifest(tmp_path / "out")
     assert check_manifest((tmp_path / "out").resolve()) == []
@@ -234,7 +275,9 @@ def test_export_with_drawings(tmp_path):
     files = {f.path: f for f in manifest.files}
     drawings = [f for f in manifest.files if f.kind == "drawing" and f.part_no]
     revision = manifest.revision
-    assert {f.path for f in drawings} == {f"drawings/{n}_{revision}.{e}" for n in made for e in ("pdf", "svg")}
+    assert {f.path for f in drawings} == {
+        f"drawings/{n}_{revision}.{e}" for n in made for e in ("pdf", "svg")
+    }
     for f in drawings:
         if f.path.endswith(".pdf"):
             text = " ".join(pdf_runs((tmp_path / "out" / f.path).read_bytes())[0])
@@ -244,7 +287,9 @@ def test_export_with_drawings(tmp_path):
             for source in model + ([cut] if cut else []):
                 assert source.sha256 in text and Path(source.path).name in text
             assert sha256_of((tmp_path / "out" / f.path).read_bytes()) == f.sha256
-    again = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    again = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+    )
     status, loaded = json.loads(again.stdout)
     assert status == 0 and "nothing was rebuilt" in again.stderr
     assert not {"OCP", "build123d", "numpy", "reportlab", "pypdf", "matplotlib"} & set(loaded)
@@ -260,7 +305,7 @@ VARIANTS = {
     "eighty": {"array.row_arms": [[4] * 40, [8] * 40]},
     "thin": {"element.hinge_thickness": 0.1, "array.row_arms": [[5, 6]]},
     "rigs": {},
-}  # fmt: skip
+}
 
 
 @pytest.mark.nightly
@@ -271,6 +316,11 @@ def test_sheets_of_other_designs_are_clean(name):
 
     design = variant(VARIANTS[name]) if name in VARIANTS else variant({}, name)
     scenes = ("array",) if VARIANTS.get(name) else scene_names(design)
-    parts = {p.part_no: p for s in scenes for p in make_scene(design, s).parts if p.process not in ("bought", "reference")}
+    parts = {
+        p.part_no: p
+        for s in scenes
+        for p in make_scene(design, s).parts
+        if p.process not in ("bought", "reference")
+    }
     made = all_written([Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()])
     assert len(made) == len(parts)

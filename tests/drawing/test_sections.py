@@ -19,16 +19,16 @@ from variants import variant
 import tactcad
 from tactcad.contour import Arc as ArcSegment
 from tactcad.contour import circle, rectangle
-from tactcad.export.drawing import compose
-from tactcad.export.drawing.gate import pdf_runs
-from tactcad.export.drawing.ink import Fill, Hatch, Stroke, Text
-from tactcad.export.drawing.layout import layout_faults
-from tactcad.export.drawing.measure import in_part
-from tactcad.export.drawing.notes import MadeFrom
-from tactcad.export.drawing.pdf import pdf_bytes
-from tactcad.export.drawing.prism import prism_plan
-from tactcad.export.drawing.sheets import Order, part_sheet, written
-from tactcad.export.drawing.svg import svg_bytes
+from tactcad.drawing import compose
+from tactcad.drawing.gate import pdf_runs
+from tactcad.drawing.ink import Fill, Hatch, Stroke, Text
+from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.measure import in_part
+from tactcad.drawing.notes import MadeFrom
+from tactcad.drawing.pdf import pdf_bytes
+from tactcad.drawing.prism import prism_plan
+from tactcad.drawing.sheets import Order, part_sheet, written
+from tactcad.drawing.svg import svg_bytes
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
 from tactcad.scenes import make_scene
 
@@ -44,7 +44,14 @@ WHOLE = ("spacer", "stop-plate", "element-a8mm", "ballast")
 
 
 def block(*features, openings=(), name="BLOCK") -> Part:
-    return Part(name, "Block", "milled", Material("6061-T6", 2700), Extrusion(rectangle(0, 0, 40, 30), 10.0, openings), features)
+    return Part(
+        name,
+        "Block",
+        "milled",
+        Material("6061-T6", 2700),
+        Extrusion(rectangle(0, 0, 40, 30), 10.0, openings),
+        features,
+    )
 
 
 def section(part: Part):
@@ -60,14 +67,25 @@ TAPPED = Hole("tapped", (32.0, 8.0, 10.0), DOWN, 3.3, 10.0, True, thread="M4", t
 BLIND = Hole("blind", (20.0, 15.0, 10.0), DOWN, 3.3, 6.0, False, drill_point=True)
 BORED = Hole("bored", (12.0, 15.0, 10.0), DOWN, 3.4, 10.0, True, (6.0, 3.3))
 POCKET = Pocket("pocket", (27.0, 15.0, 10.0), DOWN, (1.0, 0.0, 0.0), rectangle(-4, -5, 4, 5), 4.0)
-GROOVE = Pocket("groove", (20.0, 15.0, 10.0), DOWN, (1.0, 0.0, 0.0), circle((0, 0), 20), 2.0, (circle((0, 0), 16),))
+GROOVE = Pocket(
+    "groove", (20.0, 15.0, 10.0), DOWN, (1.0, 0.0, 0.0), circle((0, 0), 20), 2.0, (circle((0, 0), 16),)
+)
 
 
 @pytest.mark.parametrize(
     ("features", "at"),
-    [((), None), ((THROUGH, TAPPED), None), ((BLIND,), 20.0), ((BORED,), 12.0), ((POCKET,), 27.0), ((GROOVE,), 20.0),
-     ((THROUGH, TAPPED, BLIND), 20.0), ((BLIND, BORED), 20.0), ((GROOVE, BLIND), 20.0)],
-)  # fmt: skip
+    [
+        ((), None),
+        ((THROUGH, TAPPED), None),
+        ((BLIND,), 20.0),
+        ((BORED,), 12.0),
+        ((POCKET,), 27.0),
+        ((GROOVE,), 20.0),
+        ((THROUGH, TAPPED, BLIND), 20.0),
+        ((BLIND, BORED), 20.0),
+        ((GROOVE, BLIND), 20.0),
+    ],
+)
 def test_a_section_is_cut_through_what_is_sunk_and_through_nothing_else(features, at):
     found = section(block(*features))
     assert (found.at if found else None) == at
@@ -107,7 +125,10 @@ def orders():
     design = variant()
     scenes = [make_scene(design, name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
     parts = {p.part_no.removeprefix("macro-array-"): p for s in scenes for p in s.parts}
-    return {n: Order(design, parts[n], to_bytes(build(parts[n]).wrapped), (DXF,)) for n in (*CUT, ACROSS_Y, *WHOLE)}
+    return {
+        n: Order(design, parts[n], to_bytes(build(parts[n]).wrapped), (DXF,))
+        for n in (*CUT, ACROSS_Y, *WHOLE)
+    }
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +160,9 @@ def test_plain_parts_have_none(sheets):
 
 
 def polygon(contour) -> list[tuple[float, float]]:
-    return [s.at(i / n) for s in contour for n in (4000 if isinstance(s, ArcSegment) else 1,) for i in range(n)]
+    return [
+        s.at(i / n) for s in contour for n in (4000 if isinstance(s, ArcSegment) else 1,) for i in range(n)
+    ]
 
 
 def length_at(contour, k: int, x: float) -> float:
@@ -147,7 +170,9 @@ def length_at(contour, k: int, x: float) -> float:
     x += 1.234e-10
     points = [(p[k], p[1 - k]) for p in polygon(contour)]
     sides = zip(points, points[1:] + points[:1])
-    ys = sorted(a[1] + (x - a[0]) * (b[1] - a[1]) / (b[0] - a[0]) for a, b in sides if (a[0] < x) != (b[0] < x))
+    ys = sorted(
+        a[1] + (x - a[0]) * (b[1] - a[1]) / (b[0] - a[0]) for a, b in sides if (a[0] < x) != (b[0] < x)
+    )
     return sum(high - low for low, high in zip(ys[::2], ys[1::2]))
 
 
@@ -181,7 +206,9 @@ def test_the_hatching_has_the_area_of_the_cut_part(number, orders, sheets):
     sheet, f = sheets[number], scale_of(sheets[number])
     meant = area_at(orders[number].part, number == ACROSS_Y, plane_of(orders[number]))
     loops = face_of(sheet).loops
-    enclosed = [abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise([*loop, loop[0]]))) / 2 for loop in loops]
+    enclosed = [
+        abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise([*loop, loop[0]]))) / 2 for loop in loops
+    ]
     inner = [any(Hatch((other,)).holds(loop[0]) for other in loops if other is not loop) for loop in loops]
     assert sum(-a if i else a for a, i in zip(enclosed, inner)) / f**2 == pytest.approx(meant, rel=1e-5)
     lines = svg_hatching(sheet)
@@ -237,7 +264,11 @@ def test_a_cut_thread_is_drawn_as_iso_6410_says(sheets):
     assert sorted(round(a[0] - axis, 3) for a, _ in upright) == [-15.0, 15.0]
     assert all(dist(a, b) == pytest.approx(50.0) for a, b in upright)
     end = min(p[1] for line in upright for p in line)
-    thick = [s.points for s in strokes if s.line.width == 0.5 and all(isclose(p[1], end, abs_tol=1e-6) for p in s.points)]
+    thick = [
+        s.points
+        for s in strokes
+        if s.line.width == 0.5 and all(isclose(p[1], end, abs_tol=1e-6) for p in s.points)
+    ]
     assert [sorted(round(p[0] - axis, 3) for p in line) for line in thick] == [[-15.0, 15.0]]
     beside = [abs(x - axis) for chord in face_of(sheet).chords() for x, y in chord if y > end]
     assert min(beside) == pytest.approx(12.5, abs=1e-3)
@@ -260,7 +291,9 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
     """Thick ends outside the front view's outline at the plane, arrows to the right: what is seen from the left stands there."""
     for number in CUT:
         order, sheet, f = orders[number], sheets[number], scale_of(sheets[number])
-        ends = [i for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5]
+        ends = [
+            i for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5
+        ]
         heads = [i for i in sheet.items if isinstance(i, Fill) and i.role == "cutting"]
         assert len(ends) == len(heads) == 2
         (x,) = {round(p[0], 6) for end in ends for p in end.points}
@@ -272,7 +305,9 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
         # the front view's outline is where the plane says that it is
         edges = [c for i in sheet.items if isinstance(i, Stroke) and i.role == "outline" for c in i.chords()]
         if order.part.body.outer.as_circle() is None:
-            assert [1 for a, b in edges if isclose(a[0], left, abs_tol=1e-6) and isclose(b[0], left, abs_tol=1e-6)], number
+            assert [
+                1 for a, b in edges if isclose(a[0], left, abs_tol=1e-6) and isclose(b[0], left, abs_tol=1e-6)
+            ], number
         for head in heads:
             tip, *back = head.points
             assert all(p[0] < tip[0] for p in back) and tip[0] == pytest.approx(x, abs=0.3)
@@ -284,13 +319,17 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
 def test_a_plane_across_y_is_seen_from_the_free_side(orders, sheets):
     """The bar has its end view below the front view: the section is seen from below, so it stands above (first angle)."""
     sheet, f = sheets[ACROSS_Y], scale_of(sheets[ACROSS_Y])
-    ends = [i.points for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5]
+    ends = [
+        i.points for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5
+    ]
     heads = [i.points for i in sheet.items if isinstance(i, Fill) and i.role == "cutting"]
     (y,) = {round(p[1], 6) for end in ends for p in end}
     x0, y0, x1, y1 = orders[ACROSS_Y].part.body.outer.box
     left, right = sorted(p[0] for end in ends for p in end)[1:3]
     assert right - left == pytest.approx((x1 - x0) * f + 3.0)
-    assert len(heads) == 2 and all(tip[1] > p[1] and tip[1] == pytest.approx(y, abs=0.3) for tip, *back in heads for p in back)
+    assert len(heads) == 2 and all(
+        tip[1] > p[1] and tip[1] == pytest.approx(y, abs=0.3) for tip, *back in heads for p in back
+    )
     xs, ys = zip(*(p for loop in face_of(sheet).loops for p in loop))
     assert (min(xs), max(xs)) == pytest.approx((left + 1.5, right - 1.5))  # in line with the front view
     assert min(ys) > y + f * (y1 - plane_of(orders[ACROSS_Y]))
@@ -311,13 +350,17 @@ def test_equal_bytes_in_other_processes(orders, tmp_path):
     here = [hashlib.sha256(w.pdf + w.svg).hexdigest() for w in map(written, some)]
     (tmp_path / "orders").write_bytes(pickle.dumps(some))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.export.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
         "done = [written(o) for o in pickle.load(open(sys.argv[1], 'rb'))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in done))"
     )
     environment = {**os.environ, "PYTHONHASHSEED": "5", "PYTHONPATH": str(Path(tactcad.__file__).parents[1])}
     run = subprocess.run(
-        [sys.executable, "-c", script, tmp_path / "orders"], capture_output=True, text=True, check=True, env=environment
+        [sys.executable, "-c", script, tmp_path / "orders"],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=environment,
     )
     assert run.stdout.split() == here
 
@@ -342,17 +385,33 @@ def test_a_radius_is_called_out_from_its_own_side(orders, sheets):
     (tip, elbow), _ = leaders_of(sheets["holder-body"])["8× R5"]
     f, order = scale_of(sheets["holder-body"]), orders["holder-body"]
     plenum = next(c for c in order.part.features if c.name == "plenum")
-    ends = sorted(p for i in sheets["holder-body"].items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5 for p in i.points)
-    (x, low), (_, high) = ends[1:3]  # the plane goes through the plenum's middle, and stands out as far above as below
+    ends = sorted(
+        p
+        for i in sheets["holder-body"].items
+        if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5
+        for p in i.points
+    )
+    (x, low), (_, high) = ends[
+        1:3
+    ]  # the plane goes through the plenum's middle, and stands out as far above as below
     middle = (x, (low + high) / 2)
     hole = Hatch((tuple((middle[0] + f * x, middle[1] + f * y) for x, y in polygon(plenum.contour)),))
-    assert not [k for k in range(2, 100) if hole.holds((tip[0] + (elbow[0] - tip[0]) * k / 100, tip[1] + (elbow[1] - tip[1]) * k / 100))]
+    assert not [
+        k
+        for k in range(2, 100)
+        if hole.holds((tip[0] + (elbow[0] - tip[0]) * k / 100, tip[1] + (elbow[1] - tip[1]) * k / 100))
+    ]
     assert min(dist(tip, side[0]) for side in hole.outlines()) < 0.1
 
 
 def test_no_leader_runs_along_another_line(sheets):
     for number, sheet in sheets.items():
-        others = [c for i in sheet.items if isinstance(i, Stroke) and i.role in ("centre", "extension", "outline", "dimension") for c in i.chords()]
+        others = [
+            c
+            for i in sheet.items
+            if isinstance(i, Stroke) and i.role in ("centre", "extension", "outline", "dimension")
+            for c in i.chords()
+        ]
         for text, lines in leaders_of(sheet).items():
             for (ax, ay), (bx, by) in lines[:1]:
                 length = hypot(bx - ax, by - ay)

@@ -14,22 +14,34 @@ import pytest
 from pypdf import PdfReader
 
 from tactcad.design.messages import CheckFailure
-from tactcad.export.drawing import fonts
-from tactcad.export.drawing.ink import Arc, Sheet, Stroke, Text, arrow, preliminary
-from tactcad.export.drawing.layout import layout_faults
-from tactcad.export.drawing.paper import A3, A4, frame
-from tactcad.export.drawing.pdf import pdf_bytes
-from tactcad.export.drawing.svg import svg_bytes
-from tactcad.export.drawing.title import TitleBlock, notes, table, title_block, wrapped
+from tactcad.drawing import fonts
+from tactcad.drawing.ink import Arc, Sheet, Stroke, Text, arrow, preliminary
+from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.paper import A3, A4, frame
+from tactcad.drawing.pdf import pdf_bytes
+from tactcad.drawing.svg import svg_bytes
+from tactcad.drawing.title import TitleBlock, notes, table, title_block, wrapped
 
 SIGNS = "0.25 ±0.005 ⌀3.4 ↧8 R0.3 Ra 0.8 µm 45° 4×"
 
 
 def block(**changes) -> TitleBlock:
     usual = dict(
-        legal_owner="Owner & Co", number="x-element-a4mm", revision="B", date="2026-11-21", title="Sensing element",
-        supplementary="An array", creator="A. Author", document_type="Part drawing", status="released", scale="5:1",
-        sheet=2, sheets=7, material="7075-T6", mass=1.66, finish="Ra 1.6",
+        legal_owner="Owner & Co",
+        number="x-element-a4mm",
+        revision="B",
+        date="2026-11-21",
+        title="Sensing element",
+        supplementary="An array",
+        creator="A. Author",
+        document_type="Part drawing",
+        status="released",
+        scale="5:1",
+        sheet=2,
+        sheets=7,
+        material="7075-T6",
+        mass=1.66,
+        finish="Ra 1.6",
     )
     return TitleBlock(**{**usual, **changes})
 
@@ -37,8 +49,13 @@ def block(**changes) -> TitleBlock:
 def sheet(paper=A3, **changes) -> Sheet:
     lines, _ = notes((30, 270), [SIGNS, "burr-free"], 90)
     items = (
-        *frame(paper), *title_block(paper, block(**changes)), *lines, Text((30, 150), "upright 12.5", 3.5, angle=90),
-        Stroke(((60, 150), (80, 150))), Arc((150, 150), 20, 30, 120), arrow((60, 150), (70, 150)),
+        *frame(paper),
+        *title_block(paper, block(**changes)),
+        *lines,
+        Text((30, 150), "upright 12.5", 3.5, angle=90),
+        Stroke(((60, 150), (80, 150))),
+        Arc((150, 150), 20, 30, 120),
+        arrow((60, 150), (70, 150)),
     )
     return Sheet("x-element-a4mm", "Sensing element", paper.size, items)
 
@@ -50,7 +67,9 @@ def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
         points = [float(v) * 25.4 / 72 for v in page.mediabox[2:]]
         assert points == pytest.approx(paper.size)
         runs = []
-        page.extract_text(visitor_text=lambda text, *_: runs.extend(line.strip() for line in text.splitlines()))
+        page.extract_text(
+            visitor_text=lambda text, *_: runs.extend(line.strip() for line in text.splitlines())
+        )
         wanted = [t.text for t in sheet(paper).texts]
         assert sorted(filter(None, runs)) == sorted(wanted)
 
@@ -79,7 +98,9 @@ def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
     dark = [(i % w / 5, 297 - i // w / 5) for i, v in enumerate(pixels) if v < 128]
     xs, ys = zip(*dark)
     cx, cy = zip(*text.corners())
-    assert (min(xs), max(xs), min(ys), max(ys)) == pytest.approx((min(cx), max(cx), min(cy), max(cy)), abs=0.45)
+    assert (min(xs), max(xs), min(ys), max(ys)) == pytest.approx(
+        (min(cx), max(cx), min(cy), max(cy)), abs=0.45
+    )
 
 
 def test_svg_holds_the_same_texts_at_the_same_places():
@@ -89,7 +110,9 @@ def test_svg_holds_the_same_texts_at_the_same_places():
     assert len(found) == len(sheet().texts)
     for (x, y, length, text), meant in zip(found, sheet().texts):
         assert text == meant.text.replace("&", "&amp;")
-        assert (float(x), 297 - float(y), float(length)) == pytest.approx((*meant.origin, meant.width), abs=2e-3)
+        assert (float(x), 297 - float(y), float(length)) == pytest.approx(
+            (*meant.origin, meant.width), abs=2e-3
+        )
 
 
 def test_equal_bytes_in_two_processes_with_other_hash_seeds():
@@ -101,11 +124,14 @@ def test_equal_bytes_in_two_processes_with_other_hash_seeds():
     here = Path(__file__).parent
     seen = {
         subprocess.run(
-            [sys.executable, "-c", script, str(here), str(here.parent)], capture_output=True, text=True, check=True,
+            [sys.executable, "-c", script, str(here), str(here.parent)],
+            capture_output=True,
+            text=True,
+            check=True,
             env={**os.environ, "PYTHONHASHSEED": seed, "TZ": zone},
         ).stdout.strip()
         for seed, zone in (("1", "UTC"), ("77", "Asia/Tokyo"))
-    }  # fmt: skip
+    }
     assert seen == {hashlib.sha256(pdf_bytes([sheet()], "t", "a") + svg_bytes(sheet())).hexdigest()}
 
 
@@ -120,11 +146,15 @@ def test_a_draft_says_so_and_stays_clean():
 @pytest.mark.parametrize(
     "changes",
     [
-        {}, {"title": "A long title of a part that fills more than its own line"}, {"mass": None},
+        {},
+        {"title": "A long title of a part that fills more than its own line"},
+        {"mass": None},
         {"number": "a-rather-long-design-name-element-a12.345mm-t0.123mm"},
-        {"finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face around it Ra 0.8"},
+        {
+            "finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face around it Ra 0.8"
+        },
     ],
-)  # fmt: skip
+)
 def test_title_block_fits_its_cells(paper, changes):
     assert layout_faults(sheet(paper, **changes)) == []
 

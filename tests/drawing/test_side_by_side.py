@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.export.bom import bom_rows
-from tactcad.export.drawing import family, numbered
-from tactcad.export.drawing.assembly import assembly_sheets
-from tactcad.export.drawing.assembly_file import assembly_faults
-from tactcad.export.drawing.pdf import pdf_bytes
+from tactcad.drawing import family, numbered
+from tactcad.drawing.assembly import assembly_sheets
+from tactcad.drawing.assembly_file import assembly_faults
+from tactcad.drawing.pdf import pdf_bytes
 from tactcad.scenes import make_scene
+from tactcad.scenes.bom import bom_rows
 
 AREA = (25.0, 74.0, 405.0, 274.0)
 
@@ -42,7 +42,14 @@ def test_every_part_at_its_scale_inside_the_sheet_and_clear_of_the_others(seed):
         assert b[1] - b[0] == pytest.approx([a * f, a * f])
         assert max(part.scale) in (1, 2, 5, 10, 20, 50) and min(part.scale) == 1
         above, below = part.balloon.centre[1] + 4.5, part.below[1]
-        boxes.append(np.array([[min(b[0, 0], part.balloon.centre[0] - 4.5), below], [max(b[1, 0], part.balloon.centre[0] + 4.5), above]]))
+        boxes.append(
+            np.array(
+                [
+                    [min(b[0, 0], part.balloon.centre[0] - 4.5), below],
+                    [max(b[1, 0], part.balloon.centre[0] + 4.5), above],
+                ]
+            )
+        )
         assert (boxes[-1][0] >= AREA[:2]).all() and (boxes[-1][1] <= AREA[2:]).all() and below < b[0, 1]
     assert not any((np.minimum(a[1], b[1]) > np.maximum(a[0], b[0])).all() for a, b in combinations(boxes, 2))
     # none is dwarfed: between two neighbours of the series lies a factor of 2.5 at most
@@ -66,7 +73,14 @@ def test_where_no_exploded_view_finds_room_the_sheets_are_complete_all_the_same(
     scene = make_scene(design, "array")
     rows = bom_rows(scene, design.design.revision, {})
     sheets = assembly_sheets(design, scene, rows, {part.part_no: build(part).wrapped for part in scene.parts})
-    assert assembly_faults(pdf_bytes(sheets, "x", "y"), f"{design.name}-array", design.design.revision, rows) == []
+    assert (
+        assembly_faults(pdf_bytes(sheets, "x", "y"), f"{design.name}-array", design.design.revision, rows)
+        == []
+    )
     texts = [t for t in sheets[1].texts if re.fullmatch(r"\d+:\d+", t.text)]
     main = [t.text for t in texts if t.role == "table"]
-    assert len(main) == 1 and {t.text for t in texts if t.role != "table"} and main[0] not in {t.text for t in texts if t.role != "table"}
+    assert (
+        len(main) == 1
+        and {t.text for t in texts if t.role != "table"}
+        and main[0] not in {t.text for t in texts if t.role != "table"}
+    )

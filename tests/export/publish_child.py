@@ -11,7 +11,16 @@ import sys
 
 from tactcad.export.publish import locked, new_build
 
-CHANGES = {"os.rename", "os.mkdir", "os.symlink", "os.remove", "os.rmdir", "open", "os.truncate", "fcntl.flock"}
+CHANGES = {
+    "os.rename",
+    "os.mkdir",
+    "os.symlink",
+    "os.remove",
+    "os.rmdir",
+    "open",
+    "os.truncate",
+    "fcntl.flock",
+}
 
 
 def export(directory: str, content: str) -> None:

@@ -10,7 +10,9 @@ from dataclasses import replace
 import pytest
 
 from tactcad.contour import circle, rectangle
-from tactcad.export.bom import (
+from tactcad.parts.consumables import Supply
+from tactcad.parts.description import Extrusion, Material, Part, Purchase
+from tactcad.scenes.bom import (
     COLUMNS,
     bom_rows,
     check_bom,
@@ -20,20 +22,51 @@ from tactcad.export.bom import (
     rows_from_csv,
     rows_from_json,
 )
-from tactcad.parts.consumables import Supply
-from tactcad.parts.description import Extrusion, Material, Part, Purchase
 from tactcad.scenes.scene import Placement, Scene
 
 # The columns that fabrication practice asks for, in its order, then ours.
-ASKED = ["item", "part_no", "rev", "qty", "unit", "description", "make_buy", "material", "process", "finish", "standard_designation", "manufacturer", "mpn", "supplier", "alternates", "spares", "consumable", "file", "sha256", "mass_g", "source_verified", "designators", "has_solid"]
+ASKED = [
+    "item",
+    "part_no",
+    "rev",
+    "qty",
+    "unit",
+    "description",
+    "make_buy",
+    "material",
+    "process",
+    "finish",
+    "standard_designation",
+    "manufacturer",
+    "mpn",
+    "supplier",
+    "alternates",
+    "spares",
+    "consumable",
+    "file",
+    "sha256",
+    "mass_g",
+    "source_verified",
+    "designators",
+    "has_solid",
+]
 
 BLOCK = Part(
-    "X-a4", 'block, 4 "wide"', "wire-cut", Material("7075", 2810.0, "T6"), Extrusion(rectangle(0, 0, 20, 10), 3.0)
+    "X-a4",
+    'block, 4 "wide"',
+    "wire-cut",
+    Material("7075", 2810.0, "T6"),
+    Extrusion(rectangle(0, 0, 20, 10), 3.0),
 )
 PIN = Part(
-    "ISO8734-3x30", "Dowel pin 3x30", "bought", Material("steel", 7850.0), Extrusion(circle((0, 0), 3), 30.0),
-    purchase=Purchase("ISO 8734 3 m6 x 30 - A - St", alternates="DIN 6325", source_verified=True), spares=1,
-)  # fmt: skip
+    "ISO8734-3x30",
+    "Dowel pin 3x30",
+    "bought",
+    Material("steel", 7850.0),
+    Extrusion(circle((0, 0), 3), 30.0),
+    purchase=Purchase("ISO 8734 3 m6 x 30 - A - St", alternates="DIN 6325", source_verified=True),
+    spares=1,
+)
 GLUE = Supply("ADHESIVE", "gauge adhesive, kalthärtend", 1, "pack", "cyanoacrylate")
 WIRE = Supply("WIRE", "lead wire", 1.5, "m", "AWG 36")
 SCENE = Scene(
@@ -95,8 +128,18 @@ def test_the_files_by_other_readers():
     ("spoiled", "expected"),
     [
         (ROWS[1:], {"the designators are not those of the scene", "2 solids instead of 4"}),
-        (ROWS + ROWS[:1], {"the designators are not those of the scene", "6 solids instead of 4", "X-a4 stands on two lines"}),
-        ((replace(ROWS[0], qty=3), *ROWS[1:]), {"X-a4: quantity 3 with designators 'E1 E2'", "5 solids instead of 4"}),
+        (
+            ROWS + ROWS[:1],
+            {
+                "the designators are not those of the scene",
+                "6 solids instead of 4",
+                "X-a4 stands on two lines",
+            },
+        ),
+        (
+            (replace(ROWS[0], qty=3), *ROWS[1:]),
+            {"X-a4: quantity 3 with designators 'E1 E2'", "5 solids instead of 4"},
+        ),
         (
             (replace(ROWS[0], designators="E1"), *ROWS[1:]),
             {"the designators are not those of the scene", "X-a4: quantity 2 with designators 'E1'"},
@@ -116,7 +159,9 @@ def test_a_bill_that_is_not_the_scenes_is_seen(spoiled, expected):
 
 def test_bills_that_differ_or_are_damaged_are_seen():
     as_csv, as_json = written(ROWS)
-    assert check_bom(SCENE, csv_bytes((replace(ROWS[0], finish="x"), *ROWS[1:])), as_json) == ["CSV and JSON differ"]
+    assert check_bom(SCENE, csv_bytes((replace(ROWS[0], finish="x"), *ROWS[1:])), as_json) == [
+        "CSV and JSON differ"
+    ]
     for damaged in ((as_csv[:-20], as_json), (as_csv, as_json[:-20]), (b"", b"{}")):
         (said,) = check_bom(SCENE, *damaged)
         assert said.startswith("not readable as a bill of materials: ")

@@ -131,7 +131,11 @@ def entries(cache: Cache) -> dict[str, int]:
 
 def used(cache: Cache, key: str, seconds: float) -> None:
     """As if the entry had last been used at that time."""
-    (path,) = (p for p in cache.root.rglob("*") if p.is_file() and p.read_bytes().endswith(b"\n" + key.encode() * 1000))
+    (path,) = (
+        p
+        for p in cache.root.rglob("*")
+        if p.is_file() and p.read_bytes().endswith(b"\n" + key.encode() * 1000)
+    )
     os.utime(path, (seconds, seconds))
 
 

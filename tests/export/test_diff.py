@@ -27,7 +27,9 @@ REVISION = tomllib.loads(SHIPPED.read_text())["design"]["revision"]
 def thicker(tmp_path):
     """The shipped design with another hinge, as revision Z."""
     text = SHIPPED.read_text()
-    changed = text.replace("hinge_thickness = 0.15", "hinge_thickness = 0.17").replace(f'revision = "{REVISION}"', 'revision = "Z"')
+    changed = text.replace("hinge_thickness = 0.15", "hinge_thickness = 0.17").replace(
+        f'revision = "{REVISION}"', 'revision = "Z"'
+    )
     assert changed != text
     path = tmp_path / "thicker.toml"
     path.write_text(changed)
@@ -71,7 +73,11 @@ def test_a_design_and_its_golden_file(capsys):
 
 def test_json(thicker, capsys):
     record = json.loads(diff(capsys, SHIPPED, thicker, "--json"))
-    assert record["identical"] is False and record["old"]["revision"] == REVISION and record["new"]["kind"] == "design"
+    assert (
+        record["identical"] is False
+        and record["old"]["revision"] == REVISION
+        and record["new"]["kind"] == "design"
+    )
     [change] = [c for c in record["changes"] if c["path"] == ["values", "element.hinge_thickness"]]
     assert (change["kind"], change["old"], change["new"]) == ("changed", 0.15, 0.17)
 
@@ -80,7 +86,9 @@ def test_a_small_value_of_the_design_counts_in_every_digit(tmp_path, capsys):
     text = SHIPPED.read_text()
     for name, value in (("a", "-17e-6"), ("b", "-17.5e-6")):
         lines = re.sub(r"(?m)^resistance_per_kelvin.*\n", "", text)
-        (tmp_path / f"{name}.toml").write_text(lines.replace("[gauge]\n", f"[gauge]\nresistance_per_kelvin = {value}\n"))
+        (tmp_path / f"{name}.toml").write_text(
+            lines.replace("[gauge]\n", f"[gauge]\nresistance_per_kelvin = {value}\n")
+        )
     out = diff(capsys, tmp_path / "a.toml", tmp_path / "b.toml")
     assert out.count("changed") == 1 and "gauge.resistance_per_kelvin" in out
 
@@ -100,7 +108,9 @@ def test_the_page_needs_nothing_else_and_shows_values_and_contours(thicker, tmp_
     text = out.read_text()
     assert_offline(text)
     assert "element.hinge_thickness" in text and "soft-tissue-element-a9mm" in text
-    assert text.count('<path class="old"') == text.count('<path class="new"') == 4  # two parts, whole and enlarged
+    assert (
+        text.count('<path class="old"') == text.count('<path class="new"') == 4
+    )  # two parts, whole and enlarged
 
 
 def test_hostile_text_stays_text():
@@ -119,7 +129,9 @@ def test_drawn_arcs_are_the_contour_s():
         points.append((float(x), float(y)))
         assert float(rx) == 2.0 and turn == "0"  # counter-clockwise seen with y up is sweep 0 with y down
     assert len(points) == 5 and all(dist(p, (3.0, -2.0)) == pytest.approx(2.0, abs=1e-6) for p in points)
-    assert _path([rectangle(1, 1, 2, 3)]).startswith("M1.000000,-1.000000L2.000000,-1.000000L2.000000,-3.000000")
+    assert _path([rectangle(1, 1, 2, 3)]).startswith(
+        "M1.000000,-1.000000L2.000000,-1.000000L2.000000,-3.000000"
+    )
 
 
 @pytest.mark.cad

@@ -21,7 +21,16 @@ ALUMINIUM = Material("7075", 2810.0)
 
 def rounded(x0: float, y0: float, scale: float) -> Contour:
     """Slotted outline with convex and concave fillets, none of its coordinates a short decimal."""
-    corners = [(0, 0, 0.3), (20 / 3, 0, 0), (20 / 3, 8, 0.7), (3, 8, 0), (3, 4, 0.5), (2, 4, 0.5), (2, 8, 0), (0, 8, 0.1)]
+    corners = [
+        (0, 0, 0.3),
+        (20 / 3, 0, 0),
+        (20 / 3, 8, 0.7),
+        (3, 8, 0),
+        (3, 4, 0.5),
+        (2, 4, 0.5),
+        (2, 8, 0),
+        (0, 8, 0.1),
+    ]
     return rounded_polygon([Corner((x0 + x * scale, y0 + y * scale), r * scale) for x, y, r in corners])
 
 
@@ -89,7 +98,9 @@ def ends(entity: dict[str, str]) -> list[tuple[float, float]]:
     if entity["type"] == "LINE":
         return [(float(entity["10"]), float(entity["20"])), (float(entity["11"]), float(entity["21"]))]
     x, y, r = (float(entity[code]) for code in ("10", "20", "40"))
-    return [(x + r * cos(radians(float(entity[c]))), y + r * sin(radians(float(entity[c])))) for c in ("50", "51")]
+    return [
+        (x + r * cos(radians(float(entity[c]))), y + r * sin(radians(float(entity[c])))) for c in ("50", "51")
+    ]
 
 
 def test_what_is_written_is_read_back(tmp_path, outline):
@@ -148,9 +159,13 @@ def test_equal_bytes_in_fresh_processes(tmp_path):
         environment = {**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "HOME": str(home), "LC_ALL": "C"}
         environment.pop("XDG_CACHE_HOME", None)
         run = subprocess.run(
-            [sys.executable, "-c", FRESH], cwd=os.path.dirname(__file__), env=environment,
-            capture_output=True, text=True, check=True,
-        )  # fmt: skip
+            [sys.executable, "-c", FRESH],
+            cwd=os.path.dirname(__file__),
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         digests.add(run.stdout.strip())
     assert len(digests) == 1
 
@@ -165,6 +180,7 @@ def test_header_is_metric_and_ezdxf_finds_nothing_to_repair(tmp_path):
 
 
 # Damage that the gate must see: each takes the drawing of a part and spoils it.
+
 
 def moved_end(space):
     space.query("LINE")[0].dxf.end += (0, 2e-6, 0)
@@ -265,13 +281,26 @@ def split_off(space):
 
 # what the gate says of each
 DAMAGE = {
-    moved_end: "the chain is open", moved_within_closing: "neighbours are 1e-08 mm apart", doubled: "is open",
-    lifted: "something lies off Z=0", text_added: "is a TEXT", other_layer: "layers ['0', 'CUT'] instead of CUT alone",
-    swapped_order: "the chain is open", inches: "$INSUNITS=1", imperial: "$MEASUREMENT=0", hole_lost: "0 openings instead of 1",
-    hole_grown: "area of the opening 1", everything_scaled: "length of the outline", everything_shifted: "box of the outline",
-    mirrored_extrusion: "something lies off Z=0", emptied: "the file is empty", point_line: "is open",
-    doubled_hole: "two equal entities at", newer_version: "version AC1024 instead of AC1015", split_off: "entity without length at",
-}  # fmt: skip
+    moved_end: "the chain is open",
+    moved_within_closing: "neighbours are 1e-08 mm apart",
+    doubled: "is open",
+    lifted: "something lies off Z=0",
+    text_added: "is a TEXT",
+    other_layer: "layers ['0', 'CUT'] instead of CUT alone",
+    swapped_order: "the chain is open",
+    inches: "$INSUNITS=1",
+    imperial: "$MEASUREMENT=0",
+    hole_lost: "0 openings instead of 1",
+    hole_grown: "area of the opening 1",
+    everything_scaled: "length of the outline",
+    everything_shifted: "box of the outline",
+    mirrored_extrusion: "something lies off Z=0",
+    emptied: "the file is empty",
+    point_line: "is open",
+    doubled_hole: "two equal entities at",
+    newer_version: "version AC1024 instead of AC1015",
+    split_off: "entity without length at",
+}
 
 
 @pytest.mark.parametrize("damage", DAMAGE, ids=lambda f: f.__name__)

@@ -45,12 +45,16 @@ def test_every_dimension_of_every_element_stands_once_blank_and_with_its_limits(
         own = {r["characteristic"]: r for r in rows if r["element"] == f"E{n}"}
         of = lambda name: tuple(float(own[name][k]) for k in ("nominal", "lower", "upper"))  # noqa: E731
         t, L = layout.hinge_of(n).t, arm - d.element.pad_length / 2
-        assert of("hinge thickness") == pytest.approx((t, t - d.tolerance.hinge_thickness, t + d.tolerance.hinge_thickness))
+        assert of("hinge thickness") == pytest.approx(
+            (t, t - d.tolerance.hinge_thickness, t + d.tolerance.hinge_thickness)
+        )
         assert of("load arm") == pytest.approx((L, L - d.tolerance.load_arm, L + d.tolerance.load_arm))
         assert of("sheet thickness")[0] == d.sheet.thickness
         keys = {name for name, r in own.items() if r["key"] == "yes"}
         place = layout.elements[n - 1]
-        assert keys == {c.name for c in element(layout, place).characteristics if c.key} >= {"hinge thickness"}
+        assert (
+            keys == {c.name for c in element(layout, place).characteristics if c.key} >= {"hinge thickness"}
+        )
 
 
 def test_nominals_are_what_the_contour_has(macro):
@@ -67,11 +71,18 @@ def test_nominals_are_what_the_contour_has(macro):
         assert nominal["hinge thickness"] == pytest.approx(z("slot_floor"))
         assert nominal["arm height"] == pytest.approx(z("arm_back"))
         assert nominal["stop gap"] == pytest.approx(z("ledge") - z("stop_land"))
-        pad = [p for s in body.outer for p in (s.start, s.end) if p[1] == pytest.approx(-macro.element.pad_height)]
+        pad = [
+            p
+            for s in body.outer
+            for p in (s.start, s.end)
+            if p[1] == pytest.approx(-macro.element.pad_height)
+        ]
         middle = (min(p[0] for p in pad) + max(p[0] for p in pad)) / 2
         assert nominal["load arm"] == pytest.approx((x("slot_body_wall") + x("slot_arm_wall")) / 2 - middle)
         hole = next(c for c in body.openings if c.as_circle() and abs(2 * c.as_circle()[1] - 3.015) < 1e-9)
-        assert nominal["pad height over the dowel hole's centre"] == pytest.approx(hole.centroid[1] - pad[0][1])
+        assert nominal["pad height over the dowel hole's centre"] == pytest.approx(
+            hole.centroid[1] - pad[0][1]
+        )
 
 
 def test_strength_summary_against_its_own_definitions():
@@ -84,10 +95,14 @@ def test_strength_summary_against_its_own_definitions():
         assert rated == pytest.approx(min(d.rating.force, yields / d.rating.yield_factor), rel=1e-3)
         assert float(r["yield_factor_at_rated"]) == pytest.approx(yields / rated, rel=1e-3)
         # a rigid arm: the force that closes the gap at the tip
-        closing = float(r["stiffness_N_per_mm"]) * float(r["largest_stop_gap_mm"]) * place.load_arm / place.arm
+        closing = (
+            float(r["stiffness_N_per_mm"]) * float(r["largest_stop_gap_mm"]) * place.load_arm / place.arm
+        )
         assert float(r["stop_closes_at_N"]) == pytest.approx(closing, rel=2e-3)
         stress = float(r["fillet_stress_at_overload_MPa"])
-        assert float(r["yield_factor_at_overload"]) == pytest.approx(d.material.yield_strength / stress, rel=1e-3)
+        assert float(r["yield_factor_at_overload"]) == pytest.approx(
+            d.material.yield_strength / stress, rel=1e-3
+        )
         assert closing < d.rating.overload_force and r["not_known_because"] == ""
 
 

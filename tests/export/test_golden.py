@@ -75,7 +75,9 @@ def test_it_holds_what_the_design_file_and_the_paper_say(record):
     aluminium = 2.81e-3
     assert part["mass_g"] == pytest.approx(part["volume_mm3"] * aluminium)
     placed = record["scenes"]["array"]["placed"]
-    assert sum(row["qty"] for row in record["scenes"]["array"]["bom"].values() if row["has_solid"]) == len(placed)
+    assert sum(row["qty"] for row in record["scenes"]["array"]["bom"].values() if row["has_solid"]) == len(
+        placed
+    )
 
 
 def test_it_holds_no_digest_and_reads_back(record):
@@ -124,10 +126,13 @@ def test_other_stiffness_alone_fails_but_asks_for_no_letter(record):
         (("parts", "macro-array-spacer", "volume_mm3"), lambda v: v * (1 + 5e-7), lambda v: v * (1 + 2e-6)),
         (("parts", "macro-array-spacer", "cut_length_mm"), lambda v: v + 5e-7, lambda v: v + 2e-6),
         (("elements", "E3", "stiffness_n_per_mm"), lambda v: v * (1 - 5e-7), lambda v: v * (1 - 2e-6)),
-        (("scenes", "array", "placed", "E2", "origin_mm"), lambda v: [v[0], v[1] + 5e-7, v[2]],
-         lambda v: [v[0], v[1] + 2e-6, v[2]]),
+        (
+            ("scenes", "array", "placed", "E2", "origin_mm"),
+            lambda v: [v[0], v[1] + 5e-7, v[2]],
+            lambda v: [v[0], v[1] + 2e-6, v[2]],
+        ),
     ],
-)  # fmt: skip
+)
 def test_tolerances(record, path, below, above):
     assert differences(record, edited(record, path, below)) == []
     [change] = differences(record, edited(record, path, above))

@@ -22,14 +22,18 @@ from tactcad.export.inputs import (
     library_versions,
     reasons,
     source_digest,
-)  # fmt: skip
+)
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes.scene import Placement, Scene
 
 PART = Part(
-    "E-4", "element", "wire-cut", Material("aluminium", 2810.0), Extrusion(rectangle(0, 0, 20, 8), 3.0),
+    "E-4",
+    "element",
+    "wire-cut",
+    Material("aluminium", 2810.0),
+    Extrusion(rectangle(0, 0, 20, 8), 3.0),
     features=(Hole("h", (1.0, 1.0, 0.0), (0.0, 0.0, 1.0), 3.4, 3.0, True),),
-)  # fmt: skip
+)
 
 WORDS = frozenset({"element", "key", "gauge", "wire", "slot"})  # its order depends on the hash seed
 
@@ -185,6 +189,8 @@ def test_a_record_survives_its_file():
     assert back.key == now.key
 
 
-@pytest.mark.parametrize("record", [None, 3, [], {}, {"values": {}}, {"values": 1, "sources": {}, "libraries": {}}])
+@pytest.mark.parametrize(
+    "record", [None, 3, [], {}, {"values": {}}, {"values": 1, "sources": {}, "libraries": {}}]
+)
 def test_a_record_that_cannot_be_understood(record):
     assert inputs_from_json(record) is None

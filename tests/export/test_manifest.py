@@ -21,7 +21,16 @@ from tactcad.export.manifest import (
 
 CONTENT = {"step/X-a4_B.step": b"ISO-10303-21;", "bom.csv": b"item\r\n"}
 PART = PartRecord(
-    "X-a4", "block", "wire-cut", 2, 600.0, 580.0, 1.686, (10.0, 5.0, 1.5), ((0.0, 0.0, 0.0), (20.0, 10.0, 3.0)), 60.0
+    "X-a4",
+    "block",
+    "wire-cut",
+    2,
+    600.0,
+    580.0,
+    1.686,
+    (10.0, 5.0, 1.5),
+    ((0.0, 0.0, 0.0), (20.0, 10.0, 3.0)),
+    60.0,
 )
 MANIFEST = Manifest(
     "macro",
@@ -58,8 +67,17 @@ def test_the_names_that_others_rely_on(folder):
     assert {"schema", "design", "revision", "files", "parts"} <= set(record)
     assert set(record["files"][0]) == {"path", "kind", "part_no", "revision", "sha256"}
     assert set(record["parts"][0]) >= {
-        "part_no", "name", "process", "qty", "volume_mm3", "area_mm2", "mass_g", "centre_mm", "box_mm", "cut_length_mm",
-    }  # fmt: skip
+        "part_no",
+        "name",
+        "process",
+        "qty",
+        "volume_mm3",
+        "area_mm2",
+        "mass_g",
+        "centre_mm",
+        "box_mm",
+        "cut_length_mm",
+    }
 
 
 def test_digests_are_those_of_sha256sum(folder):

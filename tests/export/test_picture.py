@@ -12,8 +12,8 @@ from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.export import picture, windows
-from tactcad.export.picture import VIEWS, Drawing, check_picture, drawing, svg
+from tactcad.drawing import picture, windows
+from tactcad.drawing.picture import VIEWS, Drawing, check_picture, drawing, svg
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement
@@ -63,7 +63,9 @@ def test_a_bore_shows_from_its_own_side_only():
 
 
 def test_curves_are_drawn_to_a_hundredth():
-    drawn, _ = shown([Placement("A", Part("R", "r", "turned", STEEL, Extrusion(circle((0, 0), 20), 3)))], SIDE)
+    drawn, _ = shown(
+        [Placement("A", Part("R", "r", "turned", STEEL, Extrusion(circle((0, 0), 20), 3)))], SIDE
+    )
     points = [p for line in drawn.sharp for p in line]
     assert all(abs(hypot(*p) - 10) < 1e-3 for p in points)
     middles = [((a[0] + b[0]) / 2, (a[1] + b[1]) / 2) for line in drawn.sharp for a, b in zip(line, line[1:])]
@@ -80,7 +82,11 @@ def test_views_look_along_right_handed_axes(view):
 
 
 def test_the_order_of_shapes_does_not_matter():
-    placements = [Placement("A", block(10, 6, 4)), Placement("B", block(3, 2, 9), (3, -4, 1)), Placement("C", block(1, 1, 1), (20, 0, 0))]
+    placements = [
+        Placement("A", block(10, 6, 4)),
+        Placement("B", block(3, 2, 9), (3, -4, 1)),
+        Placement("C", block(1, 1, 1), (20, 0, 0)),
+    ]
     assert shown(placements, VIEWS["above"])[1] == shown(placements[::-1], VIEWS["above"])[1]
 
 

@@ -37,9 +37,12 @@ print(json.dumps({"status": status, "loaded": sorted(loaded), "rooms": sorted(ro
 HEAVY = {"OCP", "build123d", "cadquery", "numpy", "scipy", "ezdxf", "matplotlib", "skfem"}
 REVISION = tomllib.loads((HARDWARE / "macro-array.toml").read_text())["design"]["revision"]
 TWO_ARMS = {"array.row_arms": [[4.0, 6.0]]}
-TWO_ARMS_TEXT = (HARDWARE / "macro-array.toml").read_text().replace(
-    "[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]"
-).split("\n[origin]\n")[0]  # fmt: skip
+TWO_ARMS_TEXT = (
+    (HARDWARE / "macro-array.toml")
+    .read_text()
+    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
+    .split("\n[origin]\n")[0]
+)
 
 
 def run(*arguments: str, cwd: Path, source: Path | None = None, **environment: str) -> tuple[dict, str]:
@@ -50,7 +53,12 @@ def run(*arguments: str, cwd: Path, source: Path | None = None, **environment: s
         **environment,
     }
     done = subprocess.run(
-        [sys.executable, "-c", CHILD, *arguments], cwd=cwd, env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", CHILD, *arguments],
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     said = json.loads(done.stdout.splitlines()[-1])
     assert said["status"] == 0 and "Traceback" not in done.stderr, done.stderr
@@ -92,12 +100,22 @@ def two_exports(tmp_path_factory):
         (home / "designs").mkdir()
         shutil.copy(HARDWARE / "macro-array.toml", home / "designs" / "paper.toml")
         said, _ = run(
-            "export", "designs/paper.toml", "--out", f"out-{seed}", cwd=home,
-            HOME=str(home), TZ=zone, LANG=language, PYTHONHASHSEED=seed, TACTCAD_CACHE=str(home / "cache"),
+            "export",
+            "designs/paper.toml",
+            "--out",
+            f"out-{seed}",
+            cwd=home,
+            HOME=str(home),
+            TZ=zone,
+            LANG=language,
+            PYTHONHASHSEED=seed,
+            TACTCAD_CACHE=str(home / "cache"),
         )
         # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room apart)
         assert "solids" in said["rooms"]
-        assert set(said["rooms"]) - {"cli", "account"} <= set(pipeline.ROOMS)  # account counts, and shapes no file
+        assert set(said["rooms"]) - {"cli", "account"} <= set(
+            pipeline.ROOMS
+        )  # account counts, and shapes no file
         folders.append(home)
     return folders
 
@@ -118,8 +136,13 @@ def test_the_export_is_what_the_contract_says(two_exports):
     assert {f["part_no"] for f in record["files"] if f["kind"] == "step-part"} == parts
     cut = {p["part_no"] for p in record["parts"] if p["cut_length_mm"] is not None}
     assert {f["part_no"] for f in record["files"] if f["kind"] == "dxf"} == cut
-    assert {p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"} < cut  # and plates, test_plate_files.py
-    solids = {p.name: sum(r["qty"] for r in json.loads(p.read_text())["rows"] if r["has_solid"]) for p in folder.glob("bom*.json")}
+    assert {
+        p["part_no"] for p in record["parts"] if p["process"] == "wire-cut"
+    } < cut  # and plates, test_plate_files.py
+    solids = {
+        p.name: sum(r["qty"] for r in json.loads(p.read_text())["rows"] if r["has_solid"])
+        for p in folder.glob("bom*.json")
+    }
     assemblies = [f["path"] for f in record["files"] if f["kind"] == "step-assembly"]
     instances = [(folder / path).read_text().count("=NEXT_ASSEMBLY_USAGE_OCCURRENCE(") for path in assemblies]
     assert sorted(solids.values()) == sorted(instances)
@@ -138,10 +161,20 @@ def test_nothing_in_the_export_names_the_machine(two_exports):
 
 def test_a_second_export_does_nothing_and_loads_nothing(two_exports):
     home = two_exports[0]
-    before = {p: p.lstat().st_mtime_ns for p in home.rglob("*") if p.name != ".out-1.lock" and "pycache" not in str(p)}
+    before = {
+        p: p.lstat().st_mtime_ns
+        for p in home.rglob("*")
+        if p.name != ".out-1.lock" and "pycache" not in str(p)
+    }
     link = os.readlink(home / "out-1")
     said, log = run(
-        "export", "designs/paper.toml", "--out", "out-1", cwd=home, HOME=str(home), TACTCAD_CACHE=str(home / "cache")
+        "export",
+        "designs/paper.toml",
+        "--out",
+        "out-1",
+        cwd=home,
+        HOME=str(home),
+        TACTCAD_CACHE=str(home / "cache"),
     )
     assert HEAVY & set(said["loaded"]) == set()
     assert "nothing was rebuilt" in log and log.count("\n") == 1
@@ -206,7 +239,10 @@ def area_of(segments: list[tuple]) -> float:
             chains.append([ends[0], *points[1:-1], ends[1]])
     outline = chains.pop(0)
     while chains:
-        gaps = [(min(hypot(c[i][0] - outline[-1][0], c[i][1] - outline[-1][1]) for i in (0, -1)), n) for n, c in enumerate(chains)]
+        gaps = [
+            (min(hypot(c[i][0] - outline[-1][0], c[i][1] - outline[-1][1]) for i in (0, -1)), n)
+            for n, c in enumerate(chains)
+        ]
         gap, n = min(gaps)
         assert gap < 1e-6, "open chain"
         nxt = chains.pop(n)
@@ -266,10 +302,14 @@ def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
     assert any("4.0 -> 4.5" in line for line in notes.lines)
     assert done.built == ("macro-array-element-a4.5mm",)
     assert set(done.made) == {
-        f"step/macro-array-element-a4.5mm_{REVISION}.step", f"dxf/macro-array-element-a4.5mm_{REVISION}.dxf", "pictures/macro-array-element-a4.5mm.svg",
-        f"step/macro-array-array_{REVISION}.step", "pictures/macro-array-array-above.svg", "pictures/macro-array-array-below.svg",
+        f"step/macro-array-element-a4.5mm_{REVISION}.step",
+        f"dxf/macro-array-element-a4.5mm_{REVISION}.dxf",
+        "pictures/macro-array-element-a4.5mm.svg",
+        f"step/macro-array-array_{REVISION}.step",
+        "pictures/macro-array-array-above.svg",
+        "pictures/macro-array-array-below.svg",
         "pictures/macro-array-array-open.svg",
-    }  # fmt: skip
+    }
     after = contents(mine)
     assert not [name for name in after if "-a4mm" in name], "the old element is gone"
     same = set(before) & set(after) - set(done.made)
@@ -295,8 +335,12 @@ def test_a_change_that_no_file_depends_on_makes_nothing(mine):
 def test_another_author_writes_headers_anew_and_builds_no_solid(mine):
     done, _ = exported(variant({**TWO_ARMS, "design.author": "J\u00f6rg"}), mine)
     assert done.built == ()
-    assert {n for n in done.made if n.startswith("step/")} == {n for n in contents(mine) if n.startswith("step/")}
-    assert all(b"J\\X2\\00F6\\X0\\rg" in data for name, data in contents(mine).items() if name.startswith("step/"))
+    assert {n for n in done.made if n.startswith("step/")} == {
+        n for n in contents(mine) if n.startswith("step/")
+    }
+    assert all(
+        b"J\\X2\\00F6\\X0\\rg" in data for name, data in contents(mine).items() if name.startswith("step/")
+    )
 
 
 def test_another_revision_is_in_every_name_and_file(mine):
@@ -313,7 +357,11 @@ def test_a_library_of_another_version_rebuilds(mine, monkeypatch):
         export_inputs.metadata, "version", lambda name: "9.9.9" if name == "ezdxf" else version(name)
     )
     done, _ = exported(variant(TWO_ARMS), mine)
-    assert len(done.reasons) == 1 and done.reasons[0].startswith("ezdxf ") and done.reasons[0].endswith("-> 9.9.9")
+    assert (
+        len(done.reasons) == 1
+        and done.reasons[0].startswith("ezdxf ")
+        and done.reasons[0].endswith("-> 9.9.9")
+    )
     assert len(done.made) == done.files - 5
 
 
@@ -323,14 +371,18 @@ def test_a_touched_source_file_of_any_room_is_a_reason(room, mine, monkeypatch):
     digest = export_inputs.source_digest
     monkeypatch.setattr(export_inputs, "source_digest", lambda r: "touched" if r == room else digest(r))
     design = variant(TWO_ARMS)
-    now = export_inputs.inputs_of({"design": design, "scenes": ("array",)}, pipeline.ROOMS, pipeline.LIBRARIES)
+    now = export_inputs.inputs_of(
+        {"design": design, "scenes": ("array",)}, pipeline.ROOMS, pipeline.LIBRARIES
+    )
     why, _ = pipeline._reasons(pipeline.published(mine), now)
     assert why == [f"source of tactcad{'.' if room else ''}{room} changed"]
 
 
 def test_a_comment_in_the_source_rebuilds_in_a_fresh_process(mine, tmp_path):
     source = tmp_path / "src"
-    shutil.copytree(Path(tactcad.__file__).parent, source / "tactcad", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        Path(tactcad.__file__).parent, source / "tactcad", ignore=shutil.ignore_patterns("__pycache__")
+    )
     (tmp_path / "two.toml").write_text(TWO_ARMS_TEXT)
     arguments = {"cwd": tmp_path, "source": source, "TACTCAD_CACHE": os.environ["TACTCAD_CACHE"]}
     _, log = run("export", "two.toml", "--scene", "array", "--out", str(mine), **arguments)

@@ -35,7 +35,10 @@ class Text:
         return re.findall(r"'((?:[^']|'')*)'", self.entities[n])
 
     def numbers(self, n: int) -> list[float]:
-        return [float(x) for x in re.findall(r"[-+]?\d*\.\d*(?:E[-+]?\d+)?", re.sub(r"'[^']*'", "", self.entities[n]))]
+        return [
+            float(x)
+            for x in re.findall(r"[-+]?\d*\.\d*(?:E[-+]?\d+)?", re.sub(r"'[^']*'", "", self.entities[n]))
+        ]
 
     def product_of(self, definition: int) -> str:
         formation = self.references(definition)[0]
@@ -55,7 +58,9 @@ class Text:
             relationship, shape_definition = self.references(shape)
             usage = next(r for r in self.references(shape_definition) if "NEXT_ASSEMBLY" in self.entities[r])
             line = self.entities[relationship]
-            operator = int(re.search(r"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION\s*\(\s*#(\d+)", line)[1])
+            operator = int(
+                re.search(r"REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION\s*\(\s*#(\d+)", line)[1]
+            )
             first, second = self.references(operator)
             matrix = self.axes(second) @ np.linalg.inv(self.axes(first))
             found[self.words(usage)[0]] = (self.product_of(self.references(usage)[1]), matrix)
@@ -158,7 +163,9 @@ def test_other_software_reads_the_assembly(macro_scene, assembly, tmp_path):
     path.write_bytes(assembly)
     solids = import_step(str(path)).solids()
     assert len(solids) == len(macro_scene.placements)
-    assert sum(s.volume for s in solids) == pytest.approx(sum(p.part.volume for p in macro_scene.placements), rel=1e-7)
+    assert sum(s.volume for s in solids) == pytest.approx(
+        sum(p.part.volume for p in macro_scene.placements), rel=1e-7
+    )
 
 
 # --- canonical text ---
@@ -169,7 +176,11 @@ def entities(text: str) -> list[tuple[int, str]]:
 
 
 def rebuilt(pairs) -> str:
-    return "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n" + "".join(f"#{n} = {body};\n" for n, body in pairs) + "ENDSEC;\n"
+    return (
+        "ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n"
+        + "".join(f"#{n} = {body};\n" for n, body in pairs)
+        + "ENDSEC;\n"
+    )
 
 
 def renumbered(pairs, number):
@@ -227,13 +238,17 @@ def move_an_instance(data: bytes) -> bytes:
     x, y, z = text.numbers(point)
     old = f"#{point}={text.entities[point]};"
     assert text.text.count(old) == 1
-    return text.text.replace(old, f"#{point}=CARTESIAN_POINT('',({x + 0.001:.6f},{y:.6f},{z:.6f}));").encode("ascii")
+    return text.text.replace(old, f"#{point}=CARTESIAN_POINT('',({x + 0.001:.6f},{y:.6f},{z:.6f}));").encode(
+        "ascii"
+    )
 
 
 SCENE_TAMPERING = {
     "an instance moved": move_an_instance,
     "a designator changed": change_first(r"OCCURRENCE\('E3','E3'", "OCCURRENCE('E33','E33'"),
-    "a product renamed": change_first(r"(PRODUCT\('macro-array-spacer',)'macro-array-spacer'", r"\1'macro-array-spacers'"),
+    "a product renamed": change_first(
+        r"(PRODUCT\('macro-array-spacer',)'macro-array-spacer'", r"\1'macro-array-spacers'"
+    ),
     "the assembly renamed": change_first(r"(PRODUCT\('macro',)'macro'", r"\1'micro'"),
     "a radius changed": change_first(r"(CYLINDRICAL_SURFACE\('',#\d+,)1\.5(\d*)\)", r"\g<1>1.4\2)"),
     "cut off": lambda data: data[: len(data) // 2],

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from tactcad.design.messages import CheckFailure
+from tactcad.drawing.extent import part_box
 from tactcad.export import step
-from tactcad.export.extent import part_box
 from tactcad.export.products import _compare_box
 from tactcad.export.step_text import Header
 
@@ -46,7 +46,9 @@ def test_two_shapes_beside_each_other_are_no_assembly(tmp_path):
         step.read_assembly((tmp_path / "two.step").read_bytes())
 
 
-@pytest.mark.parametrize("entity, found", [("PRODUCT", 2), ("NEXT_ASSEMBLY_USAGE_OCCURRENCE", 1), ("MANIFOLD_SOLID_BREP", 2)])
+@pytest.mark.parametrize(
+    "entity, found", [("PRODUCT", 2), ("NEXT_ASSEMBLY_USAGE_OCCURRENCE", 1), ("MANIFOLD_SOLID_BREP", 2)]
+)
 def test_a_part_file_has_its_entities_once(entity, found, written):
     part, data = written
     with pytest.raises(CheckFailure, match=f"has {found} {entity}, not {found - 1}"):

@@ -14,11 +14,11 @@ from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
+from tactcad.fit import fem_extremes
+from tactcad.fit.accuracy_samples import draw_range
+from tactcad.fit.fit_samples import section
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
-from tactcad.studies import fem_extremes
-from tactcad.studies.accuracy_samples import draw_range
-from tactcad.studies.fit_samples import section
 
 BOTH = pytest.mark.parametrize("two", [True, False], ids=["two", "one"])
 EPS = np.finfo(float).eps
@@ -40,7 +40,13 @@ NIGHTLY = pytest.mark.nightly
 
 @BOTH
 @pytest.mark.parametrize(
-    "t,density", [(0.02, 1), (0.05, 3), (0.2, 1), *(pytest.param(t, d, marks=NIGHTLY) for t in (0.01, 0.02) for d in (2, 3))]
+    "t,density",
+    [
+        (0.02, 1),
+        (0.05, 3),
+        (0.2, 1),
+        *(pytest.param(t, d, marks=NIGHTLY) for t in (0.01, 0.02) for d in (2, 3)),
+    ],
 )
 def test_thin_leaves_do_not_lock(t, two, density):
     """What two roots add to beam theory's leaf is a length in thicknesses, the same for every thin leaf.
@@ -85,7 +91,14 @@ def test_angles_stay_open_over_the_whole_range():
 def test_fillets_many_times_the_thickness_do_not_fold_the_mesh(ratio, two):
     """Beside angles: the coarse mesh meets the limit, and the thin notch's own exact limit is near."""
     t = 0.05
-    s = REFERENCE.with_(two_sided=two, hinge_thickness=t, fillet_radius=ratio * t, hinge_length=2 * ratio * t + 0.3, arm_height=4.0, body_height=6.0)
+    s = REFERENCE.with_(
+        two_sided=two,
+        hinge_thickness=t,
+        fillet_radius=ratio * t,
+        hinge_length=2 * ratio * t + 0.3,
+        arm_height=4.0,
+        body_height=6.0,
+    )
     shape = reference_shape(s)
     smallest, largest = corner_angles(plane_mesh(shape, 3))
     assert smallest > 20.0 and largest < 160.0
@@ -126,7 +139,7 @@ def test_jaw_sized_solid_is_the_large_one_over_25():
         (dict(hinge_thickness=np.nan), "not a finite number"),
     ],
     ids=["no slot", "sharp", "slot of twice the arm", "over-round", "no arm", "incompressible", "nan"],
-)  # fmt: skip
+)
 def test_what_elements_cannot_solve_they_refuse_by_name(change, reason, rung):
     with pytest.raises(CheckFailure, match=reason):
         elements.stiffness(REFERENCE.with_(**change), rung)
@@ -152,13 +165,37 @@ def test_full_round_is_the_limit_of_a_short_straight_part(two):
 @pytest.mark.parametrize(
     "change",
     [
-        dict(load_arm=0.5, hinge_length=0.2, fillet_radius=0.05, hinge_thickness=0.05, arm_height=0.4, body_height=0.8, body_length=0.8),
-        dict(load_arm=100.0, hinge_length=15.0, fillet_radius=3.0, hinge_thickness=5.0, arm_height=40.0, body_height=80.0, body_length=80.0),
-        dict(hinge_thickness=2.0, hinge_length=6.0, fillet_radius=1.0, load_arm=40.0, arm_height=12.0, body_height=24.0, body_length=24.0),
+        dict(
+            load_arm=0.5,
+            hinge_length=0.2,
+            fillet_radius=0.05,
+            hinge_thickness=0.05,
+            arm_height=0.4,
+            body_height=0.8,
+            body_length=0.8,
+        ),
+        dict(
+            load_arm=100.0,
+            hinge_length=15.0,
+            fillet_radius=3.0,
+            hinge_thickness=5.0,
+            arm_height=40.0,
+            body_height=80.0,
+            body_length=80.0,
+        ),
+        dict(
+            hinge_thickness=2.0,
+            hinge_length=6.0,
+            fillet_radius=1.0,
+            load_arm=40.0,
+            arm_height=12.0,
+            body_height=24.0,
+            body_length=24.0,
+        ),
         dict(hinge_thickness=0.02, fillet_radius=0.1, hinge_length=0.5, arm_height=1.4, body_height=3.0),
     ],
     ids=["arm 0.5 mm", "arm 100 mm", "hinge 2 mm", "hinge 0.02 mm"],
-)  # fmt: skip
+)
 def test_extreme_hinges_by_elements_and_by_the_closed_form(change, two):
     s = REFERENCE.with_(two_sided=two, **change)
     found = converged_plane(reference_shape(s), *material(s))
@@ -168,9 +205,18 @@ def test_extreme_hinges_by_elements_and_by_the_closed_form(change, two):
 
 def test_picture_has_its_four_panels():
     few = fem_extremes.Extremes(
-        tuple(fem_extremes.thin(t, two, d) for two in (True, False) for d in fem_extremes.DENSITIES for t in (0.2, 0.5)),
+        tuple(
+            fem_extremes.thin(t, two, d)
+            for two in (True, False)
+            for d in fem_extremes.DENSITIES
+            for t in (0.2, 0.5)
+        ),
         tuple(fem_extremes.refined(True, (1, 2)) + fem_extremes.refined(False, (1, 2))),
         tuple(fem_extremes.angles(2, 1)),
     )
     text = fem_extremes.picture(few)
-    assert text == fem_extremes.picture(few) and text.startswith("<svg") and text.count("<g id=\"fem-extremes-axes_") == 4
+    assert (
+        text == fem_extremes.picture(few)
+        and text.startswith("<svg")
+        and text.count('<g id="fem-extremes-axes_') == 4
+    )

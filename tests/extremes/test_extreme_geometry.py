@@ -29,48 +29,134 @@ LONG = [4.0, 5, 6, 7, 8]
 WHOLE = {
     "hinge 0.02 mm": {"element.hinge_thickness": 0.02, "rating.overload_force": 5.0},
     "hinge 2 mm": {"element.hinge_thickness": 2.0},
-    "slot of its fillets alone": {"element.hinge_length": 0.3, "element.fillet_radius": 0.15, "calibration.travel": 0.1},
+    "slot of its fillets alone": {
+        "element.hinge_length": 0.3,
+        "element.fillet_radius": 0.15,
+        "calibration.travel": 0.1,
+    },
     "full round": {"element.fillet_radius": 0.44},
     "arm 0.5 mm": {
-        "array.row_arms": [[0.5, 0.5]], "array.row_pitch": 0.4, "element.pad_length": 0.1, "element.pad_height": 0.3,
-        "element.hinge_length": 0.2, "element.fillet_radius": 0.05, "element.hinge_thickness": 0.05,
-        "element.pad_root_radius": 0.05, "element.corner_radius": 0.05, "element.arm_height": 0.4,
-        "element.body_height": 0.6, "element.recess_depth": 0.25, "element.seat_length": 4.0, "gauge.carrier_arm_side": 0.12,
-        "gauge.grid_length": 0.1, "stop.land_length": 0.06, "stop.tolerance": 0.001, "clamp.stop_plate_thickness": 4.4,
+        "array.row_arms": [[0.5, 0.5]],
+        "array.row_pitch": 0.4,
+        "element.pad_length": 0.1,
+        "element.pad_height": 0.3,
+        "element.hinge_length": 0.2,
+        "element.fillet_radius": 0.05,
+        "element.hinge_thickness": 0.05,
+        "element.pad_root_radius": 0.05,
+        "element.corner_radius": 0.05,
+        "element.arm_height": 0.4,
+        "element.body_height": 0.6,
+        "element.recess_depth": 0.25,
+        "element.seat_length": 4.0,
+        "gauge.carrier_arm_side": 0.12,
+        "gauge.grid_length": 0.1,
+        "stop.land_length": 0.06,
+        "stop.tolerance": 0.001,
+        "clamp.stop_plate_thickness": 4.4,
     },
     "arm 100 mm": {"array.row_arms": [[100.0]]},
     "arms of 4 and 100 mm": {"array.row_arms": [[4.0, 100.0]], "clamp.hold_down_pitch": 100.0},
     "1 x 1": {"array.row_arms": [[4.0]]},
     "2 x 20": {"array.row_arms": [LONG * 4] * 2},
-    "foil of 0.1 mm": {"sheet.thickness": 0.1, "array.pitch": 1.1, "gauge.carrier_width": 0.1, "gauge.grid_width": 0.1, "rating.overload_force": 5.0},
+    "foil of 0.1 mm": {
+        "sheet.thickness": 0.1,
+        "array.pitch": 1.1,
+        "gauge.carrier_width": 0.1,
+        "gauge.grid_width": 0.1,
+        "rating.overload_force": 5.0,
+    },
     "block of 20 mm": {"sheet.thickness": 20.0, "array.pitch": 21.0},
-}  # fmt: skip
+}
 
 # name -> what is changed, and the field, value and legal range that the refusal must name
 REFUSED = {
-    "slot of zero length": ({"element.hinge_length": 0.0}, "element.hinge_length", "0.0", "from 0.01 to 50 mm"),
-    "slot of its least length": (
-        {"element.hinge_length": 0.01, "element.fillet_radius": 0.005}, "stop.tolerance", "0.01", "less",
+    "slot of zero length": (
+        {"element.hinge_length": 0.0},
+        "element.hinge_length",
+        "0.0",
+        "from 0.01 to 50 mm",
     ),
-    "slot longer than the arm": ({"element.hinge_length": 9.0}, "array.row_arms[0][0]", "4.0", "at least pad_length"),
-    "fillets a nanometre over the full round": ({"element.fillet_radius": 0.44 + 1e-6}, "element.fillet_radius", "0.440001", "at most"),
-    "arm 0.5 mm behind the usual pad": ({"array.row_arms": [[0.5]]}, "array.row_arms[0][0]", "0.5", "at least pad_length"),
+    "slot of its least length": (
+        {"element.hinge_length": 0.01, "element.fillet_radius": 0.005},
+        "stop.tolerance",
+        "0.01",
+        "less",
+    ),
+    "slot longer than the arm": (
+        {"element.hinge_length": 9.0},
+        "array.row_arms[0][0]",
+        "4.0",
+        "at least pad_length",
+    ),
+    "fillets a nanometre over the full round": (
+        {"element.fillet_radius": 0.44 + 1e-6},
+        "element.fillet_radius",
+        "0.440001",
+        "at most",
+    ),
+    "arm 0.5 mm behind the usual pad": (
+        {"array.row_arms": [[0.5]]},
+        "array.row_arms[0][0]",
+        "0.5",
+        "at least pad_length",
+    ),
     "arm of zero length": ({"array.row_arms": [[0.0]]}, "array.row_arms[0][0]", "0.0", "from 0.1 to 100 mm"),
     "2 x 501": ({"array.row_arms": [[4.0] * 501] * 2}, "array.row_arms[0]", "501", "1 to 500"),
     "three rows": ({"array.row_arms": [[4.0]] * 3}, "array.row_arms", "3 rows", "one or two rows"),
-    "modulus in GPa": ({"material.youngs_modulus": 71.0}, "material.youngs_modulus", "71.0", "from 1000 to 1e+06 MPa"),
-    "modulus in Pa": ({"material.youngs_modulus": 71e9}, "material.youngs_modulus", "71000000000.0", "from 1000"),
-    "strength in Pa": ({"material.yield_strength": 5e8}, "material.yield_strength", "500000000.0", "from 1 to 5000 MPa"),
+    "modulus in GPa": (
+        {"material.youngs_modulus": 71.0},
+        "material.youngs_modulus",
+        "71.0",
+        "from 1000 to 1e+06 MPa",
+    ),
+    "modulus in Pa": (
+        {"material.youngs_modulus": 71e9},
+        "material.youngs_modulus",
+        "71000000000.0",
+        "from 1000",
+    ),
+    "strength in Pa": (
+        {"material.yield_strength": 5e8},
+        "material.yield_strength",
+        "500000000.0",
+        "from 1 to 5000 MPa",
+    ),
     "density in g/cm3": ({"material.density": 2.8}, "material.density", "2.8", "from 500"),
     "sheet in metres": ({"sheet.thickness": 0.003}, "sheet.thickness", "0.003", "from 0.1 to 20 mm"),
     "sheet in micrometres": ({"sheet.thickness": 3000.0}, "sheet.thickness", "3000.0", "from 0.1 to 20 mm"),
-    "hinge in micrometres": ({"element.hinge_thickness": 250.0}, "element.hinge_thickness", "250.0", "from 0.005 to 5 mm"),
-    "hinge in metres": ({"element.hinge_thickness": 2.5e-4}, "element.hinge_thickness", "0.00025", "from 0.005 to 5 mm"),
-    "arms in micrometres": ({"array.row_arms": [[4000.0]]}, "array.row_arms[0][0]", "4000.0", "from 0.1 to 100 mm"),
-    "hinge 0.02 mm under the usual weight": ({"element.hinge_thickness": 0.02}, "rating.overload_force", "13.04", "at most"),
-    "overload in millinewtons": ({"rating.overload_force": 13040.0}, "rating.overload_force", "13040.0", "at most 214"),
+    "hinge in micrometres": (
+        {"element.hinge_thickness": 250.0},
+        "element.hinge_thickness",
+        "250.0",
+        "from 0.005 to 5 mm",
+    ),
+    "hinge in metres": (
+        {"element.hinge_thickness": 2.5e-4},
+        "element.hinge_thickness",
+        "0.00025",
+        "from 0.005 to 5 mm",
+    ),
+    "arms in micrometres": (
+        {"array.row_arms": [[4000.0]]},
+        "array.row_arms[0][0]",
+        "4000.0",
+        "from 0.1 to 100 mm",
+    ),
+    "hinge 0.02 mm under the usual weight": (
+        {"element.hinge_thickness": 0.02},
+        "rating.overload_force",
+        "13.04",
+        "at most",
+    ),
+    "overload in millinewtons": (
+        {"rating.overload_force": 13040.0},
+        "rating.overload_force",
+        "13040.0",
+        "at most 214",
+    ),
     "screws of a jaw": ({"holes.dowel_hole": 3.012 / 25}, "holes.dowel_hole", "0.12048", "from 0.2 to 20 mm"),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(autouse=True)
@@ -120,7 +206,16 @@ def test_refusal_names_field_value_and_what_is_legal(name):
     assert path in text and value in text and legal in text and "legal:" in text
 
 
-CAD = ["hinge 0.02 mm", "hinge 2 mm", "full round", "slot of its fillets alone", "arm 0.5 mm", "arm 100 mm", "foil of 0.1 mm", "block of 20 mm"]
+CAD = [
+    "hinge 0.02 mm",
+    "hinge 2 mm",
+    "full round",
+    "slot of its fillets alone",
+    "arm 0.5 mm",
+    "arm 100 mm",
+    "foil of 0.1 mm",
+    "block of 20 mm",
+]
 
 
 @pytest.mark.cad
@@ -178,7 +273,9 @@ def test_a_jaw_sized_element_is_the_large_one_made_smaller(factor):
         place = layout.elements[0]
         part = element(layout, place)
         shape = cut_element(part.body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
-        K.append((part.body.outer, solve_plane(shape, 71000.0, 0.33, design.sheet.thickness, density=1).stiffness))
+        K.append(
+            (part.body.outer, solve_plane(shape, 71000.0, 0.33, design.sheet.thickness, density=1).stiffness)
+        )
     (outer, stiff), (small_outer, small_stiff) = K
     assert len(small_outer) == len(outer)
     assert small_outer.length == pytest.approx(outer.length * factor, rel=1e-9)

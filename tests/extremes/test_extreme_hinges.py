@@ -23,7 +23,11 @@ ALLOY = next(iter(ALLOYS.values()))
 @pytest.fixture(autouse=True)
 def loud():
     """Overflow, division by zero and NaN raise; a number too small for float64 may be zero. 50 digits for mpmath."""
-    with warnings.catch_warnings(), np.errstate(over="raise", divide="raise", invalid="raise"), mp.workdps(50):
+    with (
+        warnings.catch_warnings(),
+        np.errstate(over="raise", divide="raise", invalid="raise"),
+        mp.workdps(50),
+    ):
         warnings.simplefilter("error")
         yield
 
@@ -59,9 +63,13 @@ def test_strain_and_strength_are_numbers_or_refused_like_the_stiffness(case, two
             continue
         nominal = 6 * s.load_arm / (s.youngs_modulus * s.width * s.hinge_thickness**2)
         peak = float(strain.peak(s, 1.0, rung) / nominal)
-        assert 0.5 < peak < 6.0, rung  # a notch's factor, less than 1 only by the width; Kt of a sharp notch is below 6
+        assert 0.5 < peak < 6.0, (
+            rung
+        )  # a notch's factor, less than 1 only by the width; Kt of a sharp notch is below 6
         try:
-            assert 0.0 < float(strain.gauge(s, 1.0, min(grid, float(s.hinge_length) / 4), rung) / nominal) < 1.5
+            assert (
+                0.0 < float(strain.gauge(s, 1.0, min(grid, float(s.hinge_length) / 4), rung) / nominal) < 1.5
+            )
         except CheckFailure as refusal:
             assert "grid" in str(refusal) and two
     if "plane" in case.refused:
@@ -79,19 +87,27 @@ def test_stiffness_goes_with_size_and_strain_does_not(two, factor):
     s, small = (REFERENCE.with_(two_sided=two, **change) for change in ({}, scaled(factor)))
     grid, force = 0.3, 0.4
     for rung in ladder.CLOSED_FORMS:
-        assert float(ladder.stiffness(small, rung)) == pytest.approx(factor * float(ladder.stiffness(s, rung)), rel=1e-13)
+        assert float(ladder.stiffness(small, rung)) == pytest.approx(
+            factor * float(ladder.stiffness(s, rung)), rel=1e-13
+        )
         for form, args in ((strain.peak, ()), (strain.gauge, (grid,))):
             near = form(small, force * factor**2, *(a * factor for a in args), rung)
             assert float(near) == pytest.approx(float(form(s, force, *args, rung)), rel=1e-12)
-    assert float(strength.yield_force(small, ALLOY)) == pytest.approx(factor**2 * float(strength.yield_force(s, ALLOY)))
+    assert float(strength.yield_force(small, ALLOY)) == pytest.approx(
+        factor**2 * float(strength.yield_force(s, ALLOY))
+    )
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1e3])
 def test_modulus_in_the_wrong_unit_scales_stiffness_and_leaves_stress(factor):
     wrong = REFERENCE.with_(youngs_modulus=REFERENCE.youngs_modulus * factor)
     for rung in ladder.CLOSED_FORMS:
-        assert float(ladder.stiffness(wrong, rung)) == pytest.approx(factor * float(ladder.stiffness(REFERENCE, rung)), rel=1e-13)
-    assert float(strain.peak_stress(wrong, 1.0)) == pytest.approx(float(strain.peak_stress(REFERENCE, 1.0)), rel=1e-13)
+        assert float(ladder.stiffness(wrong, rung)) == pytest.approx(
+            factor * float(ladder.stiffness(REFERENCE, rung)), rel=1e-13
+        )
+    assert float(strain.peak_stress(wrong, 1.0)) == pytest.approx(
+        float(strain.peak_stress(REFERENCE, 1.0)), rel=1e-13
+    )
 
 
 @pytest.mark.parametrize("rung", ladder.CLOSED_FORMS)
@@ -103,7 +119,9 @@ def test_sizing_meets_an_extreme_wish_or_says_what_can_be_had(wanted, rung):
         assert "out of reach" in str(refusal) and "stiffness goes from" in str(refusal)
         assert wanted in (1e-12, 1e-3, 1e3, 1e12)
     else:
-        assert float(ladder.stiffness(REFERENCE.with_(hinge_thickness=found), rung)) == pytest.approx(wanted, rel=1e-9)
+        assert float(ladder.stiffness(REFERENCE.with_(hinge_thickness=found), rung)) == pytest.approx(
+            wanted, rel=1e-9
+        )
 
 
 @pytest.mark.parametrize("short_of_locking", [1e-3, 1e-9, 1e-12])

@@ -19,13 +19,25 @@ RATIOS = {
     "ten": 10.0,
     "a millionth of a millionth apart upwards": 1e12,
 }
-OBJECTS = {"none": 0.0, "gossamer": 1e-12, "soft": 1e-3, "like the element": 1.0, "hard": 1e3, "stone": 1e12, "rigid": np.inf}
+OBJECTS = {
+    "none": 0.0,
+    "gossamer": 1e-12,
+    "soft": 1e-3,
+    "like the element": 1.0,
+    "hard": 1e3,
+    "stone": 1e12,
+    "rigid": np.inf,
+}
 K_M = {"N/mm": 8.0, "given in N/m": 8e3, "given in kN/mm": 8e-3}
 
 
 @pytest.fixture(autouse=True)
 def loud():
-    with warnings.catch_warnings(), np.errstate(over="raise", divide="raise", invalid="raise"), mp.workdps(50):
+    with (
+        warnings.catch_warnings(),
+        np.errstate(over="raise", divide="raise", invalid="raise"),
+        mp.workdps(50),
+    ):
         warnings.simplefilter("error")
         yield
 
@@ -70,8 +82,14 @@ def test_forward(K_r, K_m, K_obj):
     for name, f in FORWARD.items():
         assert near(getattr(lumped, name)(K_r, K_m, K_obj), limit(f, K_r, K_m, K_obj)), name
     for K in (K_r, K_m):
-        assert near(lumped.element_deflection(K, K_obj, 0.1), limit(lambda k, _, x: mp.mpf(0.1) * x / (k + x), K, 0, K_obj))
-        assert near(lumped.object_indentation(K, K_obj, 0.1), limit(lambda k, _, x: mp.mpf(0.1) * k / (k + x), K, 0, K_obj))
+        assert near(
+            lumped.element_deflection(K, K_obj, 0.1),
+            limit(lambda k, _, x: mp.mpf(0.1) * x / (k + x), K, 0, K_obj),
+        )
+        assert near(
+            lumped.object_indentation(K, K_obj, 0.1),
+            limit(lambda k, _, x: mp.mpf(0.1) * k / (k + x), K, 0, K_obj),
+        )
 
 
 def test_conditions(K_r, K_m, K_obj):
@@ -86,15 +104,21 @@ def test_conditions(K_r, K_m, K_obj):
 def test_differences_and_back(K_r, K_m, K_obj):
     """From force and deflection differences every object comes back, the rigid one by its compliance 0."""
     force, deflection = lumped.differences(K_r, K_m, K_obj, 0.1)
-    assert near(deflection, limit(lambda r, m, x: mp.mpf(0.1) * x * (r - m) / ((r + x) * (m + x)), K_r, K_m, K_obj))
-    assert near(force, limit(lambda r, m, x: mp.mpf(0.1) * x * (x / (m + x) * (r - m) / (r + x)), K_r, K_m, K_obj))
+    assert near(
+        deflection, limit(lambda r, m, x: mp.mpf(0.1) * x * (r - m) / ((r + x) * (m + x)), K_r, K_m, K_obj)
+    )
+    assert near(
+        force, limit(lambda r, m, x: mp.mpf(0.1) * x * (x / (m + x) * (r - m) / (r + x)), K_r, K_m, K_obj)
+    )
     if K_obj == 0.0:  # nothing is pressed: no reading differs, and no stiffness can be told
         assert np.isnan(lumped.object_stiffness_from_differences(force, deflection))
     elif np.isinf(K_obj):
         assert np.isinf(lumped.object_stiffness_from_differences(force, deflection))
         assert lumped.object_compliance_from_differences(force, deflection) == 0.0
     else:
-        assert float(lumped.object_stiffness_from_differences(force, deflection)) == pytest.approx(K_obj, rel=8 * EPS)
+        assert float(lumped.object_stiffness_from_differences(force, deflection)) == pytest.approx(
+            K_obj, rel=8 * EPS
+        )
 
 
 def test_ratio_and_back(K_r, K_m, K_obj):
@@ -113,7 +137,9 @@ def test_equal_elements_tell_nothing():
 
 
 @pytest.mark.parametrize("ratio", RATIOS.values(), ids=RATIOS)
-@pytest.mark.parametrize("x", [v for v in OBJECTS.values() if v > 0], ids=[k for k, v in OBJECTS.items() if v > 0])
+@pytest.mark.parametrize(
+    "x", [v for v in OBJECTS.values() if v > 0], ids=[k for k, v in OBJECTS.items() if v > 0]
+)
 @pytest.mark.parametrize("noise", [0.0, 1e-15, 1e-4, 1e3], ids=lambda n: f"noise {n:g} mm")
 def test_interval_holds_the_estimate_or_says_that_it_is_none(ratio, x, noise):
     K_m, K_r = 8.0, 8.0 * ratio

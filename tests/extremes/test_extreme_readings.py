@@ -15,7 +15,7 @@ from variants import variant
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics import gauge_signal, ladder, readout, rigs, self_heating, signal, stop, strain
 from tactcad.mechanics.section import REFERENCE
-from tactcad.studies.array import from_design
+from tactcad.paper.array_model import from_design
 
 EPS = np.finfo(float).eps
 ARRAY = from_design(variant())
@@ -24,7 +24,11 @@ GAUGE, READOUT, POWER = ARRAY.gauge, ARRAY.readout, ARRAY.power
 
 @pytest.fixture(autouse=True)
 def loud():
-    with warnings.catch_warnings(), np.errstate(over="raise", divide="raise", invalid="raise"), mp.workdps(50):
+    with (
+        warnings.catch_warnings(),
+        np.errstate(over="raise", divide="raise", invalid="raise"),
+        mp.workdps(50),
+    ):
         warnings.simplefilter("error")
         yield
 
@@ -42,7 +46,9 @@ def test_bridge_is_exact_from_a_broken_to_a_shorted_gauge(x):
 @pytest.mark.parametrize("strain_", [0.0, 1e-15, 1e-9, 1e-3, 0.5, -0.4])
 def test_output_and_back_wherever_the_amplifier_is_linear(strain_):
     volts = readout.unlimited_output(strain_, GAUGE.factor, READOUT)
-    assert float(readout.strain_from_output(volts, GAUGE.factor, READOUT)) == pytest.approx(strain_, rel=1e-14, abs=1e-17)
+    assert float(readout.strain_from_output(volts, GAUGE.factor, READOUT)) == pytest.approx(
+        strain_, rel=1e-14, abs=1e-17
+    )
     held = float(readout.output(strain_, GAUGE.factor, READOUT))
     assert READOUT.lowest <= held <= READOUT.highest
 
@@ -50,11 +56,16 @@ def test_output_and_back_wherever_the_amplifier_is_linear(strain_):
 @pytest.mark.parametrize(
     "change",
     [
-        dict(grid_height=0.0), dict(foil_thickness=0.0), dict(carrier_modulus=0.0, foil_modulus=0.0),
-        dict(carrier_modulus=2e5, grid_height=0.5), dict(carrier_width=1e-2), dict(carrier_width=20.0), dict(foil_coverage=0.0),
+        dict(grid_height=0.0),
+        dict(foil_thickness=0.0),
+        dict(carrier_modulus=0.0, foil_modulus=0.0),
+        dict(carrier_modulus=2e5, grid_height=0.5),
+        dict(carrier_width=1e-2),
+        dict(carrier_width=20.0),
+        dict(foil_coverage=0.0),
     ],
     ids=str,
-)  # fmt: skip
+)
 @pytest.mark.parametrize("size", [1.0, 1 / 25], ids=["whole", "jaw"])
 def test_gauge_is_a_composite_beam_whatever_its_layers(change, size):
     s, gauge = REFERENCE.with_(two_sided=False, **scaled(size)), replace(GAUGE, **change)
@@ -74,7 +85,9 @@ def test_gauge_is_a_composite_beam_whatever_its_layers(change, size):
     alone = layers[0][0] * (layers[0][2] - layers[0][1]) ** 3 / 12
     assert float(found.stiffening) == pytest.approx(float(bending / alone), rel=1e-13)
     foil = (layers[2][1] + layers[2][2]) / 2 - axis
-    assert float(found.reading) == pytest.approx(float(foil / (mp.mpf(float(s.hinge_thickness)) / 2) * alone / bending), rel=1e-12)
+    assert float(found.reading) == pytest.approx(
+        float(foil / (mp.mpf(float(s.hinge_thickness)) / 2) * alone / bending), rel=1e-12
+    )
     K = float(ladder.stiffness(s))
     assert K <= float(gauge_signal.stiffness(s, gauge)) * (1 + 1e-12) < inf
 
@@ -82,11 +95,16 @@ def test_gauge_is_a_composite_beam_whatever_its_layers(change, size):
 @pytest.mark.parametrize(
     "change,on,period",
     [
-        ({}, 1e-6, 1e5), ({}, 100.0, 100.0), ({}, 1e-6, 1e-5), ({}, 100.0, 1e5),
-        (dict(grid_height=0.0), 0.005, 1.0), (dict(grid_height=0.5), 0.005, 1.0), (dict(foil_thickness=0.0, grid_height=0.0), 1e-6, 1e-5),
+        ({}, 1e-6, 1e5),
+        ({}, 100.0, 100.0),
+        ({}, 1e-6, 1e-5),
+        ({}, 100.0, 1e5),
+        (dict(grid_height=0.0), 0.005, 1.0),
+        (dict(grid_height=0.5), 0.005, 1.0),
+        (dict(foil_thickness=0.0, grid_height=0.0), 1e-6, 1e-5),
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_switched_gauge_warms_by_its_settled_cycle(change, on, period):
     """The settled cycle by letting it settle, against the code's closed form."""
     gauge, power = replace(GAUGE, **change), replace(POWER, on_time=on, period=period)
@@ -114,7 +132,9 @@ def test_a_reading_longer_than_its_period_is_refused():
 @pytest.mark.parametrize("factor", [1e-6, 1e-3, 1.0, 1e3])
 def test_signal_is_proportional_until_a_supply_holds_it(factor):
     found = signal.predict(REFERENCE.with_(two_sided=False), GAUGE, READOUT, 0.01 * factor)
-    assert np.isfinite([found.per_deflection, found.per_force, found.strain, found.volts, found.resolution]).all()
+    assert np.isfinite(
+        [found.per_deflection, found.per_force, found.strain, found.volts, found.resolution]
+    ).all()
     assert bool(found.limited) == (factor >= 1e3)
     if not found.limited:
         linear = float(found.per_deflection) * 0.01 * factor
@@ -126,7 +146,9 @@ def test_stop_keeps_its_closing_force_over_size_squared(size):
     s, arm = REFERENCE.with_(**scaled(size)), 7.0 * size
     K = float(ladder.stiffness(s))
     base = float(stop.largest_closing_force(REFERENCE, float(ladder.stiffness(REFERENCE)), 7.0, 13.0, 8.0))
-    assert float(stop.largest_closing_force(s, K, arm, 13.0 * size**2, 8.0 * size**2)) == pytest.approx(base * size**2, rel=1e-12)
+    assert float(stop.largest_closing_force(s, K, arm, 13.0 * size**2, 8.0 * size**2)) == pytest.approx(
+        base * size**2, rel=1e-12
+    )
 
 
 def test_stop_at_the_load_line_carries_all_that_is_beyond():
@@ -134,7 +156,9 @@ def test_stop_at_the_load_line_carries_all_that_is_beyond():
     K = float(ladder.stiffness(REFERENCE))
     assert float(stop.stress_share(REFERENCE, K, REFERENCE.load_arm)) == 0.0
     assert float(stop.deflection_share(REFERENCE, K, REFERENCE.load_arm)) == 0.0
-    assert float(stop.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 1e6, 8.0)) == pytest.approx(8.0, rel=1e-12)
+    assert float(stop.largest_closing_force(REFERENCE, K, REFERENCE.load_arm, 1e6, 8.0)) == pytest.approx(
+        8.0, rel=1e-12
+    )
 
 
 def test_grid_longer_than_a_two_sided_hinge_is_refused_and_a_point_is_its_own_limit():
@@ -144,7 +168,12 @@ def test_grid_longer_than_a_two_sided_hinge_is_refused_and_a_point_is_its_own_li
     points = [float(strain.gauge(two, 1.0, g)) for g in (0.0, 1e-12, 1e-6, 1e-3)]
     assert points == pytest.approx([points[0]] * 4, rel=1e-4)
     one = two.with_(two_sided=False)
-    assert 0.0 < float(strain.gauge(one, 1.0, 1e3)) < float(strain.gauge(one, 1.0, 1e2)) < float(strain.gauge(one, 1.0, 0.5))
+    assert (
+        0.0
+        < float(strain.gauge(one, 1.0, 1e3))
+        < float(strain.gauge(one, 1.0, 1e2))
+        < float(strain.gauge(one, 1.0, 0.5))
+    )
 
 
 SQUARE = ((25.0, 25.0), (-25.0, 25.0), (-25.0, -25.0), (25.0, -25.0))
@@ -158,7 +187,9 @@ def test_rig_statics_go_with_size(size):
 
 
 def test_rig_without_height_load_or_vacuum():
-    assert rigs.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf  # a pull at the wheels' own height tips nothing
+    assert (
+        rigs.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf
+    )  # a pull at the wheels' own height tips nothing
     assert rigs.tipping_pull(SQUARE, 30.0, 0.0, 0.0, (0, 0)) == 0.0
     assert rigs.holding_force(0.0, 100.0) == 0.0
     assert rigs.tipping_margin(SQUARE, 25.0) == pytest.approx(0.0, abs=1e-12)

@@ -33,7 +33,11 @@ def one_by_one(arm: float, revision: str) -> str:
     text = re.sub(r"^row_arms = .*$", f"row_arms = [[{arm}]]", text, count=1, flags=re.MULTILINE)
     text = re.sub(r'^revision = ".*"$', f'revision = "{revision}"', text, count=1, flags=re.MULTILINE)
     found = tomllib.loads(text)
-    assert found["array"]["row_arms"] == [[arm]] and found["design"]["revision"] == revision and not set(found) & set(RIGS)
+    assert (
+        found["array"]["row_arms"] == [[arm]]
+        and found["design"]["revision"] == revision
+        and not set(found) & set(RIGS)
+    )
     return text
 
 
@@ -42,8 +46,17 @@ def environment(folder: Path, **changes: str) -> dict[str, str]:
     for name in ("home", "tmp"):
         (folder / name).mkdir(exist_ok=True)
     kept = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")}
-    own = {"HOME": str(folder / "home"), "TMPDIR": str(folder / "tmp"), "TACTCAD_CACHE": str(folder / "cache")}
-    return kept | own | {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "PYTHONDONTWRITEBYTECODE": "1"} | changes
+    own = {
+        "HOME": str(folder / "home"),
+        "TMPDIR": str(folder / "tmp"),
+        "TACTCAD_CACHE": str(folder / "cache"),
+    }
+    return (
+        kept
+        | own
+        | {"PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "PYTHONDONTWRITEBYTECODE": "1"}
+        | changes
+    )
 
 
 def tactcad_run(
@@ -51,7 +64,14 @@ def tactcad_run(
 ) -> subprocess.CompletedProcess[bytes]:
     """`tactcad ARGUMENTS` to its end, at most two minutes: what hangs fails."""
     return subprocess.run(
-        [*command, *arguments], cwd=cwd, env=env, capture_output=True, check=False, timeout=120, stdin=subprocess.DEVNULL, **more
+        [*command, *arguments],
+        cwd=cwd,
+        env=env,
+        capture_output=True,
+        check=False,
+        timeout=120,
+        stdin=subprocess.DEVNULL,
+        **more,
     )
 
 
@@ -111,7 +131,7 @@ class Bench:
 FORKS = """
 import importlib, json, os, signal, sys, tempfile
 from tactcad.cli.main import COMMANDS, main
-import tactcad.export.pipeline, tactcad.export.sides, tactcad.studies.batch, tactcad.studies.grasp, tactcad.studies.validation
+import tactcad.export.pipeline, tactcad.export.sides, tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
 for name in COMMANDS:
     importlib.import_module("tactcad.cli." + name)
 found = []
@@ -135,10 +155,18 @@ json.dump(found, sys.stdout)
 """
 
 
-def tactcad_runs(commands: Sequence[Sequence[str]], cwd: Path, env: dict[str, str]) -> list[subprocess.CompletedProcess[bytes]]:
+def tactcad_runs(
+    commands: Sequence[Sequence[str]], cwd: Path, env: dict[str, str]
+) -> list[subprocess.CompletedProcess[bytes]]:
     """`tactcad ARGUMENTS` for many argument lists, one after the other, each in its own process."""
     done = subprocess.run(
-        [sys.executable, "-c", FORKS], input=json.dumps(commands), cwd=cwd, env=env, capture_output=True, text=True, check=True
+        [sys.executable, "-c", FORKS],
+        input=json.dumps(commands),
+        cwd=cwd,
+        env=env,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     return [
         subprocess.CompletedProcess(arguments, status, out.encode("latin-1"), err.encode("latin-1"))

@@ -20,7 +20,9 @@ GOOD = one_by_one(4.0, "A")
 
 def with_value(field: str, value: str) -> str:
     """GOOD with one value of [design] as this TOML text."""
-    text, count = re.subn(rf"^{field} = .*$", lambda _: f"{field} = {value}", GOOD, count=1, flags=re.MULTILINE)
+    text, count = re.subn(
+        rf"^{field} = .*$", lambda _: f"{field} = {value}", GOOD, count=1, flags=re.MULTILINE
+    )
     assert count == 1
     return text
 
@@ -61,7 +63,18 @@ HOSTILE_NAMES = {
     "7": "no text",
     '["a"]': "no text",
 }
-HOSTILE_LINES = ['""', '" "', '"a\\nb"', '"a\\u0000b"', '"\\u202egpj"', '"\\u0085"', '"\\ufffe"', f'"{"x" * 81}"', "1", "[[]]"]
+HOSTILE_LINES = [
+    '""',
+    '" "',
+    '"a\\nb"',
+    '"a\\u0000b"',
+    '"\\u202egpj"',
+    '"\\u0085"',
+    '"\\ufffe"',
+    f'"{"x" * 81}"',
+    "1",
+    "[[]]",
+]
 
 
 def refuse(tmp_path, data: bytes, command: str = "export", name: str = "bad.toml") -> str:
@@ -78,14 +91,19 @@ def refuse(tmp_path, data: bytes, command: str = "export", name: str = "bad.toml
 @pytest.mark.parametrize("name", HOSTILE_NAMES, ids=list(HOSTILE_NAMES.values()))
 def test_hostile_name(tmp_path, name):
     said = refuse(tmp_path, with_value("name", name).encode())
-    assert said.startswith("tactcad: design.name: not usable text; found ") and "legal: 1 to 40 of a-z" in said
+    assert (
+        said.startswith("tactcad: design.name: not usable text; found ") and "legal: 1 to 40 of a-z" in said
+    )
     assert len(said) < 400 and said.isprintable()
 
 
 @pytest.mark.parametrize("field", ["title", "author", "organisation"])
 def test_hostile_lines(tmp_path, field):
     for n, value in enumerate(HOSTILE_LINES):
-        said = refuse(tmp_path / f"{n}" if not (tmp_path / f"{n}").mkdir() else tmp_path, with_value(field, value).encode())
+        said = refuse(
+            tmp_path / f"{n}" if not (tmp_path / f"{n}").mkdir() else tmp_path,
+            with_value(field, value).encode(),
+        )
         assert said.startswith(f"tactcad: design.{field}: not usable text; found ")
 
 
@@ -103,7 +121,10 @@ HOSTILE_FILES = {
     "300 arrays": (nested(300, "[", "]"), "x: unknown field"),
     "100 000 arrays that never close": (nested(100_000, "[", ""), "nested too deeply"),
     "10 000 inline tables": (nested(10_000, "{a = ", "}"), "nested too deeply"),
-    "10 000 arrays as a value": (GOOD + "[sample]\nside = " + "[" * 10_000 + "]" * 10_000, "nested too deeply"),
+    "10 000 arrays as a value": (
+        GOOD + "[sample]\nside = " + "[" * 10_000 + "]" * 10_000,
+        "nested too deeply",
+    ),
     "60 kB dotted key": ("a." * 30_000 + "a = 1", "too many names"),
     "dotted key with quotes": ('"\\"" . ' * 30_000 + "a = 1", "too many names"),
     "dotted table": ("[" + "'a'." * 30_000 + "a]", "too many names"),
@@ -120,11 +141,20 @@ HOSTILE_FILES = {
     "old Mac's line ends": (GOOD.replace("\n", "\r"), "TOML"),
     "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), "UTF-8"),
     "a date that is none": (with_value("date", "2026-02-30"), "TOML"),
-    "NaN": (re.sub("^thickness = .*$", "thickness = nan", GOOD, count=1, flags=re.MULTILINE), "not a finite number"),
-    "infinity": (re.sub("^thickness = .*$", "thickness = -inf", GOOD, count=1, flags=re.MULTILINE), "not a finite number"),
+    "NaN": (
+        re.sub("^thickness = .*$", "thickness = nan", GOOD, count=1, flags=re.MULTILINE),
+        "not a finite number",
+    ),
+    "infinity": (
+        re.sub("^thickness = .*$", "thickness = -inf", GOOD, count=1, flags=re.MULTILINE),
+        "not a finite number",
+    ),
     "key with line end": (GOOD.replace("[sheet]", '[sheet]\n"a\\nb" = 1', 1), "unknown field"),
     "key of 100 kB": (GOOD.replace("[sheet]", "[sheet]\n" + "a" * 100_000 + " = 1", 1), "unknown field"),
-    "key with a terminal's commands": (GOOD.replace("[sheet]", '[sheet]\n"\\u001b[2J" = 1', 1), "unknown field"),
+    "key with a terminal's commands": (
+        GOOD.replace("[sheet]", '[sheet]\n"\\u001b[2J" = 1', 1),
+        "unknown field",
+    ),
     "Python's own names": ("[__class__]\n__init__ = 1\n", "unknown field"),
     "sections that are lists": (GOOD.replace("[sheet]", "[[sheet]]", 1), "not a table"),
 }
@@ -133,7 +163,9 @@ HOSTILE_FILES = {
 @pytest.mark.parametrize("name", HOSTILE_FILES)
 def test_hostile_file(tmp_path, name):
     data, expected = HOSTILE_FILES[name]
-    said = refuse(tmp_path, data.encode() if isinstance(data, str) else data, "check" if len(name) % 2 else "export")
+    said = refuse(
+        tmp_path, data.encode() if isinstance(data, str) else data, "check" if len(name) % 2 else "export"
+    )
     assert expected in said and len(said) < 600 and said.isprintable()
 
 
@@ -145,9 +177,31 @@ def test_what_is_no_file(tmp_path):
     (work / "loop.toml").symlink_to("loop.toml")
     (work / "away.toml").symlink_to("nowhere")
     before = sorted(p.name for p in work.iterdir())
-    names = ["folder.toml", "./pipe.toml", "loop.toml", "loop.toml/x.toml", "away.toml", "/dev/zero", "/dev/null", "/dev/tty", ".",
-             "/", "nowhere.toml", "no-such", "", "x" * 300, "x" * 5000 + ".toml", "folder.toml/", "-", b"\xff.toml", "a\nb.toml",
-             "\u202e.toml", "/proc/self/mem", "$(id).toml", "~/x.toml"]  # fmt: skip
+    names = [
+        "folder.toml",
+        "./pipe.toml",
+        "loop.toml",
+        "loop.toml/x.toml",
+        "away.toml",
+        "/dev/zero",
+        "/dev/null",
+        "/dev/tty",
+        ".",
+        "/",
+        "nowhere.toml",
+        "no-such",
+        "",
+        "x" * 300,
+        "x" * 5000 + ".toml",
+        "folder.toml/",
+        "-",
+        b"\xff.toml",
+        "a\nb.toml",
+        "\u202e.toml",
+        "/proc/self/mem",
+        "$(id).toml",
+        "~/x.toml",
+    ]
     for name in names:
         said = refused(tactcad_run("export", name, cwd=work, env=environment(tmp_path)))
         assert "; legal: " in said, said
@@ -157,8 +211,14 @@ def test_what_is_no_file(tmp_path):
 @pytest.mark.parametrize("change", ["as it is", "byte order mark", "Windows' line ends", "both"])
 def test_encodings_that_are_fine(bench, work, change):
     """The same design from another editor is the same export."""
-    text = bench.texts["A"].replace("\n", "\r\n") if change in ("Windows' line ends", "both") else bench.texts["A"]
-    (work / "A.toml").write_bytes(text.encode("utf-8-sig" if change in ("byte order mark", "both") else "utf-8"))
+    text = (
+        bench.texts["A"].replace("\n", "\r\n")
+        if change in ("Windows' line ends", "both")
+        else bench.texts["A"]
+    )
+    (work / "A.toml").write_bytes(
+        text.encode("utf-8-sig" if change in ("byte order mark", "both") else "utf-8")
+    )
     done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
     assert done.returncode == 0, done.stderr.decode()
     assert contents(work / "exports" / "out") == bench.files["A"]
@@ -203,7 +263,13 @@ def step_text(coded: str) -> str:
 def test_legal_text_is_escaped_in_every_kind_of_file(work):
     text = with_value("title", json.dumps(TITLE, ensure_ascii=False))
     for field, value in (("author", AUTHOR), ("organisation", ORGANISATION)):
-        text = re.sub(rf"^{field} = .*$", lambda _: f"{field} = {json.dumps(value, ensure_ascii=False)}", text, count=1, flags=re.MULTILINE)
+        text = re.sub(
+            rf"^{field} = .*$",
+            lambda _: f"{field} = {json.dumps(value, ensure_ascii=False)}",
+            text,
+            count=1,
+            flags=re.MULTILINE,
+        )
     (work / "A.toml").write_text(text, encoding="utf-8")
     done = tactcad_run("export", "A.toml", "--guide", "--out", "exports/out", cwd=work, env=environment(work))
     assert done.returncode == 0, done.stderr.decode()

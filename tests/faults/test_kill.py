@@ -73,7 +73,9 @@ def test_killed_while_helpers_draw(bench, work):
     """The processes that draw sheets end with the export that was killed, and with them its lock."""
     env = environment(work)
     arguments = ("export", "A.toml", "--drawings", "--out", "exports/out")
-    with subprocess.Popen([*MODULE, *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True) as export:
+    with subprocess.Popen(
+        [*MODULE, *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True
+    ) as export:
         helpers = []
         for line in export.stderr:
             children = Path(f"/proc/{export.pid}/task/{export.pid}/children").read_text().split()
@@ -105,13 +107,19 @@ def test_killed_among_others_that_wait(bench, work):
     """The lock goes with its process: those who wait for a killed export take over."""
     env = environment(work)
     arguments = ("--out", "exports/out")
-    with subprocess.Popen([*MODULE, "export", "A.toml", *arguments], cwd=work, env=env | {"TACTCAD_CACHE": str(work / "cold")},
-                          stderr=subprocess.DEVNULL) as first:  # fmt: skip
+    with subprocess.Popen(
+        [*MODULE, "export", "A.toml", *arguments],
+        cwd=work,
+        env=env | {"TACTCAD_CACHE": str(work / "cold")},
+        stderr=subprocess.DEVNULL,
+    ) as first:
         lock = work / "exports" / ".out.lock"
         until = time.monotonic() + 60
         while not (lock.exists() and lock.read_text()) and time.monotonic() < until:
             time.sleep(0.01)
-        with subprocess.Popen([*MODULE, "export", "B.toml", *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True) as waiting:
+        with subprocess.Popen(
+            [*MODULE, "export", "B.toml", *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True
+        ) as waiting:
             assert "waiting for another export" in waiting.stderr.readline()
             first.kill()
             waiting.communicate(timeout=120)

@@ -21,7 +21,12 @@ def in_own_mounts(script: str, *arguments: str | Path) -> list[str]:
     """A command that may mount things without anybody seeing it; skips where the machine allows nobody to."""
     own = ["unshare", "--user", "--map-root-user", "--mount"]
     try:
-        allowed = subprocess.run([*own, "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False).returncode == 0
+        allowed = (
+            subprocess.run(
+                [*own, "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False
+            ).returncode
+            == 0
+        )
     except FileNotFoundError:
         allowed = False
     if not allowed:
@@ -41,7 +46,9 @@ def test_no_file_larger_than_this(bench, exported, most_bytes):
         resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
 
     assert max(map(len, bench.files["B"].values())) > 150_000
-    done = tactcad_run("export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported), preexec_fn=limit)
+    done = tactcad_run(
+        "export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported), preexec_fn=limit
+    )
     assert "File too large" in refused(done, status=1)
     assert contents(out) == bench.files["A"]
     assert_tidy(out, exported)
@@ -84,9 +91,14 @@ def test_full_disk(work):
     command = in_own_mounts(SMALL_DISK, work / "disk", "8M")
     path = os.pathsep.join([str(Path(__file__).parent), environment(work)["PYTHONPATH"]])
     done = subprocess.run(
-        [*command, sys.executable, "-c", ON_SMALL_DISK, work / "disk", work], cwd=work, capture_output=True, text=True,
-        env=environment(work, PYTHONPATH=path), check=False, timeout=300,
-    )  # fmt: skip
+        [*command, sys.executable, "-c", ON_SMALL_DISK, work / "disk", work],
+        cwd=work,
+        capture_output=True,
+        text=True,
+        env=environment(work, PYTHONPATH=path),
+        check=False,
+        timeout=300,
+    )
     assert done.stdout == "as it should be\n", done.stderr
 
 
@@ -94,7 +106,9 @@ def test_full_disk_for_the_cache_costs_time_only(bench, work):
     """The cache's disk is full from the start: a cold export is whole, and says what it could not keep."""
     command = in_own_mounts(SMALL_DISK, work / "disk", "64k")
     env = environment(work, TACTCAD_CACHE=str(work / "disk" / "cache"))
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=env, command=[*command, *MODULE])
+    done = tactcad_run(
+        "export", "A.toml", "--out", "exports/out", cwd=work, env=env, command=[*command, *MODULE]
+    )
     assert done.returncode == 0, done.stderr.decode()
     assert b"going on without" in done.stderr
     assert contents(work / "exports" / "out") == bench.files["A"]
@@ -105,7 +119,9 @@ def own(work: Path) -> dict[str, bytes]:
     return {path: data for path, data in contents(work).items() if not path.startswith("home/")}
 
 
-@pytest.mark.parametrize("command", ["calibrate", "diff", "estimate", pytest.param("validate", marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(
+    "command", ["calibrate", "diff", "estimate", pytest.param("validate", marks=pytest.mark.nightly)]
+)
 def test_no_room_for_a_single_file(work, command):
     """The other commands that write: no file, or the earlier one."""
     hardware = Path(__file__).parents[2] / "hardware"
@@ -130,21 +146,37 @@ def test_no_room_for_a_single_file(work, command):
     assert own(work) == before
 
 
-@pytest.mark.parametrize("arguments", [["schema"], ["estimate", "A.toml"], ["diff", "A.toml", "B.toml", "--json"]], ids=" ".join)
+@pytest.mark.parametrize(
+    "arguments", [["schema"], ["estimate", "A.toml"], ["diff", "A.toml", "B.toml", "--json"]], ids=" ".join
+)
 def test_full_standard_output(work, arguments):
     with open("/dev/full", "wb") as full:
-        done = subprocess.run([*MODULE, *arguments], cwd=work, env=environment(work), stdout=full, stderr=subprocess.PIPE, check=False)
-    assert (done.returncode, done.stderr) == (1, b"tactcad: the output cannot be written: No space left on device\n")
+        done = subprocess.run(
+            [*MODULE, *arguments],
+            cwd=work,
+            env=environment(work),
+            stdout=full,
+            stderr=subprocess.PIPE,
+            check=False,
+        )
+    assert (done.returncode, done.stderr) == (
+        1,
+        b"tactcad: the output cannot be written: No space left on device\n",
+    )
 
 
 # --- places that cannot be written to ---
 
 
-@pytest.mark.parametrize("place", ["A.toml/out", "/proc/out", "/sys/out", "/dev/full", "/dev/null", "x" * 300, "loop", "loop/out"])
+@pytest.mark.parametrize(
+    "place", ["A.toml/out", "/proc/out", "/sys/out", "/dev/full", "/dev/null", "x" * 300, "loop", "loop/out"]
+)
 def test_places_that_not_even_root_can_write_to(work, place):
     (work / "loop").symlink_to("loop")
     before = contents(work / "cache"), sorted(p.name for p in work.iterdir())
-    assert place[:100] in refused(tactcad_run("export", "A.toml", "--out", place, cwd=work, env=environment(work)))
+    assert place[:100] in refused(
+        tactcad_run("export", "A.toml", "--out", place, cwd=work, env=environment(work))
+    )
     assert (contents(work / "cache"), sorted({p.name for p in work.iterdir()} - {"home", "tmp"})) == before
 
 
@@ -152,7 +184,15 @@ def test_read_only_file_system(bench, exported):
     """The folder of an earlier export is mounted read-only: for root too."""
     out = exported / "exports" / "out"
     command = in_own_mounts(READ_ONLY, exported / "exports")
-    done = tactcad_run("export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported), command=[*command, *MODULE])
+    done = tactcad_run(
+        "export",
+        "B.toml",
+        "--out",
+        "exports/out",
+        cwd=exported,
+        env=environment(exported),
+        command=[*command, *MODULE],
+    )
     assert "Read-only file system" in refused(done)
     assert contents(out) == bench.files["A"]
     assert_tidy(out, exported)
@@ -189,7 +229,10 @@ def test_folder_without_permission(bench, exported):
 def test_folder_that_is_gone(work):
     (work / "gone").mkdir()
     leave = ["sh", "-c", 'rmdir "$PWD" && exec "$@"', "sh", *MODULE]
-    for arguments in (["export", str(work / "A.toml"), "--out", "out"], ["diff", str(work / "A.toml"), str(work / "B.toml"), "--html", "x"]):
+    for arguments in (
+        ["export", str(work / "A.toml"), "--out", "out"],
+        ["diff", str(work / "A.toml"), str(work / "B.toml"), "--html", "x"],
+    ):
         (work / "gone").mkdir(exist_ok=True)
         said = refused(tactcad_run(*arguments, cwd=work / "gone", env=environment(work), command=leave))
         assert "No such file or directory" in said
@@ -202,11 +245,16 @@ def test_output_file_open_elsewhere(bench, exported):
     """Readers half through old files, one that maps a file, and one that stands in the old folder keep the old export."""
     out = exported / "exports" / "out"
     largest = max(bench.files["A"], key=lambda path: len(bench.files["A"][path]))
-    with (out / largest).open("rb") as reader, subprocess.Popen(
-        ["sh", "-c", "read go; cat manifest.json"], cwd=out, stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    ) as standing:  # fmt: skip
+    with (
+        (out / largest).open("rb") as reader,
+        subprocess.Popen(
+            ["sh", "-c", "read go; cat manifest.json"], cwd=out, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        ) as standing,
+    ):
         begun = reader.read(1000)
-        done = tactcad_run("export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported))
+        done = tactcad_run(
+            "export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported)
+        )
         assert done.returncode == 0, done.stderr.decode()
         assert begun + reader.read() == bench.files["A"][largest]
         assert standing.communicate(b"go\n")[0] == bench.files["A"]["manifest.json"]
@@ -220,14 +268,19 @@ def test_output_file_that_somebody_writes_to(bench, exported):
     with (out / "bom.csv").open("ab") as editor:
         editor.write(b"a note\n")
         editor.flush()
-        done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=exported, env=environment(exported))
+        done = tactcad_run(
+            "export", "A.toml", "--out", "exports/out", cwd=exported, env=environment(exported)
+        )
         assert done.returncode == 0 and b"was altered: bom.csv" in done.stderr
         editor.write(b"another note\n")
     assert contents(out) == bench.files["A"]
 
 
 def together(commands: list[list[str]], cwd: Path, env: dict[str, str]) -> None:
-    runs = [subprocess.Popen([*MODULE, *c], cwd=cwd, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE) for c in commands]
+    runs = [
+        subprocess.Popen([*MODULE, *c], cwd=cwd, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        for c in commands
+    ]
     for run in runs:
         said = run.communicate(timeout=240)[1].decode()
         assert run.returncode == 0 and "Traceback" not in said, said

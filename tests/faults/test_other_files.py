@@ -47,10 +47,12 @@ def good(bench, tmp_path_factory) -> dict[str, bytes]:
         "grasp.csv": (EXAMPLES / "grasp.csv").read_bytes(),
         "calibration.csv": (folder / "calibration.csv").read_bytes(),
         "calibration.json": as_json.stdout,
-        "sheet.csv": next(file for path, file in bench.files["A"].items() if "inspection" in path and path.endswith(".csv")),
+        "sheet.csv": next(
+            file for path, file in bench.files["A"].items() if "inspection" in path and path.endswith(".csv")
+        ),
         "shop.toml": (data / "checks" / "data" / "shop.toml").read_bytes(),
-        "table1.csv": (data / "studies" / "data" / "table1.csv").read_bytes(),
-        "table2.csv": (data / "studies" / "data" / "table2.csv").read_bytes(),
+        "table1.csv": (data / "paper" / "data" / "table1.csv").read_bytes(),
+        "table2.csv": (data / "paper" / "data" / "table2.csv").read_bytes(),
         "golden.json": (ROOT / "exports" / "golden" / "soft-tissue.json").read_bytes(),
         "design.toml": (ROOT / "hardware" / "macro-array.toml").read_bytes(),
     }
@@ -77,7 +79,9 @@ def spoilt(good: bytes, kind: str) -> dict[str, bytes]:
             "no rows of that width": f"{header}\n{rows[0]},7,8,9\n".encode(),
             "column twice": f"{header},{header.split(',')[0]}\n{rows[0]},7\n".encode(),
             "no number": f"{header}\n{rows[0].replace('1', 'one').replace('2', '=cmd()')}\n".encode(),
-            "infinite": ",".join([header + "\n" + rows[0].split(",")[0], "1e999", *rows[0].split(",")[2:]]).encode(),
+            "infinite": ",".join(
+                [header + "\n" + rows[0].split(",")[0], "1e999", *rows[0].split(",")[2:]]
+            ).encode(),
             "open quote": f'{header}\n"{rows[0]}\n'.encode(),
             "field of 1 MB": f"{header}\n{'x' * 1_000_000}{rows[0]}\n".encode(),
         }
@@ -89,18 +93,30 @@ def spoilt(good: bytes, kind: str) -> dict[str, bytes]:
             "thousands of digits": text.replace(": 1", ": " + "1" * 10_000, 1).encode(),
             "a list": json.dumps([record]).encode(),
             "another schema": json.dumps(record | {"schema": "other"}).encode(),
-            **{f"{key} is {value!r}": json.dumps(record | {key: value}).encode()
-               for key in set(record) - {"schema", "units", "level", "load_cell_stiffness_N_per_mm"} for value in (None, "x", [1], {"x": [1]})
-               if not (isinstance(value, str) and key in ("design", "revision"))},
-        }  # fmt: skip
+            **{
+                f"{key} is {value!r}": json.dumps(record | {key: value}).encode()
+                for key in set(record) - {"schema", "units", "level", "load_cell_stiffness_N_per_mm"}
+                for value in (None, "x", [1], {"x": [1]})
+                if not (isinstance(value, str) and key in ("design", "revision"))
+            },
+        }
     if kind == "golden.json":
         part = next(iter(record["parts"]))
-        for name, value in {"contours": [[[0, 0, 1, 1]]], "process": 3, "holes": [1], "volume_mm3": {"a": 1}}.items():
+        for name, value in {
+            "contours": [[[0, 0, 1, 1]]],
+            "process": 3,
+            "holes": [1],
+            "volume_mm3": {"a": 1},
+        }.items():
             changed = json.loads(text)
             changed["parts"][part][name] = value
             faults[f"a part's {name}"] = json.dumps(changed).encode()
     if kind.endswith(".toml"):
-        faults |= {"60 kB key": b"a." * 30_000 + b"a = 1", "unknown field": b"x = 1\n" + good, "a long integer": b"x = " + b"9" * 10_000}
+        faults |= {
+            "60 kB key": b"a." * 30_000 + b"a = 1",
+            "unknown field": b"x = 1\n" + good,
+            "a long integer": b"x = " + b"9" * 10_000,
+        }
     return faults
 
 
@@ -124,7 +140,9 @@ def test_files_that_are_something_else(bench, good, tmp_path, kind):
         (tmp_path / f"{n}{ending}").write_bytes(data or b"")
         if data is None:
             os.truncate(tmp_path / f"{n}{ending}", 600_000_000)
-    names = dict(zip(faults, (f"{n}{ending}" for n in range(len(faults))))) | {n: n for n in not_files(tmp_path, ending)}
+    names = dict(zip(faults, (f"{n}{ending}" for n in range(len(faults))))) | {
+        n: n for n in not_files(tmp_path, ending)
+    }
     before = sorted(p.name for p in tmp_path.iterdir()) + ["home", "tmp"]
     commands = [[name if word == "FILE" else word for word in READERS[kind]] for name in names.values()]
     for (fault, name), done in zip(names.items(), tactcad_runs(commands, tmp_path, environment(tmp_path))):
@@ -132,7 +150,9 @@ def test_files_that_are_something_else(bench, good, tmp_path, kind):
             said = refused(done)
         except AssertionError as error:
             pytest.fail(f"{kind}, {fault}: {error}")
-        assert said.startswith((f"tactcad: {Path(name)}", f"tactcad: {name[:40]}")) or kind == "design.toml", (fault, said)
+        assert (
+            said.startswith((f"tactcad: {Path(name)}", f"tactcad: {name[:40]}")) or kind == "design.toml"
+        ), (fault, said)
         assert len(said) < 700 and said.isprintable(), (fault, said)
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted(before)
 
@@ -168,22 +188,38 @@ def test_an_export_that_was_tampered_with(exported, tmp_path):
         return lambda copy, m: m["files"][0].__setitem__(field, value)
 
     changes = {
-        "volume": part("volume_mm3", "heavy"), "centre": part("centre_mm", [1]), "box": part("box_mm", 7), "name": part("name", {}),
-        "unknown": part("colour", "red"), "path": file("path", "../../A.toml"), "absolute": file("path", "/etc/hostname"),
-        "no text": file("path", 7), "kind": file("kind", "poem"), "digest": file("sha256", "0"), "device": file("path", "device"),
-        "files": lambda copy, m: m.__setitem__("files", {"a": 1}), "schema": lambda copy, m: m.__setitem__("schema", None),
-        "inputs": lambda copy, m: m.clear(), "cut": lambda copy, m: (copy / "bom.csv").write_text("x"),
+        "volume": part("volume_mm3", "heavy"),
+        "centre": part("centre_mm", [1]),
+        "box": part("box_mm", 7),
+        "name": part("name", {}),
+        "unknown": part("colour", "red"),
+        "path": file("path", "../../A.toml"),
+        "absolute": file("path", "/etc/hostname"),
+        "no text": file("path", 7),
+        "kind": file("kind", "poem"),
+        "digest": file("sha256", "0"),
+        "device": file("path", "device"),
+        "files": lambda copy, m: m.__setitem__("files", {"a": 1}),
+        "schema": lambda copy, m: m.__setitem__("schema", None),
+        "inputs": lambda copy, m: m.clear(),
+        "cut": lambda copy, m: (copy / "bom.csv").write_text("x"),
         "pipe": lambda copy, m: ((copy / "bom.csv").unlink(), os.mkfifo(copy / "bom.csv")),
         "added": lambda copy, m: (copy / "virus.exe").write_text("x"),
-    }  # fmt: skip
+    }
     names = [damaged(name, change) for name, change in changes.items()]
     (exported / "device" / "device").symlink_to("/dev/zero")
-    for name, text in (("deep", "[" * 100_000), ("list", "[]"), ("half", (folder / "manifest.json").read_text()[:999])):
+    for name, text in (
+        ("deep", "[" * 100_000),
+        ("list", "[]"),
+        ("half", (folder / "manifest.json").read_text()[:999]),
+    ):
         (exported / name).mkdir()
         (exported / name / "manifest.json").write_text(text)
         names.append(name)
     before = {p.name for p in exported.iterdir()}
-    for name, done in zip(names, tactcad_runs([["diff", name, "A.toml"] for name in names], exported, environment(exported))):
+    for name, done in zip(
+        names, tactcad_runs([["diff", name, "A.toml"] for name in names], exported, environment(exported))
+    ):
         assert f"tactcad: {name}: not a sound export: " in refused(done), (name, done.stderr)
     assert {p.name for p in exported.iterdir()} == before
 

@@ -26,11 +26,19 @@ sys.exit(main(sys.argv[3:]))
 # locale: half, as that locale writes it
 LOCALES = {"de_DE.UTF-8": "0,5", "tr_TR.UTF-8": "0,5", "fa_IR.UTF-8": "0\u066b5"}
 SURROUNDINGS = {
-    "comma, seed 1, clock of 1990": ("de_DE.UTF-8", "631152000", {"PYTHONHASHSEED": "1", "SOURCE_DATE_EPOCH": "0", "TZ": "Pacific/Kiritimati", "HOME": "/proc/none"}),
+    "comma, seed 1, clock of 1990": (
+        "de_DE.UTF-8",
+        "631152000",
+        {"PYTHONHASHSEED": "1", "SOURCE_DATE_EPOCH": "0", "TZ": "Pacific/Kiritimati", "HOME": "/proc/none"},
+    ),
     "dotless i, seed 4242": ("tr_TR.UTF-8", "now", {"PYTHONHASHSEED": "4242", "TZ": "America/St_Johns"}),
     "Persian, clock of 2100": ("fa_IR.UTF-8", "4102444800", {"PYTHONHASHSEED": "77", "OMP_NUM_THREADS": "3"}),
-    "C, ASCII": ("C", "now", {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii", "PYTHONHASHSEED": "5"}),
-}  # fmt: skip
+    "C, ASCII": (
+        "C",
+        "now",
+        {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONIOENCODING": "ascii", "PYTHONHASHSEED": "5"},
+    ),
+}
 
 
 @pytest.fixture(scope="session")
@@ -39,7 +47,12 @@ def locales(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("locales")
     for name in LOCALES:
         language, charset = name.split(".")
-        made = subprocess.run(["localedef", "-i", language, "-f", charset, folder / name], capture_output=True, text=True, check=False)
+        made = subprocess.run(
+            ["localedef", "-i", language, "-f", charset, folder / name],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         if not (folder / name / "LC_NUMERIC").exists():
             pytest.fail(f"no locale {name}: on Debian apt-get install locales\n{made.stderr}")
     return folder
@@ -55,7 +68,8 @@ def export_in(name: str, design: str, work: Path, locales: Path, *options: str) 
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if n == 0 else pytest.mark.nightly) for n, name in enumerate(SURROUNDINGS)]
+    "name",
+    [pytest.param(name, marks=[] if n == 0 else pytest.mark.nightly) for n, name in enumerate(SURROUNDINGS)],
 )
 def test_every_product_has_the_same_bytes_everywhere(bench, work, locales, name):
     """From a cold cache. The reference was made with seed 0, in the C locale, by today's clock. A home that libraries cannot
@@ -84,8 +98,12 @@ def test_an_ascii_terminal_is_told_everything(work, locales):
     title = "tactile \u89e6\u899a \U0001f600 \u00e4"
     text = (work / "A.toml").read_text(encoding="utf-8")
     (work / "\u00fc.toml").write_text(text.replace("title = ", f'title = "{title}" # ', 1), encoding="utf-8")
-    env = environment(work, LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0", PYTHONIOENCODING="ascii:strict")
-    done = tactcad_run("export", "\u00fc.toml".encode(), "--json", "--out", "exports/\u00fc".encode(), cwd=work, env=env)
+    env = environment(
+        work, LC_ALL="C", PYTHONUTF8="0", PYTHONCOERCECLOCALE="0", PYTHONIOENCODING="ascii:strict"
+    )
+    done = tactcad_run(
+        "export", "\u00fc.toml".encode(), "--json", "--out", "exports/\u00fc".encode(), cwd=work, env=env
+    )
     assert done.returncode == 0 and b"Traceback" not in done.stderr, done.stderr.decode()
     assert done.stdout.isascii() and done.stderr.isascii()
     svg = next((work / "exports" / "\u00fc" / "pictures").glob("*-above.svg"))

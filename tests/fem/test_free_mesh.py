@@ -13,10 +13,10 @@ from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.mesh import plane_mesh
 from tactcad.fem.plane import end_nodes, fixed_unknowns, parabola
 from tactcad.fem.shape import reference_contour, reference_shape
+from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
-from tactcad.studies.array_estimate import compare_uncut
 
 
 def test_area_of_a_plate_with_holes_is_exact_but_for_the_arcs_parabolas():

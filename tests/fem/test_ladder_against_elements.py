@@ -13,9 +13,9 @@ import pytest
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.solid import solve_solid
+from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
-from tactcad.studies.fit_samples import draw_box, section
 
 SEED = int(os.environ.get("LADDER_SEED", "271828"))
 PROMISE = 3.5e-3

@@ -24,7 +24,9 @@ from tactcad.parts.overload import overloads
 KINDS = sorted(
     {
         (element(layout, p).body, layout.design.rating): (name, p.arm)
-        for name in names() for layout in [Layout(load(name))] for p in layout.elements
+        for name in names()
+        for layout in [Layout(load(name))]
+        for p in layout.elements
     }.values()
 )
 
@@ -53,7 +55,10 @@ def solved(layout: Layout, place: ElementPlace, modulus: float) -> tuple[Answer,
     mesh = triangle_mesh(outer, holes, (*fine, Fine(land, 0.1)), 0.6)
     basis = Basis(mesh, ElementTriP2(), intorder=4)
     x, z = basis.doflocs
-    A = elasticity.stiffness_matrix(basis, *elasticity.lame(modulus, d.material.poisson, plane_stress=True)) * d.sheet.thickness
+    A = (
+        elasticity.stiffness_matrix(basis, *elasticity.lame(modulus, d.material.poisson, plane_stress=True))
+        * d.sheet.thickness
+    )
     low, high = layout.spacer_z
     held = np.flatnonzero((x > layout.clamp_edge - 1e-9) & (z > low - 1e-9) & (z < high + 1e-9))
     x0, x1, face = layout.pad_inner, layout.pad_outer, -d.element.pad_height
@@ -89,7 +94,11 @@ def fillet_sides(mesh, basis, place, t, l, r):
     for end in range(2):
         x, z = p[0, end] - place.hinge_x, p[1, end]
         floor = (np.abs(z - t) < 1e-6) & (np.abs(x) < l / 2)
-        arcs = (np.abs(np.hypot(np.abs(x) - (l / 2 - r), z - t - r) - r) < 1e-6) & (z < t + r + 1e-6) & (np.abs(x) > l / 2 - r - 1e-6)
+        arcs = (
+            (np.abs(np.hypot(np.abs(x) - (l / 2 - r), z - t - r) - r) < 1e-6)
+            & (z < t + r + 1e-6)
+            & (np.abs(x) > l / 2 - r - 1e-6)
+        )
         on &= floor | arcs
     assert on.sum() > 20
     ends = basis.nodal_dofs[0, corners[:, on]]

@@ -9,9 +9,9 @@ from tactcad.fem.plane import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.solid import solve_solid
 from tactcad.fem.surface import face_strain
+from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import strain
 from tactcad.mechanics.section import REFERENCE
-from tactcad.studies.fit_samples import draw_box, section
 
 E, NU, B = 69000.0, 0.33, 3.0
 

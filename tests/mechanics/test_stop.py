@@ -26,12 +26,19 @@ def frame(s: HingeSection, arm: float, force: float, at: float) -> tuple[float, 
     K = np.zeros((8, 8))
     for n, (length, height) in enumerate(spans):
         I = b * height**3 / 12
-        k = E * I / length**3 * np.array([
-            [12, 6 * length, -12, 6 * length],
-            [6 * length, 4 * length**2, -6 * length, 2 * length**2],
-            [-12, -6 * length, 12, -6 * length],
-            [6 * length, 2 * length**2, -6 * length, 4 * length**2],
-        ])  # fmt: skip
+        k = (
+            E
+            * I
+            / length**3
+            * np.array(
+                [
+                    [12, 6 * length, -12, 6 * length],
+                    [6 * length, 4 * length**2, -6 * length, 2 * length**2],
+                    [-12, -6 * length, 12, -6 * length],
+                    [6 * length, 2 * length**2, -6 * length, 4 * length**2],
+                ]
+            )
+        )
         K[2 * n : 2 * n + 4, 2 * n : 2 * n + 4] += k
     load = np.zeros(8)
     load[4] = force

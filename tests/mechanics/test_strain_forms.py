@@ -20,8 +20,15 @@ def designs():
         t = 10 ** rng.uniform(-1.3, -0.4)
         r = t * 10 ** rng.uniform(-0.7, 0.7)
         length = 2 * r + t * 10 ** rng.uniform(-2, 1.0)
-        yield dict(hinge_thickness=t, fillet_radius=r, hinge_length=length, load_arm=rng.uniform(3, 9),
-                   arm_height=3 * (t + 2 * r), body_height=5 * (t + 2 * r), two_sided=bool(i % 2))
+        yield dict(
+            hinge_thickness=t,
+            fillet_radius=r,
+            hinge_length=length,
+            load_arm=rng.uniform(3, 9),
+            arm_height=3 * (t + 2 * r),
+            body_height=5 * (t + 2 * r),
+            two_sided=bool(i % 2),
+        )
 
 
 @pytest.fixture(autouse=True)
@@ -37,7 +44,9 @@ def constants(group, two):
 @pytest.mark.parametrize("changes", list(designs()))
 def test_fillet_and_face_factors(changes):
     s, two = REFERENCE.with_(**changes), changes["two_sided"]
-    t, r, length, L = (mp.mpf(changes[n]) for n in ("hinge_thickness", "fillet_radius", "hinge_length", "load_arm"))
+    t, r, length, L = (
+        mp.mpf(changes[n]) for n in ("hinge_thickness", "fillet_radius", "hinge_length", "load_arm")
+    )
     lc, rho = length - 2 * r, r / t
     # lc loses digits where the fillets nearly fill the slot; the factors see it as lc/t
     lost = EPS * float(length / t)
@@ -47,7 +56,9 @@ def test_fillet_and_face_factors(changes):
     assert abs(float(strain.fillet_factor(s)) / peak - 1) < 16 * EPS + 2 * float(k["e"]) * lost
     if not two:
         k = constants("face", False)
-        flat = (1 + (k["a"] * lc / 2 - k["b"] * t) / L) * (1 - k["c"] / (k["d"] + rho) * mp.exp(-k["e"] * lc / t))
+        flat = (1 + (k["a"] * lc / 2 - k["b"] * t) / L) * (
+            1 - k["c"] / (k["d"] + rho) * mp.exp(-k["e"] * lc / t)
+        )
         assert abs(float(strain.face_factor(s)) / flat - 1) < 16 * EPS + 2 * float(k["e"]) * lost
 
 

@@ -35,7 +35,9 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 SOURCE, TESTS = ROOT / "src", ROOT / "tests"
 SECONDS = 900  # for the tests of one mutant
-MOST_FILES = 3  # of tests that a mutant is tried on: a check that only a fourth one misses has no test of its own
+MOST_FILES = (
+    3  # of tests that a mutant is tried on: a check that only a fourth one misses has no test of its own
+)
 
 # Names of findings that no literal in the source spells out, by module and expression.
 SPELT_OUT = {
@@ -44,7 +46,9 @@ SPELT_OUT = {
 }
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "_finding", "_about", "_pressed"}
-GATE = re.compile(r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$")
+GATE = re.compile(
+    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$"
+)
 # Functions of export/ that raise CheckFailure and are no gates.
 NO_GATES = {
     "take_lock",  # another export takes too long
@@ -88,7 +92,7 @@ def _module(name: str) -> tuple[str, ast.Module]:
 
 # --- findings by name ---
 
-WITHOUT = '''
+WITHOUT = """
 def _without(function):
     import functools, inspect
     if inspect.isgeneratorfunction(function):
@@ -105,14 +109,19 @@ for _name, _function in list(globals().items()):
         kind in str(getattr(_function, "__annotations__", {{}}).get("return", "")) for kind in ("[Finding]", "[Raw]")
     ):
         globals()[_name] = _without(_function)
-'''
+"""
 
 
 def findings() -> Iterator[Mutant]:
-    for path in [*sorted((SOURCE / "tactcad" / "checks").glob("*.py")), SOURCE / "tactcad" / "export" / "golden.py"]:
+    for path in [
+        *sorted((SOURCE / "tactcad" / "checks").glob("*.py")),
+        SOURCE / "tactcad" / "export" / "golden.py",
+    ]:
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for name in sorted(names_of_findings(module, ast.parse(path.read_text(encoding="utf-8")))):
-            yield Mutant("finding", module, name, lambda tree, name=name: _appended(tree, WITHOUT.format(name=name)))
+            yield Mutant(
+                "finding", module, name, lambda tree, name=name: _appended(tree, WITHOUT.format(name=name))
+            )
 
 
 def _appended(tree: ast.Module, text: str) -> ast.Module:
@@ -130,7 +139,11 @@ def names_of_findings(module: str, tree: ast.Module) -> set[str]:
             names |= _spelt(module, node.value.elts[0])
         elif isinstance(node, ast.For) and isinstance(node.iter, ast.Tuple):
             for row in node.iter.elts:  # rows of a table whose first column is the name
-                if isinstance(row, ast.Tuple) and isinstance(node.target, ast.Tuple) and node.target.elts[0].id == "check":
+                if (
+                    isinstance(row, ast.Tuple)
+                    and isinstance(node.target, ast.Tuple)
+                    and node.target.elts[0].id == "check"
+                ):
                     names |= _spelt(module, row.elts[0])
     return names
 
@@ -141,7 +154,9 @@ def _spelt(module: str, node: ast.expr) -> set[str]:
     if isinstance(node, ast.Name | ast.Attribute):
         return set()  # handed on: it is spelt out where it is made
     expression = ast.unparse(node)
-    assert (module, expression) in SPELT_OUT, f"{module}: which findings does {expression} name? add it to SPELT_OUT"
+    assert (module, expression) in SPELT_OUT, (
+        f"{module}: which findings does {expression} name? add it to SPELT_OUT"
+    )
     return set(SPELT_OUT[module, expression])
 
 
@@ -154,9 +169,18 @@ def rules() -> Iterator[Mutant]:
         homes = {node.name: module for node in tree.body if isinstance(node, ast.FunctionDef)}
         for node in tree.body:  # a rule may live in a module of its own, imported from beside this one
             if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module:
-                homes |= {alias.name: f"{Path(module).parent}/{node.module.replace('.', '/')}.py" for alias in node.names}
+                homes |= {
+                    alias.name: f"{Path(module).parent}/{node.module.replace('.', '/')}.py"
+                    for alias in node.names
+                }
         for node in tree.body:
-            target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0] if isinstance(node, ast.Assign) else None
+            target = (
+                node.target
+                if isinstance(node, ast.AnnAssign)
+                else node.targets[0]
+                if isinstance(node, ast.Assign)
+                else None
+            )
             if isinstance(target, ast.Name) and target.id in tables:
                 used = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
                 for name in sorted(used & set(homes)):
@@ -172,8 +196,18 @@ def _silent(tree: ast.Module, name: str) -> ast.Module:
 # --- gates, statement by statement ---
 
 
+def gated() -> list[Path]:
+    """Modules that hold what was written against what it was made from."""
+    rooms = [
+        path
+        for room in ("drawing", "export", "release")
+        for path in (SOURCE / "tactcad" / room).rglob("*.py")
+    ]
+    return sorted([*rooms, SOURCE / "tactcad" / "scenes" / "bom.py"])
+
+
 def gates() -> Iterator[Mutant]:
-    for path in sorted((SOURCE / "tactcad" / "export").rglob("*.py")):
+    for path in gated():
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
             if not GATE.search(function.name):
@@ -181,19 +215,29 @@ def gates() -> Iterator[Mutant]:
             for n, statement in enumerate(_statements(function)):
                 if _silenced(statement, function) is not None:
                     text = f"{function.name}: {_short(statement)}"
-                    yield Mutant("gate", module, text, lambda tree, f=function.name, n=n: _without_statement(tree, f, n))
+                    yield Mutant(
+                        "gate",
+                        module,
+                        text,
+                        lambda tree, f=function.name, n=n: _without_statement(tree, f, n),
+                    )
 
 
 def unknown_gates() -> list[str]:
     """Functions of export/ that refuse what they find, and that no mutation here would silence."""
     called = {name: re.compile(wanted) for name, wanted in CALLERS.items()}
     found = []
-    for path in sorted((SOURCE / "tactcad" / "export").rglob("*.py")):
+    for path in gated():
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
-            raises = any(isinstance(n, ast.Raise) and n.exc and "CheckFailure" in ast.unparse(n.exc) for n in ast.walk(function))
+            raises = any(
+                isinstance(n, ast.Raise) and n.exc and "CheckFailure" in ast.unparse(n.exc)
+                for n in ast.walk(function)
+            )
             known = GATE.search(function.name) or function.name in NO_GATES
-            calls_one = module in called and any(_uncalled(s, called[module].pattern) for s in _statements(function))
+            calls_one = module in called and any(
+                _uncalled(s, called[module].pattern) for s in _statements(function)
+            )
             lays_out = path.parent.name == "drawing" and path.name not in SHEET_GATES
             if raises and not (known or calls_one or lays_out):
                 found.append(f"{module}: {function.name}")
@@ -207,7 +251,9 @@ def _functions(tree: ast.Module) -> list[ast.FunctionDef]:
 def _statements(function: ast.FunctionDef) -> list[ast.stmt]:
     """Simple statements of the function, in the order of its text."""
     simple = (ast.Raise, ast.Expr, ast.AugAssign, ast.Assign, ast.Return)
-    return sorted((n for n in ast.walk(function) if isinstance(n, simple)), key=lambda n: (n.lineno, n.col_offset))
+    return sorted(
+        (n for n in ast.walk(function) if isinstance(n, simple)), key=lambda n: (n.lineno, n.col_offset)
+    )
 
 
 def _silenced(statement: ast.stmt, function: ast.FunctionDef) -> list[ast.stmt] | None:
@@ -218,12 +264,32 @@ def _silenced(statement: ast.stmt, function: ast.FunctionDef) -> list[ast.stmt] 
     if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Yield | ast.YieldFrom):
         return ast.parse("yield from ()").body
     if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Call):
-        return ast.parse("pass").body if re.search(r"^(wrong|found|faults)\.append$|^_?check_", ast.unparse(statement.value.func)) else None
-    if isinstance(statement, ast.AugAssign) and isinstance(statement.op, ast.Add) and ast.unparse(statement.target) == "wrong":
+        return (
+            ast.parse("pass").body
+            if re.search(r"^(wrong|found|faults)\.append$|^_?check_", ast.unparse(statement.value.func))
+            else None
+        )
+    if (
+        isinstance(statement, ast.AugAssign)
+        and isinstance(statement.op, ast.Add)
+        and ast.unparse(statement.target) == "wrong"
+    ):
         return ast.parse("pass").body
-    if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) in ("wrong", "short", "double"):
-        return None if ast.unparse(statement.value) == "[]" else ast.parse(f"{ast.unparse(statement.targets[0])} = []").body
-    if isinstance(statement, ast.Return) and function.returns and ast.unparse(function.returns) in ("str", "list[str]"):
+    if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) in (
+        "wrong",
+        "short",
+        "double",
+    ):
+        return (
+            None
+            if ast.unparse(statement.value) == "[]"
+            else ast.parse(f"{ast.unparse(statement.targets[0])} = []").body
+        )
+    if (
+        isinstance(statement, ast.Return)
+        and function.returns
+        and ast.unparse(function.returns) in ("str", "list[str]")
+    ):
         text = ast.unparse(statement.value)
         if text in ("wrong", "''", "[]") or text.startswith("wrong + "):
             kept = "wrong" if text.startswith("wrong + ") else None
@@ -259,9 +325,9 @@ CALLERS = {
     "export/pipeline.py": r"^(manifests\.)?check_|^bom\.check_",
     "export/products.py": r"^(dxf|picture)\.check_|^_compare_box$",
     "export/step.py": r"^_check_(part|scene)$",
-    "export/drawing/sheets.py": r"_faults$",
-    "export/drawing/assembly_file.py": r"_faults$",
-    "export/release/make.py": r"^check_archive$|_faults$",
+    "drawing/sheets.py": r"_faults$",
+    "drawing/assembly_file.py": r"_faults$",
+    "release/make.py": r"^check_archive$|_faults$",
 }
 
 
@@ -276,7 +342,12 @@ def calls() -> Iterator[Mutant]:
                 if _uncalled(statement, wanted) is not None:
                     found += 1
                     text = f"{function.name}: {_short(statement)}"
-                    yield Mutant("call", module, text, lambda tree, f=function.name, n=n, w=wanted: _without_call(tree, f, n, w))
+                    yield Mutant(
+                        "call",
+                        module,
+                        text,
+                        lambda tree, f=function.name, n=n, w=wanted: _without_call(tree, f, n, w),
+                    )
         assert found, f"{module} calls no check: where have its calls gone?"
 
 
@@ -303,7 +374,9 @@ def every() -> list[Mutant]:
     for make in (findings, rules, gates, calls):
         for m in make():
             seen[m.label] = seen.get(m.label, 0) + 1
-            found.append(m if seen[m.label] == 1 else Mutant(m.kind, m.module, f"{m.name} ({seen[m.label]})", m.change))
+            found.append(
+                m if seen[m.label] == 1 else Mutant(m.kind, m.module, f"{m.name} ({seen[m.label]})", m.change)
+            )
     return found
 
 
@@ -325,12 +398,19 @@ def tests_of(mutant: Mutant) -> list[str]:
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
-    imports = re.compile(rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b|from {re.escape(package)} import .*\b{last}\b)", re.M)
+    imports = re.compile(
+        rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b|from {re.escape(package)} import .*\b{last}\b)",
+        re.M,
+    )
     chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
     word = mutant.name.split(":")[0]
     for path in sorted(TESTS.rglob("test_*.py")):
         text = path.read_text(encoding="utf-8")
-        concerns = word in text if mutant.kind == "rule" else imports.search(text) or path.relative_to(ROOT).as_posix() in chosen
+        concerns = (
+            word in text
+            if mutant.kind == "rule"
+            else imports.search(text) or path.relative_to(ROOT).as_posix() in chosen
+        )
         if path.parent == Path(__file__).parent or not concerns:
             continue
         chosen[path.relative_to(ROOT).as_posix()] = text.count(word)
@@ -379,7 +459,9 @@ class Runner:
 
     def __init__(self) -> None:
         env = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONDONTWRITEBYTECODE": "1"}
-        self.process = subprocess.Popen([sys.executable, "-c", RUNNER], env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", RUNNER], env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
 
     def run(self, mutant: Mutant) -> Outcome:
         """The tests that concern it on a copy of the source with the mutant in it.
@@ -440,7 +522,9 @@ def line(outcome: Outcome) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("words", nargs="*", help="only mutants whose label holds one of these")
     parser.add_argument("--list", action="store_true", help="print them and their tests, run nothing")
     parser.add_argument("--workers", type=int, default=2)

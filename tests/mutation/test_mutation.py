@@ -22,7 +22,10 @@ def test_every_check_is_in_the_table():
     assert in_table == {*RULES, *RIG_RULES, *(rule.__name__ for rules in FITS.values() for rule in rules)}
     modules = {m.module for m in every if m.kind == "finding"}
     for path in (mutants.SOURCE / "tactcad" / "checks").glob("*.py"):
-        makes = "Finding(" in path.read_text(encoding="utf-8") and path.name not in ("finding.py", "report.py")
+        makes = "Finding(" in path.read_text(encoding="utf-8") and path.name not in (
+            "finding.py",
+            "report.py",
+        )
         assert (f"checks/{path.name}" in modules) == makes, path.name
     assert not [m.label for m in every if not mutants.tests_of(m)]
 
@@ -41,5 +44,7 @@ def test_a_name_that_cannot_be_told_is_noticed():
 
 @pytest.mark.nightly
 def test_a_test_fails_for_every_broken_check():
-    outcomes = mutants.run_all(mutants.every(), os.cpu_count() or 1, lambda o: print(mutants.line(o), flush=True))
+    outcomes = mutants.run_all(
+        mutants.every(), os.cpu_count() or 1, lambda o: print(mutants.line(o), flush=True)
+    )
     assert not [o.mutant.label for o in outcomes if not o.failed]

@@ -216,13 +216,19 @@ def test_equal_elements_share_a_number_and_different_ones_never_do():
 )
 def test_whatever_an_override_changes_is_in_the_number(field, value):
     found = parts_by_number(variant({"array.row_arms": [[6, 6]], f"element.override.2.{field}": value}))
-    assert len(found) == 2 and all(f"{value:g}" in number for number in set(found) - {"macro-array-element-a6mm"})
+    assert len(found) == 2 and all(
+        f"{value:g}" in number for number in set(found) - {"macro-array-element-a6mm"}
+    )
 
 
 def test_numbers_do_not_depend_on_the_order_of_the_list():
     arms = [4, 5.5, 6]
     reference = parts_by_number(variant({"array.row_arms": [arms]}))
-    assert set(reference) == {"macro-array-element-a4mm", "macro-array-element-a5.5mm", "macro-array-element-a6mm"}
+    assert set(reference) == {
+        "macro-array-element-a4mm",
+        "macro-array-element-a5.5mm",
+        "macro-array-element-a6mm",
+    }
     for order in permutations(arms):
         assert parts_by_number(variant({"array.row_arms": [list(order)]})) == reference
     assert parts_by_number(variant({"array.row_arms": [[6, 6], [4, 5.5]]})) == reference

@@ -34,8 +34,9 @@ def test_sizes_are_the_published_ones(thread):
     assert (m.head_height, m.key, m.key_depth) == tuple(float(cap[f"iso4762:{k}"]) for k in "kst")
     assert m.d < m.head <= float(cap["iso4762:dk"])  # the table there has the knurled head, the larger one
     assert (CAP_SCREW_LENGTHS[thread][0], CAP_SCREW_LENGTHS[thread][-1]) == (
-        float(cap["iso4762:short"]), float(cap["iso4762:long"])
-    )  # fmt: skip
+        float(cap["iso4762:short"]),
+        float(cap["iso4762:long"]),
+    )
     listed = published("nominal_screw_lengths", "Screw_Type")["iso4762"]["Nominal_Sizes"].split(",")
     assert set(CAP_SCREW_LENGTHS[thread]) <= {float(n) for n in listed}
     grub = published("setscrew_parameters", "Size")[size]
@@ -50,8 +51,10 @@ def test_sizes_are_the_published_ones(thread):
 def test_rows_that_every_workshop_knows():
     """ISO 4762 M3: head 5.5 x 3, key 2.5; M4: 7 x 4, key 3; M5: 8.5 x 5, key 4. ISO 4026 points: M3 2.0, M5 3.5."""
     assert [(METRIC[t].head, METRIC[t].head_height, METRIC[t].key) for t in ("M3", "M4", "M5")] == [
-        (5.5, 3, 2.5), (7, 4, 3), (8.5, 5, 4),
-    ]  # fmt: skip
+        (5.5, 3, 2.5),
+        (7, 4, 3),
+        (8.5, 5, 4),
+    ]
     assert [METRIC[t].set_point for t in ("M2", "M2.5", "M3", "M4", "M5")] == [1.0, 1.5, 2.0, 2.5, 3.5]
     assert SET_SCREW_LENGTHS["M3"] == (3, 4, 5, 6, 8, 10, 12, 16)
     assert CAP_SCREW_LENGTHS["M3"] == (5, 6, 8, 10, 12, 16, 20, 25, 30)
@@ -74,7 +77,9 @@ def test_volumes_in_closed_form(thread):
         socket = hexagon_area(m.set_key) * min(m.set_key_depth, length / 2)
         volume = pi * r**2 * shank + pi * (r - p) * (r * r + r * p + p * p) / 3 - socket
         assert set_screw(thread, length).volume == pytest.approx(volume, rel=1e-12)
-    assert nut(thread).volume == pytest.approx((hexagon_area(m.nut) - pi / 4 * m.tap_drill**2) * m.nut_height, rel=1e-12)
+    assert nut(thread).volume == pytest.approx(
+        (hexagon_area(m.nut) - pi / 4 * m.tap_drill**2) * m.nut_height, rel=1e-12
+    )
     assert threaded_rod(thread, 100).volume == pytest.approx(pi / 4 * m.d**2 * 100, rel=1e-12)
 
 
@@ -104,13 +109,29 @@ def test_designations_can_be_ordered():
     assert cap_screw("M3", 10).purchase.designation == "ISO 4762 M3x10 A2-70"
     assert set_screw("M2.5", 6).purchase.designation == "ISO 4026 M2.5x6 A2-21H"
     assert nut("M4").purchase.designation == "ISO 4032 M4 A2-70"
-    for part in (cap_screw("M3", 10), set_screw("M3", 10), nut("M3"), threaded_rod("M3", 50), dowels.dowel("3", 20)):
+    for part in (
+        cap_screw("M3", 10),
+        set_screw("M3", 10),
+        nut("M3"),
+        threaded_rod("M3", 50),
+        dowels.dowel("3", 20),
+    ):
         assert part.bought and part.purchase.source_verified is False
 
 
 def test_holes_counted_by_hand():
     m = METRIC["M3"]
-    blind = Hole("tap", (0, 0, 10), (0, 0, -1), m.tap_drill, 6.5, False, thread="M3", thread_depth=5.5, drill_point=True)
+    blind = Hole(
+        "tap",
+        (0, 0, 10),
+        (0, 0, -1),
+        m.tap_drill,
+        6.5,
+        False,
+        thread="M3",
+        thread_depth=5.5,
+        drill_point=True,
+    )
     cone = m.tap_drill / 2 / tan(pi * 59 / 180)
     assert drill_point_height(m.tap_drill) == pytest.approx(cone, rel=1e-12)
     assert blind.volume == pytest.approx(pi / 4 * m.tap_drill**2 * (6.5 + cone / 3), rel=1e-12)
@@ -124,7 +145,14 @@ def test_volumes_and_centres_against_the_kernel(macro_scene, macro_shapes):
     from tactcad.solids.build import build
     from tactcad.solids.measure import measure
 
-    extra = [cap_screw("M5", 20), set_screw("M2", 3), set_screw("M4", 12), nut("M2.5"), threaded_rod("M4", 60), dowels.dowel("2.5", 8)]
+    extra = [
+        cap_screw("M5", 20),
+        set_screw("M2", 3),
+        set_screw("M4", 12),
+        nut("M2.5"),
+        threaded_rod("M4", 60),
+        dowels.dowel("2.5", 8),
+    ]
     shapes = {**macro_shapes, **{p.part_no: build(p).wrapped for p in extra}}
     for part in (*macro_scene.parts, *extra):
         got = measure(shapes[part.part_no])
@@ -172,7 +200,14 @@ def test_a_screw_in_a_picture_stays_clear_of_its_tapped_hole_and_keeps_its_lengt
             continue
         reach = [max(s.start[0] for s in p.body.profile if s.start[1] > 0) for p in (shown, part)]
         assert reach[0] < m.tap_drill / 2 < reach[1] == m.d / 2
-        assert shown.body.profile.box[1:2] + shown.body.profile.box[3:] == part.body.profile.box[1:2] + part.body.profile.box[3:]
-        head = [max(s.start[0] for s in p.body.profile if s.start[1] < 0) for p in (shown, part) if part.body.profile.box[1] < 0]
+        assert (
+            shown.body.profile.box[1:2] + shown.body.profile.box[3:]
+            == part.body.profile.box[1:2] + part.body.profile.box[3:]
+        )
+        head = [
+            max(s.start[0] for s in p.body.profile if s.start[1] < 0)
+            for p in (shown, part)
+            if part.body.profile.box[1] < 0
+        ]
         assert len(set(head)) <= 1
     assert screws.for_pictures(nut(thread)) == nut(thread)

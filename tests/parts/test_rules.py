@@ -21,8 +21,12 @@ from tactcad.scenes import make_scene
 
 MACRO = "macro-array"
 THIN = {
-    "sheet.thickness": 0.5, "array.spacer": 0.5, "array.pitch": 1.0, "gauge.carrier_width": 0.5, "gauge.grid_width": 0.4,
-}  # fmt: skip
+    "sheet.thickness": 0.5,
+    "array.spacer": 0.5,
+    "array.pitch": 1.0,
+    "gauge.carrier_width": 0.5,
+    "gauge.grid_width": 0.4,
+}
 ONE = {"array.row_arms": [[4.0]]}
 TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
 
@@ -68,8 +72,14 @@ WITNESSES = {
     ],
     "pad_stands_out_of_body": [
         (
-            {**TWO_SIDED, "element.body_height": 7.0, "element.rear_height": 12.0, "clamp.spacer_drop": 4.1,
-             "stop.land_length": 0.3}, "element.pad_height",
+            {
+                **TWO_SIDED,
+                "element.body_height": 7.0,
+                "element.rear_height": 12.0,
+                "clamp.spacer_drop": 4.1,
+                "stop.land_length": 0.3,
+            },
+            "element.pad_height",
         ),
         ({**TWO_SIDED, "element.pad_height": 0.55, "element.pad_root_radius": 0.2}, "element.pad_height"),
     ],
@@ -88,19 +98,33 @@ WITNESSES = {
         ({"gauge.grid_length": 2.5}, "gauge.grid_length"),
     ],
     "leads_have_room": [
-        ({"element.recess_depth": 0.2, "element.corner_radius": 0.15, "element.pad_root_radius": 0.2}, "element.recess_depth"),
+        (
+            {"element.recess_depth": 0.2, "element.corner_radius": 0.15, "element.pad_root_radius": 0.2},
+            "element.recess_depth",
+        ),
         ({"element.pad_height": 0.27, "element.pad_root_radius": 0.2}, "element.pad_height"),
     ],
     "land_stands_over_arm": [({"tolerance.arm_height": 0.4}, "tolerance.arm_height")],
-    "slots_stay_open": [({"tolerance.hinge_length": 0.5, "element.hinge_length": 0.55, "element.fillet_radius": 0.25}, "element.hinge_length")],
+    "slots_stay_open": [
+        (
+            {"tolerance.hinge_length": 0.5, "element.hinge_length": 0.55, "element.fillet_radius": 0.25},
+            "element.hinge_length",
+        )
+    ],
     "pressed_arms_clear_opposite_row": [
         ({"array.row_pitch": 2.2}, "array.row_pitch"),
         ({"tolerance.load_arm": 1.0}, "array.row_pitch"),
     ],
     "ledge_below_rear": [
         ({"clamp.stop_plate_gap": 0.25}, "clamp.stop_plate_gap"),
-        ({"element.body_height": 7.5, "stop.land_length": 0.1, "array.row_arms": [[9]]}, "element.rear_height"),
-        ({"clamp.stop_plate_gap": 0.8, "element.corner_radius": 0.8, "element.recess_depth": 0.8}, "element.seat_length"),
+        (
+            {"element.body_height": 7.5, "stop.land_length": 0.1, "array.row_arms": [[9]]},
+            "element.rear_height",
+        ),
+        (
+            {"clamp.stop_plate_gap": 0.8, "element.corner_radius": 0.8, "element.recess_depth": 0.8},
+            "element.seat_length",
+        ),
     ],
     "recess_fits_rear": [
         ({"clamp.spacer_bottom": 0.7}, "clamp.spacer_bottom"),
@@ -128,7 +152,9 @@ WITNESSES = {
         ({"holes.web": 2.0}, "element.rear_height"),
         ({"holes.screw_offsets": [4.1], "holes.dowel_offsets": [9.1, 17.0]}, "holes.dowel_offsets"),
     ],
-    "stack_can_be_clamped": [({"array.row_arms": [[4] * 500], "array.pitch": 6.0, "array.spacer": 3.0}, "array.row_arms")],
+    "stack_can_be_clamped": [
+        ({"array.row_arms": [[4] * 500], "array.pitch": 6.0, "array.spacer": 3.0}, "array.row_arms")
+    ],
     "end_plate_takes_holes": [
         ({"clamp.end_plate_bottom": 0.9}, "clamp.end_plate_bottom"),
         ({"clamp.end_plate_thickness": 4.0}, "clamp.end_plate_thickness"),
@@ -144,10 +170,7 @@ WITNESSES = {
         ({"clamp.stop_plate_gap": 0.85}, "clamp.stop_plate_gap"),
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
         ({"clamp.stop_plate_thickness": 0.5}, "clamp.stop_plate_thickness"),
-        (
-            {**ONE, **THIN},
-            "clamp.screw",
-        ),
+        ({**ONE, **THIN}, "clamp.screw"),
     ],
     "carrier_holes_apart": [
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
@@ -157,7 +180,7 @@ WITNESSES = {
         ({"element.hinge_length": 0.6005}, "element.hinge_length"),
         ({**TWO_SIDED, "array.row_arms": [[4], [2.7405]], "stop.land_length": 0.2}, "array.row_arms"),
     ],
-}  # fmt: skip
+}
 
 CASES = [(rule, n) for rule, cases in WITNESSES.items() for n in range(len(cases))]
 
@@ -239,7 +262,11 @@ def checked(design: Design) -> list[str]:
 @pytest.mark.cad
 # no shrinking: each example is a whole check, and a failing one says itself what is wrong
 @settings(
-    max_examples=3, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck), phases=[Phase.generate]
+    max_examples=3,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=list(HealthCheck),
+    phases=[Phase.generate],
 )
 @given(sound_designs(row_lengths=(1, 2, 3)))
 def test_such_designs_build_and_pass_every_check(design):
@@ -259,7 +286,11 @@ def test_many_such_designs_build_and_pass_every_check(design):
     "changes",
     [
         {"element.rear_height": 16.0},  # carrier over high rear bodies
-        {"array.row_arms": [[4] * 4], "clamp.end_plate_thickness": 5.0, "clamp.mount_pitch_y": 5.0},  # counterbores
+        {
+            "array.row_arms": [[4] * 4],
+            "clamp.end_plate_thickness": 5.0,
+            "clamp.mount_pitch_y": 5.0,
+        },  # counterbores
         # set screws over the outermost of thin elements would stand in the end plates
         {"array.row_arms": [[4] * 8], **THIN},
         {"array.row_arms": [[50.0, 4.0]]},  # beyond the estimator's fit
@@ -278,7 +309,9 @@ def test_the_shipped_hinge_in_rows_of_any_length(rows):
         design = variant({"array.row_arms": arms}, base=base)
         assert broken_rules(design) == []
         scene = make_scene(design, "array")
-        placed = [p.designator for p in scene.placements if p.designator[0] == "E" and p.designator[1].isdigit()]
+        placed = [
+            p.designator for p in scene.placements if p.designator[0] == "E" and p.designator[1].isdigit()
+        ]
         assert sorted(placed, key=lambda d: int(d[1:])) == [f"E{n + 1}" for n in range(sum(rows))]
 
 
@@ -287,7 +320,12 @@ def _numbers() -> list[tuple[str, float, float]]:
     for section, kind in SECTION_TYPES.items():
         for f in fields(kind) if is_dataclass(kind) else ():
             spec = f.metadata.get("spec")
-            if spec is not None and hasattr(spec, "low") and f.name != "gaps" and section in ("sheet", "array", "element", "holes", "clamp", "stop", "gauge"):
+            if (
+                spec is not None
+                and hasattr(spec, "low")
+                and f.name != "gaps"
+                and section in ("sheet", "array", "element", "holes", "clamp", "stop", "gauge")
+            ):
                 found.append((f"{section}.{f.name}", spec.low, spec.high))
     return found
 

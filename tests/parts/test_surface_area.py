@@ -30,10 +30,16 @@ BLOCK = Extrusion(rectangle(0, 0, 20, 10), 5.0)  # 2 (200 + 100 + 50) = 700
         ((Hole("through", (5, 5, 0), UP, 2, 5, True),), 700 - 2 * pi + 10 * pi),
         ((Hole("blind", (5, 5, 5), DOWN, 2, 3, False),), 700 + 6 * pi),
         # cone of 118 degrees on radius 1: its side is pi r s with s = r/sin(59 deg)
-        ((Hole("drilled", (5, 5, 5), DOWN, 2, 3, False, drill_point=True),), 700 + 6 * pi + pi / 0.857167300702 - pi),
+        (
+            (Hole("drilled", (5, 5, 5), DOWN, 2, 3, False, drill_point=True),),
+            700 + 6 * pi + pi / 0.857167300702 - pi,
+        ),
         ((Hole("bored", (5, 5, 5), DOWN, 2, 5, True, counterbore=(4, 1)),), 700 + 4 * pi + 8 * pi - 2 * pi),
         ((Pocket("closed", (0, 0, 5), DOWN, X, rectangle(2, -4, 6, -2), 1),), 700 + 12),
-        ((Pocket("island", (0, 0, 5), DOWN, X, rectangle(2, -8, 8, -2), 1, (rectangle(4, -6, 6, -4),)),), 700 + 24 + 8),
+        (
+            (Pocket("island", (0, 0, 5), DOWN, X, rectangle(2, -8, 8, -2), 1, (rectangle(4, -6, 6, -4),)),),
+            700 + 24 + 8,
+        ),
         # a step over the block's whole end: three of its sides are open and shorten the stock's own walls
         ((Pocket("step", (0, 0, 5), DOWN, X, rectangle(0, -10, 4, 0), 1),), 700 + 10 - (4 + 10 + 4)),
     ],
@@ -50,9 +56,13 @@ def test_turned_bodies():
     assert surface_area(part(Revolution(ball))) == pytest.approx(16 * pi)
     ring = Revolution(circle((5, 0), 2))
     assert surface_area(part(ring)) == pytest.approx(4 * pi**2 * 5)
-    bowl = Contour((  # a quarter circle turned inwards about (2, 2): centroid of the arc at 2 - 4/pi from the axis
-        Line((0, 0), (2, 0)), Arc((2, 0), (0, 2), (2, 2), False), Line((0, 2), (0, 0)),
-    ))  # fmt: skip
+    bowl = Contour(
+        (  # a quarter circle turned inwards about (2, 2): centroid of the arc at 2 - 4/pi from the axis
+            Line((0, 0), (2, 0)),
+            Arc((2, 0), (0, 2), (2, 2), False),
+            Line((0, 2), (0, 0)),
+        )
+    )
     assert surface_area(part(Revolution(bowl))) == pytest.approx(4 * pi + 2 * pi * (2 - 4 / pi) * pi)
 
 

@@ -10,7 +10,7 @@ import signal
 import sys
 from pathlib import Path
 
-from tactcad.export.release.archive import written_beside
+from tactcad.release.archive import written_beside
 
 CHANGES = {"os.rename", "os.mkdir", "os.remove", "open", "os.truncate", "os.chmod", "fcntl.flock"}
 

@@ -14,14 +14,16 @@ from pathlib import Path
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.release.archive import MANIFEST, archive_bytes, replaced_content, written_beside
+from tactcad.release.archive import MANIFEST, archive_bytes, replaced_content, written_beside
 
 CHILD = Path(__file__).with_name("archive_child.py")
 FILES = {"README.txt": b"read me", "dxf/a_A.dxf": b"0\nEOF\n" * 500, "step/ä_A.step": b"\x00\xff"}
 
 
 def child(target: Path, letter: str, fatal: int = 0) -> subprocess.Popen:
-    return subprocess.Popen([sys.executable, str(CHILD), str(target), letter, str(fatal)], stdout=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        [sys.executable, str(CHILD), str(target), letter, str(fatal)], stdout=subprocess.PIPE, text=True
+    )
 
 
 def whole(target: Path) -> str:
@@ -34,7 +36,13 @@ def test_checksums_and_permissions_hold_after_unzip(tmp_path):
     (tmp_path / "a.zip").write_bytes(archive_bytes(FILES, "2026-11-21"))
     os.umask(os.umask(0o022))
     subprocess.run(["unzip", "-q", "a.zip", "-d", "out"], cwd=tmp_path, check=True)
-    checked = subprocess.run(["sha256sum", "--strict", "-c", MANIFEST], cwd=tmp_path / "out", capture_output=True, text=True, check=False)
+    checked = subprocess.run(
+        ["sha256sum", "--strict", "-c", MANIFEST],
+        cwd=tmp_path / "out",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert checked.returncode == 0 and checked.stdout.count(": OK") == len(FILES), checked.stderr
     for name, data in FILES.items():
         path = tmp_path / "out" / name
@@ -68,7 +76,9 @@ def test_killed_before_every_single_file_operation(tmp_path):
         assert run.returncode == -signal.SIGKILL
     assert run.returncode == 0 and outcomes[-1]
     assert outcomes.count(False) >= 4 and outcomes.count(True) >= 2
-    assert [p.name for p in target.parent.iterdir()] == ["a.zip"]  # the last one swept what the killed ones left
+    assert [p.name for p in target.parent.iterdir()] == [
+        "a.zip"
+    ]  # the last one swept what the killed ones left
 
 
 def test_two_writers_at_once_leave_one_whole_file(tmp_path):
@@ -106,7 +116,10 @@ def test_a_full_disk(tmp_path):
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, hard))
     try:
-        with pytest.raises(CheckFailure, match="File too large.*nothing was changed"), written_beside(target, print) as part:
+        with (
+            pytest.raises(CheckFailure, match="File too large.*nothing was changed"),
+            written_beside(target, print) as part,
+        ):
             part.write_bytes(b"n" * 5000)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
@@ -117,7 +130,7 @@ READ_ONLY = """
 import os, sys
 from pathlib import Path
 from tactcad.design.messages import InputError
-from tactcad.export.release.archive import written_beside
+from tactcad.release.archive import written_beside
 if os.geteuid() == 0:
     os.seteuid(65534)  # root may write everywhere; nobody may not
 try:
@@ -131,8 +144,12 @@ def test_a_read_only_folder():
     with tempfile.TemporaryDirectory() as name:
         (Path(name) / "a.zip").write_bytes(b"old")
         os.chmod(name, 0o555)
-        run = subprocess.run([sys.executable, "-c", READ_ONLY, f"{name}/a.zip"], capture_output=True, text=True, check=False)
-        assert run.returncode == 1 and run.stderr.startswith("refused: ") and "Permission denied" in run.stderr
+        run = subprocess.run(
+            [sys.executable, "-c", READ_ONLY, f"{name}/a.zip"], capture_output=True, text=True, check=False
+        )
+        assert (
+            run.returncode == 1 and run.stderr.startswith("refused: ") and "Permission denied" in run.stderr
+        )
         assert os.listdir(name) == ["a.zip"] and (Path(name) / "a.zip").read_bytes() == b"old"
 
 
@@ -140,7 +157,10 @@ def test_a_read_only_folder():
 def test_places_that_cannot_be(where, tmp_path):
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
-    with pytest.raises(InputError, match="cannot be written|is a folder"), written_beside(tmp_path / where, print):
+    with (
+        pytest.raises(InputError, match="cannot be written|is a folder"),
+        written_beside(tmp_path / where, print),
+    ):
         pytest.fail("let in")
 
 

@@ -20,21 +20,26 @@ from variants import HARDWARE
 
 import tactcad
 from tactcad.cli.main import main
-from tactcad.export.drawing import assembly_file
-from tactcad.export.drawing.gate import pdf_runs
-from tactcad.export.release import verify
-from tactcad.export.release.archive import archive_bytes
-from tactcad.export.release.readme import DRAFT, Contents
-from tactcad.export.release.verify import check_archive
+from tactcad.drawing import assembly_file
+from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
+from tactcad.release import verify
+from tactcad.release.archive import archive_bytes
+from tactcad.release.readme import DRAFT, Contents
+from tactcad.release.verify import check_archive
 from tactcad.scenes import make_scene
 
 pytestmark = pytest.mark.cad
 
-TEXT = re.sub(  # the paper's array cut down to one element, without rigs
-    r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "",
-    (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
-).replace('name = "macro-array"', 'name = "tiny"').replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")  # fmt: skip
+TEXT = (
+    re.sub(  # the paper's array cut down to one element, without rigs
+        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)",
+        "",
+        (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
+    )
+    .replace('name = "macro-array"', 'name = "tiny"')
+    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
+)
 REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"
 
@@ -55,13 +60,21 @@ def home(project, tmp_path_factory):
     home = tmp_path_factory.mktemp("home")
     shutil.copytree(project, home / "project")
     environment = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")} | {
-        "PYTHONPATH": str(Path(tactcad.__file__).parents[1]), "HOME": str(home), "TZ": "Pacific/Auckland", "PYTHONHASHSEED": "4242",
-        "TACTCAD_CACHE": str(home / "cache"), "TMPDIR": str(home),
-    }  # fmt: skip
+        "PYTHONPATH": str(Path(tactcad.__file__).parents[1]),
+        "HOME": str(home),
+        "TZ": "Pacific/Auckland",
+        "PYTHONHASHSEED": "4242",
+        "TACTCAD_CACHE": str(home / "cache"),
+        "TMPDIR": str(home),
+    }
     run = subprocess.run(
-        [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"], cwd=home / "project", env=environment,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"],
+        cwd=home / "project",
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert run.returncode == 0, run.stderr
     assert sorted(p.name for p in (home / "project" / "exports" / "releases").iterdir()) == [NAME]
     return home
@@ -99,7 +112,9 @@ def test_what_is_in_it(files):
     sheets = {n for n in files if n.startswith("pdf/")}
     made = {n for n in files if n.startswith("step/tiny-")}  # one sheet a part made, one drawing a scene
     assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made}
-    assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(files)
+    assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(
+        files
+    )
     listed = dict(line.split("  ")[::-1] for line in files["MANIFEST.sha256"].decode().splitlines())
     assert listed == {n: hashlib.sha256(d).hexdigest() for n, d in files.items() if n != "MANIFEST.sha256"}
 
@@ -110,17 +125,29 @@ def test_the_bill_and_the_folders_agree(files):
     assert {row["file"] for row in made} <= set(files) and len(made) == 7
     readme = files["README.txt"].decode()
     for row in made:  # what to make, how many, of what
-        assert re.search(rf"^  {row['part_no']} +{row['qty']} +{re.escape(row['material'])} ", readme, flags=re.M), row
+        assert re.search(
+            rf"^  {row['part_no']} +{row['qty']} +{re.escape(row['material'])} ", readme, flags=re.M
+        ), row
 
 
 def test_the_readme_answers_a_shops_questions(files):
     text = files["README.txt"].decode("ascii")
     assert text.splitlines()[0] == f"tiny, revision {REVISION}: Macro tactile array 2 x 5"
     assert max(map(len, text.splitlines())) <= 110
-    for said in ("hinge thickness: 0.25 mm, 0.245 to 0.255", "do not tumble", "ISO 2768-1:1989-m", "7075-T6", "sha256sum -c"):
+    for said in (
+        "hinge thickness: 0.25 mm, 0.245 to 0.255",
+        "do not tumble",
+        "ISO 2768-1:1989-m",
+        "7075-T6",
+        "sha256sum -c",
+    ):
         assert said in " ".join(text.split())
     for name in files:  # every file is accounted for
-        assert name.split("/")[0] + ("/" if "/" in name else "") in text or name == "README.txt" or name.startswith("bom")
+        assert (
+            name.split("/")[0] + ("/" if "/" in name else "") in text
+            or name == "README.txt"
+            or name.startswith("bom")
+        )
     assert "PRELIMINARY" not in text
 
 
@@ -160,31 +187,53 @@ ELEMENT = f"tiny-element-a5mm_{REVISION}"
 R = REVISION.encode()
 TAMPERED = {
     "cut file of another size": lambda f: _swap(f, f"dxf/{ELEMENT}.dxf", b"\n8.0\n", b"\n8.1\n"),
-    "cut file in inches": lambda f: _swap(f, f"dxf/{ELEMENT}.dxf", b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n1\n"),
+    "cut file in inches": lambda f: _swap(
+        f, f"dxf/{ELEMENT}.dxf", b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n1\n"
+    ),
     "cut file of another part": lambda f: {**f, f"dxf/{ELEMENT}.dxf": f[f"dxf/tiny-blank_{REVISION}.dxf"]},
     "cut file missing": lambda f: {n: d for n, d in f.items() if n != f"dxf/{ELEMENT}.dxf"},
     "cut file of nothing": lambda f: {**f, f"dxf/other_{REVISION}.dxf": f[f"dxf/{ELEMENT}.dxf"]},
     "cut file of another revision": lambda f: {**f, "dxf/tiny-element-a5mm_ZZ.dxf": f[f"dxf/{ELEMENT}.dxf"]},
-    "header of another revision": lambda f: _swap(f, f"step/{ELEMENT}.step", b"'revision " + R + b"'", b"'revision ZZ'"),
-    "assembly of another revision": lambda f: _swap(f, f"step/tiny-array_{REVISION}.step", b"'revision " + R + b"'", b"'revision ZZ'"),
+    "header of another revision": lambda f: _swap(
+        f, f"step/{ELEMENT}.step", b"'revision " + R + b"'", b"'revision ZZ'"
+    ),
+    "assembly of another revision": lambda f: _swap(
+        f, f"step/tiny-array_{REVISION}.step", b"'revision " + R + b"'", b"'revision ZZ'"
+    ),
     "solid missing": lambda f: {n: d for n, d in f.items() if n != f"step/{ELEMENT}.step"},
-    "assembly in a part's file": lambda f: {**f, f"step/{ELEMENT}.step": f[f"step/tiny-array_{REVISION}.step"]},
-    "instance missing": lambda f: _swap(f, f"step/tiny-array_{REVISION}.step", b"=NEXT_ASSEMBLY_USAGE_OCCURRENCE('E1'", b"=NEXT_ASSEMBLY_USAGE('E1'"),
+    "assembly in a part's file": lambda f: {
+        **f,
+        f"step/{ELEMENT}.step": f[f"step/tiny-array_{REVISION}.step"],
+    },
+    "instance missing": lambda f: _swap(
+        f,
+        f"step/tiny-array_{REVISION}.step",
+        b"=NEXT_ASSEMBLY_USAGE_OCCURRENCE('E1'",
+        b"=NEXT_ASSEMBLY_USAGE('E1'",
+    ),
     "bill of another revision": lambda f: _swap(f, "bom.csv", b"tiny-stop-plate," + R, b"tiny-stop-plate,ZZ"),
-    "bill with another quantity": lambda f: _swap(f, "bom.csv", b"tiny-stop-plate," + R + b",1", b"tiny-stop-plate," + R + b",2"),
-    "bill with another file": lambda f: _swap(f, "bom.csv", b"dxf/" + ELEMENT.encode(), b"dxf/" + ELEMENT.encode() + b"x"),
+    "bill with another quantity": lambda f: _swap(
+        f, "bom.csv", b"tiny-stop-plate," + R + b",1", b"tiny-stop-plate," + R + b",2"
+    ),
+    "bill with another file": lambda f: _swap(
+        f, "bom.csv", b"dxf/" + ELEMENT.encode(), b"dxf/" + ELEMENT.encode() + b"x"
+    ),
     "bill missing": lambda f: {n: d for n, d in f.items() if n != "bom.csv"},
     "drawing missing": lambda f: {n: d for n, d in f.items() if n != f"pdf/{ELEMENT}.pdf"},
     "drawing of another part": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/tiny-blank_{REVISION}.pdf"]},
     "drawing cut off": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/{ELEMENT}.pdf"][:2000]},
     "drawing of a draft": lambda f: {**f, f"pdf/{ELEMENT}.pdf": _sheets(f, "PRELIMINARY")},
-    "assembly drawing missing": lambda f: {n: d for n, d in f.items() if n != f"pdf/tiny-array_{REVISION}.pdf"},
+    "assembly drawing missing": lambda f: {
+        n: d for n, d in f.items() if n != f"pdf/tiny-array_{REVISION}.pdf"
+    },
     "cut file changed with everything that names it but the drawing": lambda f: _recut(f),
     "inspection sheet of another revision": lambda f: _swap(f, "inspection.csv", b"tiny," + R, b"tiny,ZZ"),
     "strength summary of another design": lambda f: _swap(f, "strength.csv", b"\ntiny,", b"\nlarge,"),
-    "README of another revision": lambda f: _swap(f, "README.txt", b"tiny, revision " + R, b"tiny, revision ZZ"),
+    "README of another revision": lambda f: _swap(
+        f, "README.txt", b"tiny, revision " + R, b"tiny, revision ZZ"
+    ),
     "README of a draft": lambda f: {**f, "README.txt": f["README.txt"] + DRAFT.encode() + b"\r\n"},
-}  # fmt: skip
+}
 
 
 @pytest.fixture
@@ -211,7 +260,10 @@ def test_damage_is_found_anywhere(released, contents, tmp_path, read_once):
     data = released.read_bytes()
     path = tmp_path / "a.zip"
     with zipfile.ZipFile(released) as archive:
-        places = [(e.filename, e.header_offset + 30 + len(e.filename) + e.compress_size // 2) for e in archive.infolist()]
+        places = [
+            (e.filename, e.header_offset + 30 + len(e.filename) + e.compress_size // 2)
+            for e in archive.infolist()
+        ]
     for name, at in places:
         path.write_bytes(data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
         assert check_archive(path, contents), name
@@ -225,7 +277,9 @@ def test_damage_is_found_anywhere(released, contents, tmp_path, read_once):
 def release(project: Path, capsys, *arguments: str, design: str = TEXT) -> tuple[int, str, str, set[str]]:
     """Status, standard output and error, and what then lies in the folder of releases."""
     (project / "hardware" / "tiny.toml").write_text(design)
-    status = main(["release", str(project / "hardware" / "tiny.toml"), "--out", str(project / "out"), *arguments])
+    status = main(
+        ["release", str(project / "hardware" / "tiny.toml"), "--out", str(project / "out"), *arguments]
+    )
     out, err = capsys.readouterr()
     there = {p.name for p in (project / "out").iterdir()} if (project / "out").exists() else set()
     return status, out, err, there
@@ -240,7 +294,10 @@ def copy(project, tmp_path):
 WIDER = TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
 BY_GOLDEN = {
     "other geometry under the same revision": (WIDER, "other geometry than its golden file"),
-    "a revision not taken up": (TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'), "`make golden` takes it up"),
+    "a revision not taken up": (
+        TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'),
+        "`make golden` takes it up",
+    ),
 }
 
 
@@ -280,7 +337,9 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     status, out, _, there = release(copy, capsys, "--shop", str(coarse_shop), "--draft", "--json")
     record = json.loads(out)
     assert status == 0 and record["draft"] and record["failures"]
-    assert there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == b"older"
+    assert (
+        there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == b"older"
+    )
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
@@ -304,21 +363,29 @@ def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released,
 
 def test_what_does_not_read_back_is_not_published(copy, capsys, monkeypatch):
     """A zip damaged between writing and reading: the older one stays, no part file is left."""
-    from tactcad.export.release import make
+    from tactcad.release import make
 
     monkeypatch.setattr(make, "archive_bytes", lambda files, date: archive_bytes(files, date)[:-500])
     (copy / "out").mkdir()
     (copy / "out" / NAME).write_bytes(b"older")
     status, _, err, there = release(copy, capsys)
-    assert status == 1 and "does not hold" in err and there == {NAME} and (copy / "out" / NAME).read_bytes() == b"older"
+    assert (
+        status == 1
+        and "does not hold" in err
+        and there == {NAME}
+        and (copy / "out" / NAME).read_bytes() == b"older"
+    )
 
 
 def test_bad_input_is_refused_before_any_work(copy, tmp_path, capsys):
     for arguments, named in (
-        (("--shop", str(tmp_path / "none.toml")), "none.toml"), (("--shop", str(copy / "hardware" / "tiny.toml")), "unknown field"),
+        (("--shop", str(tmp_path / "none.toml")), "none.toml"),
+        (("--shop", str(copy / "hardware" / "tiny.toml")), "unknown field"),
     ):
         status, out, err, there = release(copy, capsys, *arguments)
         assert status == 2 and named in err and err.count("\n") == 1 and out == "" and there == set()
     assert main(["release", str(tmp_path / "none.toml"), "--out", str(copy / "out")]) == 2
-    status, _, err, there = release(copy, capsys, design=TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5"))
+    status, _, err, there = release(
+        copy, capsys, design=TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5")
+    )
     assert status == 2 and there == set()

@@ -20,7 +20,16 @@ spec.loader.exec_module(review)
 def slotted(web: float, slot: float, radius: float) -> Contour:
     """A 20 x 8 block with a slot from above that leaves `web` mm; radius = slot/2 is a full round."""
     a, b = 10 + slot / 2, 10 - slot / 2
-    points = [(0, 0, 0), (20, 0, 0), (20, 8, 0), (a, 8, 0), (a, web, radius), (b, web, radius), (b, 8, 0), (0, 8, 0)]
+    points = [
+        (0, 0, 0),
+        (20, 0, 0),
+        (20, 8, 0),
+        (a, 8, 0),
+        (a, web, radius),
+        (b, web, radius),
+        (b, 8, 0),
+        (0, 8, 0),
+    ]
     return rounded_polygon([Corner((x, y), r) for x, y, r in points])
 
 
@@ -34,7 +43,9 @@ def facts(body: Extrusion, number: str = "x-element-a4") -> dict:
     }
 
 
-def faults(tmp_path, body: Extrusion, meant: Extrusion, hinge: float, number: str = "x-element-a4") -> list[str]:
+def faults(
+    tmp_path, body: Extrusion, meant: Extrusion, hinge: float, number: str = "x-element-a4"
+) -> list[str]:
     path = tmp_path / "part.dxf"
     path.write_bytes(dxf_bytes(Part(number, "", "wire-cut", Material("", 2810.0), body)))
     return review.file_faults(path, facts(meant, number), {"hinge_thickness": hinge})

@@ -40,7 +40,10 @@ def test_a_tree_as_the_bill_has_it():
         (tree(XX="d-plate"), "the bill of materials has not"),
         (tree(EP1="d-spacer"), "EP1 shows d-spacer instead of d-plate"),
         ({"groups": 1, "children": tree()["children"] * 2}, "stands twice"),
-        ({"groups": 1, "children": [c | {"colour": window.UNCOLOURED} for c in tree()["children"]]}, "has no colour"),
+        (
+            {"groups": 1, "children": [c | {"colour": window.UNCOLOURED} for c in tree()["children"]]},
+            "has no colour",
+        ),
     ],
 )
 def test_another_tree_is_seen(bad, said):
@@ -63,7 +66,13 @@ def test_a_scene_without_model_or_bill_is_seen():
         kinds = {"step": "step-assembly", "json": "bom", "csv": "bom"}
         return {"design": "d", "files": [{"path": p, "kind": kinds[p.rpartition(".")[2]]} for p in paths]}
 
-    whole = ("step/d-array_A.step", "bom.json", "bom.csv", "step/d-sample-stiffness_A.step", "bom-sample-stiffness.json")
+    whole = (
+        "step/d-array_A.step",
+        "bom.json",
+        "bom.csv",
+        "step/d-sample-stiffness_A.step",
+        "bom-sample-stiffness.json",
+    )
     assert review.scene_faults(manifest(*whole)) == []
     for n in (0, 3, 4):
         assert review.scene_faults(manifest(*whole[:n], *whole[n + 1 :]))

@@ -23,8 +23,11 @@ def rows(name: str) -> list[dict[str, str]]:
 
 @pytest.mark.parametrize("size", ["623-2Z", "624-2Z"])
 def test_bearings_are_those_of_the_makers_list(size):
-    (row,) = (r for r in rows("single_row_capped_deep_groove_ball_bearing_parameters.csv")
-              if r["SKT:Designation"].strip("* ") == size)
+    (row,) = (
+        r
+        for r in rows("single_row_capped_deep_groove_ball_bearing_parameters.csv")
+        if r["SKT:Designation"].strip("* ") == size
+    )
     ours = BEARINGS[size]
     assert (ours.d, ours.D, ours.B) == tuple(float(row[f"SKT:{k}"]) for k in ("d", "D", "B"))
     assert ours.inner == float(row["SKT:d1"])
@@ -47,7 +50,10 @@ def test_the_estimate_of_the_inner_shoulder_keeps_to_the_known_ones():
 def test_o_rings_are_those_of_the_standard():
     known = {r["Size"]: r for r in rows("o-ring_parameters.csv")}
     for code, inside in orings.INSIDE.items():
-        assert (inside, orings.SECTION) == (float(known[code]["iso3601:id"]), float(known[code]["iso3601:w"])), code
+        assert (inside, orings.SECTION) == (
+            float(known[code]["iso3601:id"]),
+            float(known[code]["iso3601:w"]),
+        ), code
 
 
 def test_the_groove_is_that_of_a_static_face_seal():

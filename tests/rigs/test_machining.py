@@ -44,7 +44,10 @@ def notch(r: float):
 CASES = {
     "mill-corner": [
         (part(pocket(rectangle(10, 10, 30, 20), 4)), part(pocket(rounded(0.5), 4))),  # sharp
-        (part(pocket(rounded(1.2), 10)), part(pocket(rounded(1.25), 10))),  # 2.5 mm cutter is 4 diameters deep
+        (
+            part(pocket(rounded(1.2), 10)),
+            part(pocket(rounded(1.25), 10)),
+        ),  # 2.5 mm cutter is 4 diameters deep
         (part(body=notch(0.0)), part(body=notch(1.0))),  # outline
         (
             part(body=Extrusion(rectangle(0, 0, 40, 30), 8, (rectangle(10, 10, 30, 20),))),
@@ -52,14 +55,23 @@ CASES = {
         ),
     ],
     "mill-groove": [
-        (part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8.2))), part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8)))),
-        (part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7.2))), part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7)))),
+        (
+            part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8.2))),
+            part(pocket(circle((20, 15), 10), 1, circle((20, 15), 8))),
+        ),
+        (
+            part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7.2))),
+            part(pocket(circle((20, 15), 10), 6, circle((20, 15), 7))),
+        ),
     ],
     "mill-floor": [(part(pocket(rounded(4), 19.3)), part(pocket(rounded(4), 19.2)))],
     "drill-diameter": [(part(hole(d=0.4, depth=2)), part(hole(d=0.5, depth=2)))],
     "drill-depth": [
         (part(hole(d=1.0, depth=10.1)), part(hole(d=1.0, depth=10.0))),
-        (part(hole(d=1.0, depth=14, counterbore=(2.0, 3.9))), part(hole(d=1.0, depth=14, counterbore=(2.0, 4.0)))),
+        (
+            part(hole(d=1.0, depth=14, counterbore=(2.0, 3.9))),
+            part(hole(d=1.0, depth=14, counterbore=(2.0, 4.0))),
+        ),
     ],
     "drill-floor": [
         (part(hole(depth=19.3)), part(hole(depth=19.2))),
@@ -73,24 +85,39 @@ CASES = {
         (part(hole(depth=10, counterbore=(6.0, 10.0))), part(hole(depth=10, counterbore=(6.0, 9.0)))),
     ],
     "thread-depth": [
-        (part(hole(d=2.5, depth=12, thread="M3", thread_depth=9.1)), part(hole(d=2.5, depth=12, thread="M3", thread_depth=9.0))),
+        (
+            part(hole(d=2.5, depth=12, thread="M3", thread_depth=9.1)),
+            part(hole(d=2.5, depth=12, thread="M3", thread_depth=9.0)),
+        )
     ],
     "thread-run-out": [
-        (part(hole(d=2.5, depth=8.9, thread="M3", thread_depth=8)), part(hole(d=2.5, depth=9, thread="M3", thread_depth=8))),
+        (
+            part(hole(d=2.5, depth=8.9, thread="M3", thread_depth=8)),
+            part(hole(d=2.5, depth=9, thread="M3", thread_depth=8)),
+        )
     ],
     "hole-wall": [
         (part(hole(at=(2.2, 15, 20))), part(hole(at=(2.3, 15, 20)))),
         (part(hole(at=(0, 15, 2.2), axis=X)), part(hole(at=(0, 15, 2.3), axis=X))),
-        (part(hole(at=(3.7, 15, 20), counterbore=(6.0, 3.0))), part(hole(at=(3.8, 15, 20), counterbore=(6.0, 3.0)))),
+        (
+            part(hole(at=(3.7, 15, 20), counterbore=(6.0, 3.0))),
+            part(hole(at=(3.8, 15, 20), counterbore=(6.0, 3.0))),
+        ),
         (part(hole(at=(-3.0, 15, 20))), part(hole(at=(3.0, 15, 20)))),  # outside altogether
     ],
     "hole-web": [
         (part(hole(), hole(at=(23.7, 15, 20))), part(hole(), hole(at=(23.8, 15, 20)))),
         # crossing bores at right angles
-        (part(hole(), hole(at=(0, 18.7, 15), axis=X, depth=30)), part(hole(), hole(at=(0, 18.8, 15), axis=X, depth=30))),
+        (
+            part(hole(), hole(at=(0, 18.7, 15), axis=X, depth=30)),
+            part(hole(), hole(at=(0, 18.8, 15), axis=X, depth=30)),
+        ),
     ],
     "turn-slender": [
-        (part(body=Extrusion(circle((0, 0), 5), 61), process="turned"), part(body=Extrusion(circle((0, 0), 5), 60), process="turned")),
+        (
+            part(body=Extrusion(circle((0, 0), 5), 61), process="turned"),
+            part(body=Extrusion(circle((0, 0), 5), 60), process="turned"),
+        ),
         (
             part(body=Revolution(chain([(0, 0), (2.5, 0), (2.5, 61), (0, 61)])), process="turned"),
             part(body=Revolution(chain([(0, 0), (2.5, 0), (2.5, 60), (0, 60)])), process="turned"),
@@ -100,12 +127,14 @@ CASES = {
         (
             part(body=Extrusion(circle((0, 0), 5.5), 1, (circle((0, 0), 5),)), process="turned"),
             part(body=Extrusion(circle((0, 0), 5.6), 1, (circle((0, 0), 5),)), process="turned"),
-        ),
+        )
     ],
 }
 
 
-@pytest.mark.parametrize(("rule", "bad", "mended"), [(rule, *case) for rule, cases in CASES.items() for case in cases])
+@pytest.mark.parametrize(
+    ("rule", "bad", "mended"), [(rule, *case) for rule, cases in CASES.items() for case in cases]
+)
 def test_a_bad_part_is_seen_and_its_mended_twin_passes(rule, bad, mended):
     found = check_machining(bad, USUAL)
     assert rule in {f.check for f in found}
@@ -114,7 +143,10 @@ def test_a_bad_part_is_seen_and_its_mended_twin_passes(rule, bad, mended):
 
 
 def test_thin_webs_are_for_the_quotation_and_broken_ones_fail():
-    for some in ((part(hole(), hole(at=(20 + d, 15, 20))) for d in (3.5, 3.49)), (part(hole(at=(x, 15, 20))) for x in (2.0, 1.99))):
+    for some in (
+        (part(hole(), hole(at=(20 + d, 15, 20))) for d in (3.5, 3.49)),
+        (part(hole(at=(x, 15, 20))) for x in (2.0, 1.99)),
+    ):
         thin, broken = (check_machining(one, USUAL) for one in some)
         assert [f.severity for f in thin] == ["flag"]
         assert [f.severity for f in broken] == ["fail"]
@@ -122,7 +154,11 @@ def test_thin_webs_are_for_the_quotation_and_broken_ones_fail():
 
 def test_bought_and_wire_cut_parts_are_not_looked_at():
     bad = part(hole(d=0.1))
-    assert check_machining(replace(bad, process="bought"), USUAL) == check_machining(replace(bad, process="wire-cut"), USUAL) == []
+    assert (
+        check_machining(replace(bad, process="bought"), USUAL)
+        == check_machining(replace(bad, process="wire-cut"), USUAL)
+        == []
+    )
 
 
 def test_a_workshop_may_have_other_limits():

@@ -21,15 +21,22 @@ METAL = Material("metal", 2700)
 BALL = Part("block", "block", "milled", METAL, Extrusion(rectangle(-1, -1, 1, 1), 2))
 FOIL = Part("foil", "foil", "milled", METAL, Extrusion(rectangle(-5, -5, 5, 5), 0.01))
 WINDOW = Part(
-    "window", "window", "milled", METAL, Extrusion(rectangle(-5, -5, 5, 5), 1),
+    "window",
+    "window",
+    "milled",
+    METAL,
+    Extrusion(rectangle(-5, -5, 5, 5), 1),
     (Hole("hole", (0, 0, 1), (0, 0, -1), 4.0, 1.0, True),),
 )
 
 
 def scene(obstacle: Part, at, start, end, contacts=()) -> Scene:
     return Scene(
-        "test", (Placement("B1", BALL), Placement("O1", obstacle, at)), contacts,
-        groups=(("mover", frozenset({"B1"})),), motions=(Motion("way", (("mover", start, end),)),),
+        "test",
+        (Placement("B1", BALL), Placement("O1", obstacle, at)),
+        contacts,
+        groups=(("mover", frozenset({"B1"})),),
+        motions=(Motion("way", (("mover", start, end),)),),
     )
 
 
@@ -94,7 +101,9 @@ def test_a_tip_that_is_not_lifted_enough_is_seen():
     envelopes = {p.part_no: build(envelope(p)).wrapped for p in good.parts}
     assert check_motions(good, shapes, envelopes) == []
     dragged = tuple(
-        Motion(m.name, tuple((g, *((0.0, 0.0, -0.05),) * 2) if g == "axis" else (g, a, b) for g, a, b in m.ways))
+        Motion(
+            m.name, tuple((g, *((0.0, 0.0, -0.05),) * 2) if g == "axis" else (g, a, b) for g, a, b in m.ways)
+        )
         for m in good.motions[1:]
     )
     bad = Scene(good.name, good.placements, good.contacts, groups=good.groups, motions=dragged)

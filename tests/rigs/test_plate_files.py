@@ -32,12 +32,24 @@ def test_the_solid_is_open_where_the_cut_file_has_a_hole(number, tmp_path):
     for opening in file.openings:
         (x, y), r = opening.as_circle()
         # open right to the circle at every level, closed just outside it at one at least
-        assert not any(solid.is_inside((x + 0.98 * r * cos(a), y + 0.98 * r * sin(a), z)) for z in levels for a in (0, pi / 2, pi))
-        assert any(solid.is_inside((x + (r + 0.05) * cos(a), y + (r + 0.05) * sin(a), z)) for z in levels for a in (0.1, 2, 4))
+        assert not any(
+            solid.is_inside((x + 0.98 * r * cos(a), y + 0.98 * r * sin(a), z))
+            for z in levels
+            for a in (0, pi / 2, pi)
+        )
+        assert any(
+            solid.is_inside((x + (r + 0.05) * cos(a), y + (r + 0.05) * sin(a), z))
+            for z in levels
+            for a in (0.1, 2, 4)
+        )
     fits = [h for h in part.features if isinstance(h, Hole) and h.tolerance]
     assert not [h for h in fits for o in file.openings if o.centroid == h.at[:2]]
 
 
 def test_what_is_not_cut_from_plate_has_no_cut_file():
-    without = {n.removeprefix("smallest-bearing-") for n, p in PARTS.items() if p.process in ("milled", "turned", "ground") and not cut_section(p)}
+    without = {
+        n.removeprefix("smallest-bearing-")
+        for n, p in PARTS.items()
+        if p.process in ("milled", "turned", "ground") and not cut_section(p)
+    }
     assert without == {"holder-body", "tip-flat", "weight-pin", "ballast", "SHIM-2.1x2.8x0.3-ring"}

@@ -39,7 +39,8 @@ MISFITS = {
     "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 9.0}),
     "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
     "mount_holes_apart": (
-        "calibration", {"clamp.mount_pitch_y": 44.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},
+        "calibration",
+        {"clamp.mount_pitch_y": 44.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},
     ),
     "foot_holes_apart": ("grasping", {"clamp.mount_pitch_y": 40.0, "clamp.carrier_screw_offset": 6.0}),
     "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),

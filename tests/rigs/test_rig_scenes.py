@@ -14,7 +14,7 @@ from tactcad.checks.calibration import check_calibration
 from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
-from tactcad.export import guide
+from tactcad.drawing import guide
 from tactcad.export.pipeline import export
 from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
@@ -32,8 +32,22 @@ from tactcad.solids.measure import measure
 RIGS = ("calibration", "sample-stiffness", "grasping")
 # what a workshop cuts from plate; the rest is turned, milled from a block or a bar, or bought
 PLATES = {
-    "end-plate-head", "end-plate-tapped", "stop-plate", "carrier", "base-stages", "base-cart", "axis-plate", "gauge-plate", "array-mount",
-    "cart-plate", "holder-lid", "foot", "bar", "platform", "post", "riser",
+    "end-plate-head",
+    "end-plate-tapped",
+    "stop-plate",
+    "carrier",
+    "base-stages",
+    "base-cart",
+    "axis-plate",
+    "gauge-plate",
+    "array-mount",
+    "cart-plate",
+    "holder-lid",
+    "foot",
+    "bar",
+    "platform",
+    "post",
+    "riser",
 }
 DESIGNS = ("macro-array", "double-sample", "smallest-bearing")
 
@@ -57,7 +71,11 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
     assert all(not row["source_verified"] for row in bill if row["make_buy"] == "buy")
-    cut = {p.part_no for p in make_scene(design, scene).parts if p.process == "wire-cut" or p.part_no.removeprefix("smallest-bearing-") in PLATES}
+    cut = {
+        p.part_no
+        for p in make_scene(design, scene).parts
+        if p.process == "wire-cut" or p.part_no.removeprefix("smallest-bearing-") in PLATES
+    }
     assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
     again = export(design, [scene], tmp_path / "out", progress(StringIO()))
     assert (again.made, again.built) == ((), ())
@@ -70,7 +88,11 @@ def test_each_element_comes_under_the_force_gauge(number):
     scene = make_scene(design, "calibration", Pose(element=number))
     layout = Layout(design)
     (p,) = (p for p in scene.placements if p.designator == f"E{number}")
-    local = ((layout.pad_inner + layout.pad_outer) / 2, -design.element.pad_height, design.sheet.thickness / 2)
+    local = (
+        (layout.pad_inner + layout.pad_outer) / 2,
+        -design.element.pad_height,
+        design.sheet.thickness / 2,
+    )
     at = [sum(r * c for r, c in zip(row, local)) + o for row, o in zip(p.rotation, p.origin)]
     assert at == pytest.approx([0.0, 0.0, RigLayout(design).pads_up], abs=1e-9)
     (gauge,) = (p for p in scene.placements if p.designator == "FG1")
@@ -120,7 +142,9 @@ def test_a_rolled_cart_moves_alone():
 def test_the_roller_leaves_the_pad_where_the_turned_face_ends(sides):
     """At that deflection the foot of the roller's axis on the turned face is the face's inner end."""
     two = {"element.body_height": 5.0} if sides == "two" else {}
-    layout = Layout(variant({"element.sides": sides, "element.pad_length": 1.0, "array.row_arms": [[3.0]], **two}))
+    layout = Layout(
+        variant({"element.sides": sides, "element.pad_length": 1.0, "array.row_arms": [[3.0]], **two})
+    )
     place, r = layout.elements[0], 1.5
     deflection = deflection_at_pad_edge(layout, place, r)
     (face,) = (s for s in deflected_element(layout, place, deflection, r).body.outer if s.name == "pad_face")
@@ -160,11 +184,15 @@ def test_calibration_shares_its_travel_between_gauge_and_element():
     design = load("macro-array")
     for one in calibration_loads(design):
         # the force that bends the element is the one that bends the gauge, over the rest of the travel
-        assert one.force == pytest.approx(design.calibration.load_cell_stiffness * (design.calibration.travel - one.deflection))
+        assert one.force == pytest.approx(
+            design.calibration.load_cell_stiffness * (design.calibration.travel - one.deflection)
+        )
         assert one.force < design.calibration.load_cell_range
         assert 0 < one.deflection < one.rated_deflection
         # the same travel split the same way at the rated deflection and at yield, which is its factor away
-        assert one.travel_at_rated * one.deflection == pytest.approx(design.calibration.travel * one.rated_deflection)
+        assert one.travel_at_rated * one.deflection == pytest.approx(
+            design.calibration.travel * one.rated_deflection
+        )
         assert one.travel_at_yield == pytest.approx(one.travel_at_rated * design.rating.deflection_factor)
 
 
@@ -175,7 +203,11 @@ def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_co
     placed = {p.designator for p in make_scene(design, "calibration").placements}
     whole = {p.designator for p in make_scene(design, "array").placements}
     assert {d for d in whole - placed} == {"ST1", *(d for d in whole if d.startswith("SS"))}
-    closing = {s.place.arm for s in calibration_loads(design) if s.deflection > _gap(layout, s.place) * s.place.load_arm / s.place.arm}
+    closing = {
+        s.place.arm
+        for s in calibration_loads(design)
+        if s.deflection > _gap(layout, s.place) * s.place.load_arm / s.place.arm
+    }
     assert closing == {4.0, 5.0}
     texts = {step.title: step.text for step in make_scene(design, "array").steps}
     assert "without stop plate" in texts["Stop plate"]
@@ -183,9 +215,15 @@ def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_co
     assert "stop plate" in last.title and "arm 4 carries 3.42 N and would yield at 185 um" in last.text
 
 
-@pytest.mark.parametrize(("changes", "severity"), [
-    ({}, None), ({"calibration.travel": 0.16}, "flag"), ({"calibration.travel": 0.20}, "fail"), ({"material.yield_strength": 275}, "fail"),
-])
+@pytest.mark.parametrize(
+    ("changes", "severity"),
+    [
+        ({}, None),
+        ({"calibration.travel": 0.16}, "flag"),
+        ({"calibration.travel": 0.20}, "fail"),
+        ({"material.yield_strength": 275}, "fail"),
+    ],
+)
 def test_a_calibration_beyond_the_rated_deflection_is_seen(changes, severity):
     found = check_calibration(variant(changes))
     assert (found == []) is (severity is None)
@@ -201,14 +239,22 @@ def test_there_is_a_pose_for_every_element():
 
 @pytest.mark.parametrize(
     ("text", "pose"),
-    [("element=3", Pose(element=3)), ("deflection=0.1", Pose(deflection=0.1)), ("weights=0", Pose(weights=0)),
-     ("height=5", Pose(height=5.0)), ("cart=-2.5", Pose(cart=-2.5))],
+    [
+        ("element=3", Pose(element=3)),
+        ("deflection=0.1", Pose(deflection=0.1)),
+        ("weights=0", Pose(weights=0)),
+        ("height=5", Pose(height=5.0)),
+        ("cart=-2.5", Pose(cart=-2.5)),
+    ],
 )
 def test_poses_on_the_command_line(text, pose):
     assert pose_of([text], load("macro-array")) == pose
 
 
-@pytest.mark.parametrize("text", ["element=11", "element=0", "element=1.5", "height=nan", "cart=6", "weights=11", "tilt=1", "element"])
+@pytest.mark.parametrize(
+    "text",
+    ["element=11", "element=0", "element=1.5", "height=nan", "cart=6", "weights=11", "tilt=1", "element"],
+)
 def test_impossible_poses_are_refused(text, capsys):
     assert main(["export", "macro-array", "--scene", "calibration", "--pose", text, "--out", "nowhere"]) == 2
     assert capsys.readouterr().err.count("\n") == 1
@@ -236,7 +282,12 @@ def test_set_screws_are_turned_in_by_their_size():
     """A third of what a cap screw of the size bears, in the step and in the part's row."""
     page = guide.page(design := load("macro-array"), make_scene(design, "array")).decode()
     assert "crosswise, to 0.2 N m, locked" in page and "<td>0.2 N m</td>" in page
-    assert [guide.torque(set_screw(*size)) for size in (("M2", 4), ("M3", 16), ("M4", 8), ("M5", 10))] == [0.05, 0.2, 0.4, 0.8]
+    assert [guide.torque(set_screw(*size)) for size in (("M2", 4), ("M3", 16), ("M4", 8), ("M5", 10))] == [
+        0.05,
+        0.2,
+        0.4,
+        0.8,
+    ]
 
 
 def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():
@@ -291,7 +342,13 @@ def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
 
 def test_an_array_beyond_the_estimator_still_has_a_calibration():
     """Its strength is flagged as not known, the guide says nothing of it, and poses take it as without stiffness."""
-    odd = variant({"element.hinge_length": 3.0, "element.hinge_thickness": 0.02, "stop.gaps": {f"{a}": 0.1 for a in range(4, 9)}})
+    odd = variant(
+        {
+            "element.hinge_length": 3.0,
+            "element.hinge_thickness": 0.02,
+            "stop.gaps": {f"{a}": 0.1 for a in range(4, 9)},
+        }
+    )
     assert all(one.refused for one in calibration_loads(odd))
     assert check_calibration(odd) == []
     assert {p.deflection for p in poses(odd, "calibration")} == {odd.calibration.travel}

@@ -43,13 +43,22 @@ def test_no_load_on_the_sample_tips_the_cart(name):
 
 
 def test_the_pull_that_lifts_a_wheel_is_where_balance_ends():
-    contacts, height, weight, load_, at = ((25, 27), (-25, 27), (-25, -27), (25, -27)), 34.0, 2.0, 3.2, (5.0, -3.0)
+    contacts, height, weight, load_, at = (
+        ((25, 27), (-25, 27), (-25, -27), (25, -27)),
+        34.0,
+        2.0,
+        3.2,
+        (5.0, -3.0),
+    )
     pull = tipping_pull(contacts, height, weight, load_, at)
 
     def stands(force: float) -> bool:
         """A pull of `force` in any direction at that height shifts the load's line of action."""
         return all(
-            wheels_can_carry(contacts, [(weight, 0, 0), (load_, *at), (1e-9, force * height * 1e9 * c, force * height * 1e9 * s)])
+            wheels_can_carry(
+                contacts,
+                [(weight, 0, 0), (load_, *at), (1e-9, force * height * 1e9 * c, force * height * 1e9 * s)],
+            )
             for c, s in ((1, 0), (-1, 0), (0, 1), (0, -1))
         )
 

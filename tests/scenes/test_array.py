@@ -9,7 +9,7 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Arc
-from tactcad.export.extent import part_box, placed
+from tactcad.drawing.extent import part_box, placed
 from tactcad.parts.description import Hole
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import METRIC
@@ -39,7 +39,11 @@ def by_name(scene: Scene) -> dict[str, Placement]:
 
 
 def elements(scene: Scene) -> dict[int, Placement]:
-    return {int(p.designator[1:]): p for p in scene.placements if p.designator[0] == "E" and p.designator[1:].isdigit()}
+    return {
+        int(p.designator[1:]): p
+        for p in scene.placements
+        if p.designator[0] == "E" and p.designator[1:].isdigit()
+    }
 
 
 def direction(p: Placement, v) -> np.ndarray:
@@ -59,12 +63,14 @@ def apart(a: np.ndarray, b: np.ndarray, gap: float = 1e-6) -> bool:
 
 def test_designators_are_table_1s():
     scene = make_scene(DESIGNS["macro"], "array")
-    arms = {n: float(p.part.part_no.rsplit("-a", 1)[1].removesuffix("mm")) for n, p in elements(scene).items()}
+    arms = {
+        n: float(p.part.part_no.rsplit("-a", 1)[1].removesuffix("mm")) for n, p in elements(scene).items()
+    }
     assert sorted(arms) == list(range(1, 11))
     assert {n: arms[n] for n in PUBLISHED} == PUBLISHED
-    assert [p.designator for p in scene.placements if p.designator.startswith("E") and p.designator[1:].isdigit()] == [
-        f"E{n}" for n in (1, 2, 3, 4, 5, 6, 7, 8, 9, 10)
-    ]
+    assert [
+        p.designator for p in scene.placements if p.designator.startswith("E") and p.designator[1:].isdigit()
+    ] == [f"E{n}" for n in (1, 2, 3, 4, 5, 6, 7, 8, 9, 10)]
 
 
 def test_rotations_are_rotations(case):
@@ -99,7 +105,9 @@ def test_pads_are_coplanar_at_their_pitch_and_face_each_other(case):
                 assert y - centres[number - 1][1] == pytest.approx(design.array.pitch)
     if len(rows) == 2:
         for i in range(min(len(rows[0]), len(rows[1]))):
-            assert centres[1 + i][1] == pytest.approx(centres[1 + len(rows[0]) + i][1]), "facing pads are in line"
+            assert centres[1 + i][1] == pytest.approx(centres[1 + len(rows[0]) + i][1]), (
+                "facing pads are in line"
+            )
 
 
 def test_every_arm_is_free_to_close_its_gap_and_no_further(case):
@@ -113,10 +121,16 @@ def test_every_arm_is_free_to_close_its_gap_and_no_further(case):
         gap = next(c.nominal for c in p.part.characteristics if c.name == "stop gap")
         turn = -gap / place.arm  # tip away from the object, +z
         arm = [
-            s.at(k / 8) for s in contour for k in range(9 if isinstance(s, Arc) else 2) if s.at(k / 8 if isinstance(s, Arc) else k)[0] < hx - place.hinge.l / 2 + 1e-9
+            s.at(k / 8)
+            for s in contour
+            for k in range(9 if isinstance(s, Arc) else 2)
+            if s.at(k / 8 if isinstance(s, Arc) else k)[0] < hx - place.hinge.l / 2 + 1e-9
         ]
         moved = [
-            (hx + (x - hx) * cos(turn) - (z - hz) * sin(turn), hz + (x - hx) * sin(turn) + (z - hz) * cos(turn))
+            (
+                hx + (x - hx) * cos(turn) - (z - hz) * sin(turn),
+                hz + (x - hx) * sin(turn) + (z - hz) * cos(turn),
+            )
             for x, z in arm
         ]
         top = max(z for _, z in moved)
@@ -210,19 +224,29 @@ def test_every_thread_contact_is_a_screw_in_line_with_a_thread_deep_enough(case)
         engaged = min(ends[1], hole.thread_depth) - max(ends[0], 0.0)
         assert engaged >= 1.5 * d - 1e-9, f"{contact.first}: {engaged} mm"
         if contact.second.startswith("EP"):
-            assert -1e-9 <= tip <= hole.depth + 1e-9, "a screw stands out of the end plate, or bottoms in its hole"
+            assert -1e-9 <= tip <= hole.depth + 1e-9, (
+                "a screw stands out of the end plate, or bottoms in its hole"
+            )
 
 
 def test_screws_and_dowels_pass_through_every_part_of_their_row(case):
     """Each stacked part has a hole in line with each of its row's screws and dowels: they locate each other."""
     design, layout, scene = case
     through = [p for p in scene.placements if p.designator[:2] in ("DW", "TR")]
-    through += [p for p in scene.placements if p.designator.startswith("SC") and abs(direction(p, (0, 0, 1))[1]) > 0.9]
+    through += [
+        p for p in scene.placements if p.designator.startswith("SC") and abs(direction(p, (0, 0, 1))[1]) > 0.9
+    ]
     assert len(through) == 2 * (len(design.holes.screw_offsets) + len(design.holes.dowel_offsets))
-    stacked = [p for p in scene.placements if p.designator[0] == "E" and p.designator[1:].isdigit() or p.designator[:2] in ("SP", "BL")]
+    stacked = [
+        p
+        for p in scene.placements
+        if p.designator[0] == "E" and p.designator[1:].isdigit() or p.designator[:2] in ("SP", "BL")
+    ]
     for rod in through:
         point, axis = axis_of(rod)
-        diameter = part_box(rod.part)[1][0] * 2 if rod.designator[:2] != "SC" else METRIC[design.clamp.screw].d
+        diameter = (
+            part_box(rod.part)[1][0] * 2 if rod.designator[:2] != "SC" else METRIC[design.clamp.screw].d
+        )
         row = [p for p in stacked if direction(p, (1, 0, 0))[0] * point[0] > 0]
         assert len(row) == 2 * layout.positions + 1
         for p in [*row, *(q for q in scene.placements if q.designator in ("EP1", "EP2"))]:
@@ -262,7 +286,9 @@ def test_the_stop_plate_lies_on_every_ledge_under_set_screws_that_stand_on_it(ca
         ys = sorted(placed(p, (0.0, 0.0, z))[1] for z in (0.0, design.sheet.thickness))
         along = min(xs[1], plate[1][0]) - max(xs[0], plate[0][0])
         across = min(ys[1], plate[1][1]) - max(ys[0], plate[0][1])
-        assert along >= 0.5 - 1e-9 and across >= design.sheet.thickness / 2 - 1e-9, f"E{n} carries no stop plate"
+        assert along >= 0.5 - 1e-9 and across >= design.sheet.thickness / 2 - 1e-9, (
+            f"E{n} carries no stop plate"
+        )
     point = METRIC[design.clamp.screw].set_point / 2
     for p in scene.placements:
         if p.designator.startswith("SS"):
@@ -288,7 +314,9 @@ def test_a_screwdriver_reaches_every_screw_when_it_goes_in(case):
         across = np.abs(outwards) < 0.5
         room[0][across] -= wide
         room[1][across] += wide
-        own = {"SC": ("EP1", "CA1"), "SS": ("CA1",), "NU": ("TR",)}[kind]  # its own counterbore, thread or rod
+        own = {"SC": ("EP1", "CA1"), "SS": ("CA1",), "NU": ("TR",)}[
+            kind
+        ]  # its own counterbore, thread or rod
         for name, b in boxes[:i]:
             assert apart(room, b) or name.startswith(own), f"{name} bars the way to {p.designator}"
 
@@ -299,11 +327,21 @@ def test_counts_by_hand():
         scene = make_scene(design, "array")
         rows = design.array.row_arms
         n = max(map(len, rows))
-        count = {kind: sum(p.designator.startswith(kind) for p in scene.placements) for kind in ("SP", "BL", "SC", "TR", "NU", "DW", "EP", "ST", "CA")}
+        count = {
+            kind: sum(p.designator.startswith(kind) for p in scene.placements)
+            for kind in ("SP", "BL", "SC", "TR", "NU", "DW", "EP", "ST", "CA")
+        }
         assert count == {
-            "SP": 2 * (n + 1), "BL": 2 * n - sum(map(len, rows)), "SC": screws, "TR": rods, "NU": 2 * rods, "DW": 2,
-            "EP": 2, "ST": 1, "CA": 1,
-        }  # fmt: skip
+            "SP": 2 * (n + 1),
+            "BL": 2 * n - sum(map(len, rows)),
+            "SC": screws,
+            "TR": rods,
+            "NU": 2 * rods,
+            "DW": 2,
+            "EP": 2,
+            "ST": 1,
+            "CA": 1,
+        }
         assert len(elements(scene)) == sum(map(len, rows))
 
 

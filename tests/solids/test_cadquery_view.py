@@ -12,10 +12,12 @@ import pytest
 
 from tactcad.checks.interference import check_interference
 from tactcad.design.messages import InputError
-from tactcad.export import bom, picture, products, step
+from tactcad.drawing import picture
+from tactcad.export import products, step
 from tactcad.export.cache import Cache
 from tactcad.export.step_text import Header
 from tactcad.parts.description import Material, Purchase
+from tactcad.scenes import bom
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.solids.build import build
 from tactcad.solids.cadquery_view import assembly, bought_from_cadquery, bought_from_step, workplane
@@ -62,7 +64,9 @@ def test_the_assembly_has_the_scenes_names_colours_and_places(macro_scene, whole
         assert child.color.toTuple()[3] == 1.0
     solids = whole.toCompound().Solids()
     assert len(solids) == len(macro_scene.placements)
-    assert sum(s.Volume() for s in solids) == pytest.approx(sum(p.part.volume for p in macro_scene.placements), rel=1e-9)
+    assert sum(s.Volume() for s in solids) == pytest.approx(
+        sum(p.part.volume for p in macro_scene.placements), rel=1e-9
+    )
     assert len({id(c.obj) for c in whole.children}) == len(macro_scene.parts), "equal parts share one solid"
 
 
@@ -74,7 +78,9 @@ def test_cadquerys_own_step_export_has_our_colours(macro_scene, whole, tmp_path)
     whole.export(str(path))
     written = {
         tuple(round(255 * float(v)) for v in m)
-        for m in re.findall(r"COLOUR_RGB\('',([\d.E+-]+),([\d.E+-]+),([\d.E+-]+)\)", path.read_text().replace("\n", ""))
+        for m in re.findall(
+            r"COLOUR_RGB\('',([\d.E+-]+),([\d.E+-]+),([\d.E+-]+)\)", path.read_text().replace("\n", "")
+        )
     }
     assert written == {tuple(int(p.colour[i : i + 2], 16) for i in (1, 3, 5)) for p in macro_scene.parts}
 
@@ -91,7 +97,9 @@ VOLUME = pi * (1.5**2 * 8 + 0.75**2 * 1.5)
 
 @pytest.fixture
 def bought(tmp_path):
-    return bought_from_cadquery(plunger(), tmp_path / "plunger.step", "PLUNGER-M3", "Spring plunger", BRASS, ORDER)
+    return bought_from_cadquery(
+        plunger(), tmp_path / "plunger.step", "PLUNGER-M3", "Spring plunger", BRASS, ORDER
+    )
 
 
 def test_a_cadquery_model_becomes_a_bought_part(bought, tmp_path):
@@ -108,10 +116,14 @@ def test_it_stands_in_a_scene_with_all_that_comes_of_it(bought, macro_scene, mac
     carrier = next(p for p in macro_scene.placements if p.designator == "CA1")
     top = carrier.origin[2] + carrier.part.body.thickness
     placement = Placement("PL1", bought, (0.0, 0.0, top))
-    scene = Scene("more", (*macro_scene.placements, placement), (*macro_scene.contacts, Contact("PL1", "CA1", "touch")))
+    scene = Scene(
+        "more", (*macro_scene.placements, placement), (*macro_scene.contacts, Contact("PL1", "CA1", "touch"))
+    )
     shapes = {**macro_shapes, bought.part_no: build(bought).wrapped}
     assert check_interference(scene, shapes) == []
-    sunk = replace(scene, placements=(*macro_scene.placements, replace(placement, origin=(0.0, 0.0, top - 1))))
+    sunk = replace(
+        scene, placements=(*macro_scene.placements, replace(placement, origin=(0.0, 0.0, top - 1)))
+    )
     assert [f.check for f in check_interference(sunk, shapes)] == ["overlap"]
 
     text = step.scene_step(scene, shapes, HEADER).decode("ascii")

@@ -39,7 +39,12 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 
     solids, shells = subshapes(shape, TopAbs_SOLID), subshapes(shape, TopAbs_SHELL)
     if len(solids) != 1 or len(shells) != 1:
-        fail("one-solid", len(solids), 1, f"{len(solids)} solids with {len(shells)} shells instead of one of each")
+        fail(
+            "one-solid",
+            len(solids),
+            1,
+            f"{len(solids)} solids with {len(shells)} shells instead of one of each",
+        )
         return found
     if not BRepCheck_Analyzer(shape).IsValid():
         fail("brep-valid", 0, 1, "the kernel calls the solid invalid")
@@ -50,7 +55,12 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
         fail("self-intersection", 1, 0, "faces or edges of the solid pass through each other")
     volume = measure(shape)["volume"]
     if abs(volume - part.volume) > VOLUME_AGREES * part.volume:
-        fail("volume", volume, part.volume, f"the solid has {volume:.9g} mm3, its description {part.volume:.9g} mm3")
+        fail(
+            "volume",
+            volume,
+            part.volume,
+            f"the solid has {volume:.9g} mm3, its description {part.volume:.9g} mm3",
+        )
     return found
 
 
@@ -76,7 +86,9 @@ def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Findin
     for end, corner, wanted in zip(("least", "largest"), back["box"], meant["box"]):
         if (off := dist(corner, wanted)) > STEP_AGREES_MM:
             message = f"{end} corner {off:.3g} mm off its place, read back from STEP"
-            found.append(Finding("step-box", "fail", part.part_no, tuple(corner), off, STEP_AGREES_MM, message))
+            found.append(
+                Finding("step-box", "fail", part.part_no, tuple(corner), off, STEP_AGREES_MM, message)
+            )
     return found
 
 

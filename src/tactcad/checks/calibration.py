@@ -25,6 +25,14 @@ def check_calibration(design: Design) -> list[Finding]:
             f"calibrate it to {load.travel_at_rated:.4g} mm of travel"
         )
         found.append(
-            Finding("calibration", severity, who, (load.place.hinge_x, load.place.hinge.t / 2), load.deflection, load.rated_deflection, message)
+            Finding(
+                "calibration",
+                severity,
+                who,
+                (load.place.hinge_x, load.place.hinge.t / 2),
+                load.deflection,
+                load.rated_deflection,
+                message,
+            )
         )
     return found

@@ -41,7 +41,10 @@ def check_clearance(design: Design) -> list[Finding]:
     layout = Layout(design)
     arms = _Arms(layout)
     return [
-        *_own_body(layout, arms), *_stop_plate(layout, arms), *_beside(layout), *_opposite(layout, arms),
+        *_own_body(layout, arms),
+        *_stop_plate(layout, arms),
+        *_beside(layout),
+        *_opposite(layout, arms),
         *_leads(layout),
     ]
 
@@ -66,7 +69,9 @@ class _Arms:
 
     def body(self, place: ElementPlace) -> list[Segment]:
         contour = self.contour(place.arm, place.hinge, stop_gap(self.layout, place))
-        return [s for s in contour if s.name in ("slot_body_wall", "ledge", "front_slot_body_wall", "clamp_edge")]
+        return [
+            s for s in contour if s.name in ("slot_body_wall", "ledge", "front_slot_body_wall", "clamp_edge")
+        ]
 
 
 def _left_of(contour: Contour, x: float) -> Iterable[Segment]:
@@ -78,7 +83,11 @@ def _left_of(contour: Contour, x: float) -> Iterable[Segment]:
 def _turned(s: Segment, centre: Point, angle: float) -> Segment:
     """Turned clockwise: an arm that points towards - x goes up."""
     ends = {"start": _point(s.start, centre, angle), "end": _point(s.end, centre, angle)}
-    return replace(s, centre=_point(s.centre, centre, angle), **ends) if isinstance(s, Arc) else replace(s, **ends)
+    return (
+        replace(s, centre=_point(s.centre, centre, angle), **ends)
+        if isinstance(s, Arc)
+        else replace(s, **ends)
+    )
 
 
 def _point(p: Point, centre: Point, angle: float) -> Point:
@@ -107,7 +116,13 @@ def _own_body(layout: Layout, arms: _Arms) -> Iterator[Finding]:
             seen[key] = _nearest(arms.of(place, arms.most(place)), arms.body(place))
         limit = layout.design.tolerance.hinge_length
         if seen[key] <= limit:
-            yield _pressed("slot-clearance", place, seen[key], limit, "its own body: the slot closes before the stop does")
+            yield _pressed(
+                "slot-clearance",
+                place,
+                seen[key],
+                limit,
+                "its own body: the slot closes before the stop does",
+            )
 
 
 # Lengths in decimals, kept in binary, mm.
@@ -139,12 +154,22 @@ def _beside(layout: Layout) -> Iterator[Finding]:
             index = place.index + step
             if 0 <= index < layout.positions:
                 gap = abs(layout.position_y(index) - place.y) - thick
-                what = next((p.designator for p in layout.elements if (p.row, p.index) == (place.row, index)), "a blank")
+                what = next(
+                    (p.designator for p in layout.elements if (p.row, p.index) == (place.row, index)),
+                    "a blank",
+                )
             else:
                 what = "EP1" if place.y + step < place.y else "EP2"
             if gap <= limit + ROUNDING:
                 message = f"the arm stands {gap:.3f} mm beside {what}; tolerances of sheet and spacer take {limit:.3f} mm"
-                yield _about("neighbour-clearance", place, (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0), gap, limit, message)
+                yield _about(
+                    "neighbour-clearance",
+                    place,
+                    (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0),
+                    gap,
+                    limit,
+                    message,
+                )
 
 
 def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
@@ -158,10 +183,13 @@ def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
             if key not in seen:
                 seen[key] = min(
                     _nearest(arms.of(a, one), map(_mirrored, arms.of(b, other)))
-                    for one in (0.0, arms.most(a)) for other in (0.0, arms.most(b))
+                    for one in (0.0, arms.most(a))
+                    for other in (0.0, arms.most(b))
                 )
             if seen[key] <= limit:
-                yield _pressed("opposite-clearance", a, seen[key], limit, f"the opposite arm of {b.designator}")
+                yield _pressed(
+                    "opposite-clearance", a, seen[key], limit, f"the opposite arm of {b.designator}"
+                )
 
 
 def _leads(layout: Layout) -> Iterator[Finding]:
@@ -186,5 +214,7 @@ def _pressed(check: str, place: ElementPlace, value: float, limit: float, what: 
     return _about(check, place, (place.hinge_x - place.arm, 0.0), value, limit, message)
 
 
-def _about(check: str, place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str) -> Finding:
+def _about(
+    check: str, place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str
+) -> Finding:
     return Finding(check, "fail", place.designator, at, value, limit, message)

@@ -115,8 +115,11 @@ def _situation(
 
 
 def meeting(
-    pair: tuple[Placement, Placement], boxes: tuple[np.ndarray, np.ndarray], shapes: Mapping[str, TopoDS_Shape],
-    faces: dict[str, Faces], anchor: int = 0,
+    pair: tuple[Placement, Placement],
+    boxes: tuple[np.ndarray, np.ndarray],
+    shapes: Mapping[str, TopoDS_Shape],
+    faces: dict[str, Faces],
+    anchor: int = 0,
 ) -> Meeting:
     """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these are
     measured. One part may hold the other without touching it only where its box holds the other's."""
@@ -126,7 +129,9 @@ def meeting(
     distance, place = nearest(*reach)
     if distance > TOUCH_MM and not (_holds(*boxes) or _holds(*reversed(boxes))):
         return Meeting(0.0, distance, (0.0, 0.0, 0.0), anchor)
-    common = BRepAlgoAPI_Common(*(shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in pair)).Shape()
+    common = BRepAlgoAPI_Common(
+        *(shapes[p.part.part_no].Located(location(p.origin, p.rotation)) for p in pair)
+    ).Shape()
     overlap = volume(common)
     if overlap > OVERLAP_MM3:
         place = tuple(measure(common)["centre"])
@@ -152,18 +157,39 @@ def _verdict(first: Placement, second: Placement, m: Meeting, meant: Contact | N
     if kind == "thread":
         most = thread_overlap(first, second)
         if m.overlap > most * (1 + VOLUME_AGREES) + OVERLAP_MM3:
-            message = f"{pair} overlap by {m.overlap:.4g} mm3, the thread between them explains {most:.4g} mm3"
+            message = (
+                f"{pair} overlap by {m.overlap:.4g} mm3, the thread between them explains {most:.4g} mm3"
+            )
             return [_finding("thread", first, second, m, m.overlap, message, most)]
     elif m.overlap > OVERLAP_MM3:
         declared = f", although only {kind} contact is declared" if kind else ""
-        return [_finding("overlap", first, second, m, m.overlap, f"{pair} overlap by {m.overlap:.4g} mm3{declared}")]
+        return [
+            _finding(
+                "overlap", first, second, m, m.overlap, f"{pair} overlap by {m.overlap:.4g} mm3{declared}"
+            )
+        ]
     elif m.distance < TOUCH_MM and not kind:
-        return [_finding("undeclared-touch", first, second, m, m.distance, f"{pair} touch, which the scene does not declare")]
+        return [
+            _finding(
+                "undeclared-touch",
+                first,
+                second,
+                m,
+                m.distance,
+                f"{pair} touch, which the scene does not declare",
+            )
+        ]
     return []
 
 
 def _finding(
-    check: str, first: Placement, second: Placement, m: Meeting, value: float, message: str, limit: float = 0.0
+    check: str,
+    first: Placement,
+    second: Placement,
+    m: Meeting,
+    value: float,
+    message: str,
+    limit: float = 0.0,
 ) -> Finding:
     seen_from = (first, second)[m.anchor]
     place = np.array(seen_from.rotation) @ np.array(m.place) + np.array(seen_from.origin)

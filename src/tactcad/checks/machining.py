@@ -10,15 +10,7 @@ from typing import Literal
 from tactcad.contour import Arc, Contour
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
-from tactcad.parts.description import (
-    Extrusion,
-    Hole,
-    Part,
-    Pocket,
-    Revolution,
-    Vector,
-    drill_point_height,
-)
+from tactcad.parts.description import Extrusion, Hole, Part, Pocket, Revolution, Vector, drill_point_height
 from tactcad.parts.library.screws import METRIC
 
 from .finding import Finding
@@ -41,7 +33,8 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
     rules = (_corners, _narrow_pockets, _pocket_floors, _drills, _threads, _hole_walls, _slender)
     return [
         Finding(check, _severity(check, value, limit), part.part_no, place, value, least, message)
-        for rule in rules for check, place, value, least, message in rule(part, limit)
+        for rule in rules
+        for check, place, value, least, message in rule(part, limit)
     ]
 
 
@@ -80,9 +73,21 @@ def _tight(name: str, contour: Contour, depth: float, limit: Machining, inside: 
     for s, after in zip(segments, segments[1:] + segments[:1]):
         turn = _turn(s, after)
         if (turn if inside else -turn) > 1e-6:
-            yield ("mill-corner", (*s.end, 0.0), 0.0, least, f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of {least:.3g} mm or more")
+            yield (
+                "mill-corner",
+                (*s.end, 0.0),
+                0.0,
+                least,
+                f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of {least:.3g} mm or more",
+            )
         if isinstance(s, Arc) and s.ccw == inside and s.radius < least - SAME:
-            yield ("mill-corner", (*s.at(0.5), 0.0), s.radius, least, f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more")
+            yield (
+                "mill-corner",
+                (*s.at(0.5), 0.0),
+                s.radius,
+                least,
+                f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more",
+            )
 
 
 def _turn(a, b) -> float:
@@ -107,14 +112,26 @@ def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Raw]:
         for island in pocket.island:
             wide = min(distance(a, b) for a in pocket.contour for b in island)
             if wide < least - SAME:
-                yield ("mill-groove", pocket.at, wide, least, f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more")
+                yield (
+                    "mill-groove",
+                    pocket.at,
+                    wide,
+                    least,
+                    f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more",
+                )
 
 
 def _pocket_floors(part: Part, limit: Machining) -> Iterator[Raw]:
     for pocket in _pockets(part):
         left = _material_along(part, pocket.at, pocket.axis) - pocket.depth
         if left < limit.floor - SAME:
-            yield ("mill-floor", pocket.at, left, limit.floor, f"pocket {pocket.name} leaves a floor of {left:.3g} mm, at least {limit.floor:g}")
+            yield (
+                "mill-floor",
+                pocket.at,
+                left,
+                limit.floor,
+                f"pocket {pocket.name} leaves a floor of {left:.3g} mm, at least {limit.floor:g}",
+            )
 
 
 def _holes(part: Part) -> list[Hole]:
@@ -124,21 +141,51 @@ def _holes(part: Part) -> list[Hole]:
 def _drills(part: Part, limit: Machining) -> Iterator[Raw]:
     for h in _holes(part):
         if h.diameter < limit.drill - SAME:
-            yield ("drill-diameter", h.at, h.diameter, limit.drill, f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}")
+            yield (
+                "drill-diameter",
+                h.at,
+                h.diameter,
+                limit.drill,
+                f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}",
+            )
         wide, entry = h.counterbore or (h.diameter, 0.0)
         for deep, diameter in ((h.depth - entry, h.diameter), (entry, wide)):
             if deep > limit.drill_reach * diameter + SAME:
-                yield ("drill-depth", h.at, deep, limit.drill_reach * diameter, f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters")
+                yield (
+                    "drill-depth",
+                    h.at,
+                    deep,
+                    limit.drill_reach * diameter,
+                    f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters",
+                )
         if h.counterbore and h.counterbore[1] >= h.depth - SAME:
-            yield ("counterbore", h.at, h.depth - h.counterbore[1], limit.wall, f"hole {h.name}: counterbore as deep as the hole")
+            yield (
+                "counterbore",
+                h.at,
+                h.depth - h.counterbore[1],
+                limit.wall,
+                f"hole {h.name}: counterbore as deep as the hole",
+            )
         elif h.counterbore and h.through and h.depth - h.counterbore[1] < limit.wall - SAME:
             left = h.depth - h.counterbore[1]
-            yield ("counterbore", h.at, left, limit.wall, f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}")
+            yield (
+                "counterbore",
+                h.at,
+                left,
+                limit.wall,
+                f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}",
+            )
         if not h.through:
             tip = drill_point_height(h.diameter) if h.drill_point else 0.0
             left = _material_along(part, h.at, h.axis) - h.depth - tip
             if left < limit.floor - SAME:
-                yield ("drill-floor", h.at, left, limit.floor, f"blind hole {h.name} leaves {left:.3g} mm of material, at least {limit.floor:g}")
+                yield (
+                    "drill-floor",
+                    h.at,
+                    left,
+                    limit.floor,
+                    f"blind hole {h.name} leaves {left:.3g} mm of material, at least {limit.floor:g}",
+                )
 
 
 def _threads(part: Part, limit: Machining) -> Iterator[Raw]:
@@ -147,12 +194,24 @@ def _threads(part: Part, limit: Machining) -> Iterator[Raw]:
             continue
         d = h.thread_diameter
         if h.thread_depth > limit.thread_reach * d + SAME:
-            yield ("thread-depth", h.at, h.thread_depth, limit.thread_reach * d, f"thread {h.name} {h.thread}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters")
+            yield (
+                "thread-depth",
+                h.at,
+                h.thread_depth,
+                limit.thread_reach * d,
+                f"thread {h.name} {h.thread}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters",
+            )
         if not h.through:
             start = h.counterbore[1] if h.counterbore else 0.0
             room, least = h.depth - start - h.thread_depth, limit.run_out * PITCH[h.thread]
             if room < least - 1e-6:
-                yield ("thread-run-out", h.at, room, least, f"thread {h.name} {h.thread}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}")
+                yield (
+                    "thread-run-out",
+                    h.at,
+                    room,
+                    least,
+                    f"thread {h.name} {h.thread}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}",
+                )
 
 
 def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
@@ -163,7 +222,13 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
             continue
         wall = _between(a, b, c, d) - r - q
         if wall < limit.wall - SAME:
-            yield ("hole-web", a, wall, limit.wall, f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}")
+            yield (
+                "hole-web",
+                a,
+                wall,
+                limit.wall,
+                f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}",
+            )
     if not isinstance(part.body, Extrusion):
         return
     t = part.body.thickness
@@ -174,7 +239,13 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
         if wall < limit.wall - SAME:
-            yield ("hole-wall", a, wall, limit.wall, f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}")
+            yield (
+                "hole-wall",
+                a,
+                wall,
+                limit.wall,
+                f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}",
+            )
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
@@ -227,7 +298,9 @@ def _material_along(part: Part, at: Vector, axis: Vector) -> float:
     else:
         x0, y0, x1, y1 = part.body.outer.box
         low, high = (x0, y0, 0.0), (x1, y1, part.body.thickness)
-    return min(((high[i] if axis[i] > 0 else low[i]) - at[i]) / axis[i] for i in range(3) if abs(axis[i]) > 0.5)
+    return min(
+        ((high[i] if axis[i] > 0 else low[i]) - at[i]) / axis[i] for i in range(3) if abs(axis[i]) > 0.5
+    )
 
 
 def _slender(part: Part, limit: Machining) -> Iterator[Raw]:
@@ -240,10 +313,22 @@ def _slender(part: Part, limit: Machining) -> Iterator[Raw]:
         _, z0, r, z1 = part.body.profile.box
         length, diameter = z1 - z0, 2 * r
     if length > limit.slenderness * diameter + SAME:
-        yield ("turn-slender", (0.0, 0.0, length / 2), length / diameter, limit.slenderness, f"{length:g} mm long at {diameter:g} diameter: {length / diameter:.3g} diameters, at most {limit.slenderness:g}")
+        yield (
+            "turn-slender",
+            (0.0, 0.0, length / 2),
+            length / diameter,
+            limit.slenderness,
+            f"{length:g} mm long at {diameter:g} diameter: {length / diameter:.3g} diameters, at most {limit.slenderness:g}",
+        )
     if isinstance(part.body, Extrusion):
         for opening in part.body.openings:
             bore = hypot(opening.box[2] - opening.box[0], 0.0)
             wall = (diameter - bore) / 2
             if wall < limit.ring - SAME:
-                yield ("turn-wall", (0.0, 0.0, 0.0), wall, limit.ring, f"ring of {wall:.3g} mm wall, at least {limit.ring:g}")
+                yield (
+                    "turn-wall",
+                    (0.0, 0.0, 0.0),
+                    wall,
+                    limit.ring,
+                    f"ring of {wall:.3g} mm wall, at least {limit.ring:g}",
+                )

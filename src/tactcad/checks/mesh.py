@@ -56,7 +56,9 @@ def check_triangles(part_no: str, mesh: trimesh.Trimesh) -> list[Finding]:
         message = f"{len(bad)} edges are not shared by exactly two triangles"
         found.append(Finding("mesh-watertight", "fail", part_no, where, len(bad), 0, message))
     elif not mesh.is_winding_consistent:
-        found.append(Finding("mesh-winding", "fail", part_no, (), 0, 1, "neighbouring triangles face opposite ways"))
+        found.append(
+            Finding("mesh-winding", "fail", part_no, (), 0, 1, "neighbouring triangles face opposite ways")
+        )
     elif mesh.volume <= 0:
         found.append(Finding("mesh-winding", "fail", part_no, (), mesh.volume, 0, "the mesh is inside out"))
     return found

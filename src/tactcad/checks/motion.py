@@ -61,10 +61,17 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
             if span is None:
                 continue
             kind = meant.get(frozenset((pair.first.designator, pair.second.designator)), "")
-            key = (pair.first.part.part_no, pair.second.part.part_no, relative(pair.first, pair.second), kind,
-                   pair.start, pair.end, pair.first.rotation)
+            key = (
+                pair.first.part.part_no,
+                pair.second.part.part_no,
+                relative(pair.first, pair.second),
+                kind,
+                pair.start,
+                pair.end,
+                pair.first.rotation,
+            )
             if key not in known:
-                known[key] = (_slides(pair, full) if kind else _meets(pair, span, full, envelope))
+                known[key] = _slides(pair, full) if kind else _meets(pair, span, full, envelope)
             if known[key]:
                 found.append(_finding(motion, pair, *known[key]))
     return found
@@ -103,7 +110,9 @@ def _span(a: np.ndarray, b: np.ndarray, pair: _Pair) -> tuple[float, float] | No
     return (low, high) if low <= high else None
 
 
-def _meets(pair: _Pair, span: tuple[float, float], full: Shapes, envelope: Shapes) -> tuple[float, str] | None:
+def _meets(
+    pair: _Pair, span: tuple[float, float], full: Shapes, envelope: Shapes
+) -> tuple[float, str] | None:
     """Where on the way the pair meets without being meant to; None where it is shown not to."""
     t, end = span
     for _ in range(MOST_STEPS):

@@ -98,8 +98,13 @@ def junit_bytes(reports: Sequence[Report]) -> bytes:
     for report in reports:
         failed = [c for c in report.cases if any(f.severity == "fail" for f in c.findings)]
         suite = ElementTree.SubElement(
-            root, "testsuite", name=report.design, tests=str(len(report.cases)), failures=str(len(failed)),
-            errors="0", time=f"{sum(c.seconds for c in report.cases):.3f}",
+            root,
+            "testsuite",
+            name=report.design,
+            tests=str(len(report.cases)),
+            failures=str(len(failed)),
+            errors="0",
+            time=f"{sum(c.seconds for c in report.cases):.3f}",
         )
         for case in report.cases:
             _case(suite, report.design, case)

@@ -32,7 +32,9 @@ from .wirecut import check_wirecut
 
 
 def run_checks(
-    design: Design, scene_names: Sequence[str], shop_file: Path = DEFAULT,
+    design: Design,
+    scene_names: Sequence[str],
+    shop_file: Path = DEFAULT,
     say: Callable[[int, int, str], None] = lambda done, total, text: None,
 ) -> Report:
     """Every check on every part and scene of a design that keeps its rules; `say` hears how far it is.
@@ -92,7 +94,9 @@ def _left_out(design: Design) -> list[Finding]:
     return [Finding("scene", "flag", design.name, (), 0, 0, line) for line in left_out(design)]
 
 
-def _add_envelopes(parts: Sequence[Part], shapes: dict[str, TopoDS_Shape], envelopes: dict[str, TopoDS_Shape]) -> None:
+def _add_envelopes(
+    parts: Sequence[Part], shapes: dict[str, TopoDS_Shape], envelopes: dict[str, TopoDS_Shape]
+) -> None:
     """The parts' envelopes that are not known yet; a part that nothing is cut into is its own."""
     for part in parts:
         if part.part_no not in envelopes:

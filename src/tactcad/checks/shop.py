@@ -101,7 +101,9 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
     limits, source = _section(where, table, Limits, "limits", "source")
     usual = None if path == DEFAULT else load_shop()
     if {"machining", "machining_source"} & set(table) or usual is None:
-        machining, machining_source = _section(where, table, Machining, "machining", "machining_source", usual)
+        machining, machining_source = _section(
+            where, table, Machining, "machining", "machining_source", usual
+        )
     else:
         machining, machining_source = usual.machining, usual.machining_source
     return Shop(table["name"], limits, source, machining, machining_source)
@@ -122,11 +124,15 @@ def _section(
     values, source = given
     for one in values:
         if one not in source:
-            raise InputError(f"{where}: {source_name}.{one}", "missing field", legal="where the limit is from")
+            raise InputError(
+                f"{where}: {source_name}.{one}", "missing field", legal="where the limit is from"
+            )
     values = {one: _size(f"{where}: {name}.{one}", v) for one, v in values.items()}
     for one, text in source.items():
         if not isinstance(text, str) or not text.strip():
-            raise InputError(f"{where}: {source_name}.{one}", "is no text", value=text, legal="where the limit is from")
+            raise InputError(
+                f"{where}: {source_name}.{one}", "is no text", value=text, legal="where the limit is from"
+            )
     if usual:
         values = {**vars(getattr(usual, name)), **values}
         source = {**getattr(usual, source_name), **source}
@@ -146,5 +152,7 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 def _size(where: str, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
     if not (number and isfinite(value) and 0 < value <= 100):
-        raise InputError(where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100")
+        raise InputError(
+            where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
+        )
     return float(value)

@@ -66,9 +66,14 @@ def feature_box(feature: Feature) -> tuple[np.ndarray, np.ndarray]:
     x_axis = np.array(feature.x_axis, float)
     y_axis = np.cross(axis, x_axis)
     x0, y0, x1, y1 = feature.contour.box
-    corners = np.array([
-        at + x * x_axis + y * y_axis + d * axis for x in (x0, x1) for y in (y0, y1) for d in (0.0, feature.depth)
-    ])  # fmt: skip
+    corners = np.array(
+        [
+            at + x * x_axis + y * y_axis + d * axis
+            for x in (x0, x1)
+            for y in (y0, y1)
+            for d in (0.0, feature.depth)
+        ]
+    )
     return corners.min(axis=0), corners.max(axis=0)
 
 

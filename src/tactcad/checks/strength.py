@@ -24,24 +24,55 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
     who = f"{place.designator} ({element_number(design, place)})"
     at_hinge = (place.hinge_x, place.hinge.t / 2)
     if state.refused:
-        return [Finding("strength", "flag", who, at_hinge, 0, 0, f"the estimator cannot tell its strength: {state.refused}")]
+        return [
+            Finding(
+                "strength",
+                "flag",
+                who,
+                at_hinge,
+                0,
+                0,
+                f"the estimator cannot tell its strength: {state.refused}",
+            )
+        ]
     closed = f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, tolerance included"
     stress = design.material.yield_strength / design.rating.deflection_factor
     found = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
-        found.append(Finding(
-            "overload", "fail", who, at_hinge, state.deflection, state.rated_deflection,
-            f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for {state.rated_deflection:.4g}",
-        ))  # fmt: skip
+        found.append(
+            Finding(
+                "overload",
+                "fail",
+                who,
+                at_hinge,
+                state.deflection,
+                state.rated_deflection,
+                f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for {state.rated_deflection:.4g}",
+            )
+        )
     if state.stress > stress * (1 + ROUNDING):
-        found.append(Finding(
-            "overload", "fail", who, at_hinge, state.stress, stress,
-            f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears {stress:.4g}",
-        ))  # fmt: skip
+        found.append(
+            Finding(
+                "overload",
+                "fail",
+                who,
+                at_hinge,
+                state.stress,
+                stress,
+                f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears {stress:.4g}",
+            )
+        )
     if state.rated_force < design.rating.force:
-        found.append(Finding(
-            "rated-force", "flag", who, at_hinge, state.rated_force, design.rating.force,
-            f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there the fillet "
-            f"would have less than its safety of {design.rating.yield_factor:g} against yield",
-        ))  # fmt: skip
+        found.append(
+            Finding(
+                "rated-force",
+                "flag",
+                who,
+                at_hinge,
+                state.rated_force,
+                design.rating.force,
+                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there the fillet "
+                f"would have less than its safety of {design.rating.yield_factor:g} against yield",
+            )
+        )
     return found

@@ -69,9 +69,11 @@ def _reached(fastener: Placement, tool: Placement, others: list[Placement], know
 
 def _screwed(nut: Placement, other: Placement) -> bool:
     """Whether the other part is the rod that stands in the nut."""
-    return not _socket(nut.part) and np.linalg.norm(
-        (np.array(other.origin) - np.array(nut.origin)) @ np.array(nut.rotation)[:, :2]
-    ) < OFF
+    return (
+        not _socket(nut.part)
+        and np.linalg.norm((np.array(other.origin) - np.array(nut.origin)) @ np.array(nut.rotation)[:, :2])
+        < OFF
+    )
 
 
 @cache
@@ -103,7 +105,9 @@ def _corners(hexagon: Contour) -> float:
 
 def _round(name: str, diameter: float) -> Part:
     number = f"TOOL-{name}-{diameter:.4f}"
-    return Part(number, name, "reference", Material("steel", 7850), Extrusion(circle((0, 0), diameter), REACH))
+    return Part(
+        number, name, "reference", Material("steel", 7850), Extrusion(circle((0, 0), diameter), REACH)
+    )
 
 
 def _placed(p: Placement, tool: Part, z: float, way: float) -> Placement:
@@ -111,4 +115,9 @@ def _placed(p: Placement, tool: Part, z: float, way: float) -> Placement:
     turn = np.array(p.rotation)
     rotation = turn @ np.diag((1.0, way, way))
     origin = np.array(p.origin) + turn @ np.array((0.0, 0.0, z))
-    return Placement(f"tool at {p.designator}", tool, tuple(map(float, origin)), tuple(tuple(map(float, row)) for row in rotation))
+    return Placement(
+        f"tool at {p.designator}",
+        tool,
+        tuple(map(float, origin)),
+        tuple(tuple(map(float, row)) for row in rotation),
+    )

@@ -83,10 +83,14 @@ def simple_contour(cut: _Cut) -> Iterator[Finding]:
     for contour in cut.contours:
         crossed = self_intersections(contour)
         if crossed:
-            yield cut.fail("simple contour", crossed[0], 0.0, TOUCHING_MM, "the contour crosses or touches itself")
+            yield cut.fail(
+                "simple contour", crossed[0], 0.0, TOUCHING_MM, "the contour crosses or touches itself"
+            )
         elif (gap := smallest_distance(contour)) < TOUCHING_MM:
             at = contour.segments[0].start
-            yield cut.fail("simple contour", at, gap, TOUCHING_MM, f"the contour comes within {gap:.3g} mm of itself")
+            yield cut.fail(
+                "simple contour", at, gap, TOUCHING_MM, f"the contour comes within {gap:.3g} mm of itself"
+            )
 
 
 def openings_inside(cut: _Cut) -> Iterator[Finding]:

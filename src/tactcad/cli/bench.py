@@ -21,10 +21,16 @@ SHORT_SEED = 8  # any; a full run draws its own unless it is given one
 
 def configure(parser: argparse.ArgumentParser) -> None:
     mode = parser.add_mutually_exclusive_group()
-    mode.add_argument("--full", action="store_true", help="converged elements computed anew, all sizes, more repeats")
+    mode.add_argument(
+        "--full", action="store_true", help="converged elements computed anew, all sizes, more repeats"
+    )
     mode.add_argument("--smoke", action="store_true", help="the least of everything, once")
-    parser.add_argument("--only", action="append", metavar="NAME", help="this benchmark; may be repeated (default: all)")
-    parser.add_argument("--seed", type=int, metavar="N", help="seed of the random designs and pairs (full: a new one)")
+    parser.add_argument(
+        "--only", action="append", metavar="NAME", help="this benchmark; may be repeated (default: all)"
+    )
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help="seed of the random designs and pairs (full: a new one)"
+    )
     parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
@@ -35,12 +41,12 @@ def run(args: argparse.Namespace) -> int:
 
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before numpy: one thread, as every child
         os.environ[variable] = "1"
+    from tactcad.bench import render, truth
+    from tactcad.bench.plan import Plan
+    from tactcad.bench.run import SCHEMA
+    from tactcad.bench.run import run as measure
     from tactcad.design.files import absolute
-    from tactcad.studies import folder
-    from tactcad.studies.bench import render, truth
-    from tactcad.studies.bench.plan import Plan
-    from tactcad.studies.bench.run import SCHEMA
-    from tactcad.studies.bench.run import run as measure
+    from tactcad.export import folder
 
     from .progress import progress
 
@@ -63,8 +69,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(only: list[str] | None) -> list[str]:
+    from tactcad.bench.run import BENCHMARKS
     from tactcad.design.messages import InputError, one_of
-    from tactcad.studies.bench.run import BENCHMARKS
 
     for name in only or ():
         if name not in BENCHMARKS:

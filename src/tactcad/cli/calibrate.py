@@ -35,7 +35,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import write_whole
-    from tactcad.studies import calibration, calibration_text, published, readings
+    from tactcad.lab import calibration, calibration_text, readings
+    from tactcad.paper import published
 
     load_cell = published.load().figure["load_cell_stiffness"] if args.load_cell is None else args.load_cell
     rows = calibration.calibrate(

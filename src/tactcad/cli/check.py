@@ -27,11 +27,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument(
-        "design", nargs="*", default=[DEFAULT_DESIGN], metavar="DESIGN",
+        "design",
+        nargs="*",
+        default=[DEFAULT_DESIGN],
+        metavar="DESIGN",
         help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
-    parser.add_argument("--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)")
-    parser.add_argument("--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)")
+    parser.add_argument(
+        "--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)"
+    )
+    parser.add_argument(
+        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
+    )
     parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 

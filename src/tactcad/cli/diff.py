@@ -19,7 +19,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("old", metavar="A", help="design, export's folder or golden file")
     parser.add_argument("new", metavar="B", help="the same, what it became")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
-    parser.add_argument("--html", metavar="FILE", help="also write one offline page with contours laid over each other")
+    parser.add_argument(
+        "--html", metavar="FILE", help="also write one offline page with contours laid over each other"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -38,7 +40,12 @@ def run(args: argparse.Namespace) -> int:
             name: {"source": side.source, "kind": side.kind, "design": side.design, "revision": side.revision}
             for name, side in (("old", old), ("new", new))
         }
-        record = {**sides, "identical": not changes, "not_compared": left_out, "changes": [asdict(c) for c in changes]}
+        record = {
+            **sides,
+            "identical": not changes,
+            "not_compared": left_out,
+            "changes": [asdict(c) for c in changes],
+        }
         print(json.dumps(record, indent=1))
         return 0
     for change in changes:

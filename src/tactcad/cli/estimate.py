@@ -69,7 +69,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
     parser.add_argument(
-        "--inspection", metavar="FILE", help="the design's inspection sheet, filled in: its elements as made, beside the nominal"
+        "--inspection",
+        metavar="FILE",
+        help="the design's inspection sheet, filled in: its elements as made, beside the nominal",
     )
 
 
@@ -83,14 +85,16 @@ def run(args: argparse.Namespace) -> int:
         return _as_made(args)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
+    from tactcad.lab.array_estimate import choose_rung, compare_uncut, estimate
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
-    from tactcad.studies.array_estimate import choose_rung, compare_uncut, estimate
 
     design = load(args.design or "macro-array")
     layout = Layout(design)
     choice = choose_rung(layout, accuracy) if accuracy is not None else None
-    model, mesh = (choice.candidate.rung, choice.candidate.mesh) if choice else (args.model or DEFAULT_RUNG, None)
+    model, mesh = (
+        (choice.candidate.rung, choice.candidate.mesh) if choice else (args.model or DEFAULT_RUNG, None)
+    )
     rows = [asdict(row) for row in estimate(layout, model, args.force, mesh)]
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
@@ -115,7 +119,12 @@ def _asked_accuracy(args: argparse.Namespace) -> float | None:
         number = math.nan
     value = number / 100.0 if text.endswith("%") else number
     if not 0.0 < value < 1.0:
-        raise InputError("--accuracy", "not an accuracy", value=args.accuracy, legal='"0.1%", "1%", 0.01: above 0, below 100 %')
+        raise InputError(
+            "--accuracy",
+            "not an accuracy",
+            value=args.accuracy,
+            legal='"0.1%", "1%", 0.01: above 0, below 100 %',
+        )
     return value
 
 
@@ -145,7 +154,7 @@ def _why(choice: Choice, accuracy: float) -> str:
 
 
 def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
-    from tactcad.studies.batch import estimate_file
+    from tactcad.lab.batch import estimate_file
 
     for name, given in (("DESIGN", args.design), ("--force", args.force), ("--inspection", args.inspection)):
         if given is not None:
@@ -160,16 +169,18 @@ def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
 
 
 def _as_made(args: argparse.Namespace) -> int:
+    from tactcad.lab import as_made_text
+    from tactcad.lab.as_made import as_made
+    from tactcad.lab.inspection_sheet import read_sheet
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
-    from tactcad.studies import as_made_text
-    from tactcad.studies.as_made import as_made
-    from tactcad.studies.inspection_sheet import read_sheet
 
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
     if args.accuracy is not None:
-        raise InputError("--accuracy", "does not go with --inspection: the cut's scatter is far above it; use --model")
+        raise InputError(
+            "--accuracy", "does not go with --inspection: the cut's scatter is far above it; use --model"
+        )
     if args.model in FINITE_ELEMENTS:
         closed = ", ".join(rung for rung in RUNGS if rung not in FINITE_ELEMENTS)
         raise InputError("--model", "--inspection takes closed forms only", value=args.model, legal=closed)
@@ -238,7 +249,7 @@ def _table(rows: list[dict]) -> list[str]:
 
 
 def _cell(row: dict, field: str, spec: str) -> str:
-    """"invalid" above yield, "-" where the gauge's grid does not fit a two-sided hinge."""
+    """ "invalid" above yield, "-" where the gauge's grid does not fit a two-sided hinge."""
     if row[field] is not None:
         return format(row[field], spec)
     return "-" if row["elastic"] else "invalid"

@@ -23,23 +23,35 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument(
-        "design", nargs="?", default=DEFAULT_DESIGN, metavar="DESIGN",
+        "design",
+        nargs="?",
+        default=DEFAULT_DESIGN,
+        metavar="DESIGN",
         help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
     parser.add_argument(
-        "--pose", action="append", metavar="KEY=VALUE", default=[],
+        "--pose",
+        action="append",
+        metavar="KEY=VALUE",
+        default=[],
         help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
     )
     parser.add_argument(
-        "--detail", choices=("full", "envelope"), default="full",
+        "--detail",
+        choices=("full", "envelope"),
+        default="full",
         help="envelope: parts without holes and pockets, for layout; no cut files (default full)",
     )
-    parser.add_argument("--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures")
     parser.add_argument(
-        "--drawings", action="store_true", help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made"
+        "--guide", action="store_true", help="with the assembly guides: guide/SCENE.html and its pictures"
+    )
+    parser.add_argument(
+        "--drawings",
+        action="store_true",
+        help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
     )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
@@ -56,7 +68,9 @@ def run(args: argparse.Namespace) -> int:
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
-    done = export(design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail, args.drawings)
+    done = export(
+        design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail, args.drawings
+    )
     for line in left_out(design) if done.reasons and not args.scene else ():
         say.line(line)
     if args.json:

@@ -65,9 +65,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import make_folder, write_whole
-    from tactcad.studies import fit_samples
-    from tactcad.studies.accuracy_table import accuracy_table
-    from tactcad.studies.fit import fit
+    from tactcad.fit import fit_samples
+    from tactcad.fit.accuracy_table import accuracy_table
+    from tactcad.fit.fit import fit
 
     for option, least in LEAST.items():
         if getattr(args, option) < least:
@@ -105,8 +105,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _sample(args: argparse.Namespace, out: Path) -> dict:
-    from tactcad.studies import fit_samples
-    from tactcad.studies.accuracy_samples import compute_range, draw_range, draw_refined, meshes_of
+    from tactcad.fit import fit_samples
+    from tactcad.fit.accuracy_samples import compute_range, draw_range, draw_refined, meshes_of
 
     plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
     for kind, (count, solids) in plan.items():

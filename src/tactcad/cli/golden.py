@@ -18,10 +18,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument(
-        "design", nargs="*", default=[DEFAULT_DESIGN], metavar="DESIGN",
+        "design",
+        nargs="*",
+        default=[DEFAULT_DESIGN],
+        metavar="DESIGN",
         help=f"a path or name of a design in a folder hardware/ (default {DEFAULT_DESIGN})",
     )
-    parser.add_argument("--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)")
+    parser.add_argument(
+        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -112,7 +112,8 @@ def _dispatch(argv: list[str]) -> int:
         )
         module.configure(parser)
         parser.add_argument(
-            "--profile", action="store_true",
+            "--profile",
+            action="store_true",
             help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
             "made, how often, how long, and how much memory it took (with --json as JSON)",
         )

@@ -16,7 +16,9 @@ class Parser(argparse.ArgumentParser):
         parsed, unknown = super().parse_known_args(args, namespace)
         if unknown:
             hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
-            self.error(str(InputError(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")))
+            self.error(
+                str(InputError(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`"))
+            )
         for action in self._actions:
             self._refuse_empty(action, getattr(parsed, action.dest, None))
         return parsed
@@ -28,7 +30,13 @@ class Parser(argparse.ArgumentParser):
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
-            self.error(str(InputError(_named(action), "unknown", value=value, legal=one_of(value, map(str, action.choices)))))
+            self.error(
+                str(
+                    InputError(
+                        _named(action), "unknown", value=value, legal=one_of(value, map(str, action.choices))
+                    )
+                )
+            )
 
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""

@@ -23,12 +23,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
     from tactcad.design.load import DEFAULT_DESIGN
 
     parser.add_argument(
-        "design", nargs="*", default=[DEFAULT_DESIGN], metavar="DESIGN",
+        "design",
+        nargs="*",
+        default=[DEFAULT_DESIGN],
+        metavar="DESIGN",
         help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
-    parser.add_argument("--out", metavar="DIR", default="exports/releases", help="folder of the zip (default exports/releases)")
-    parser.add_argument("--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)")
-    parser.add_argument("--draft", action="store_true", help="write a PRELIMINARY zip whatever the checks say")
+    parser.add_argument(
+        "--out",
+        metavar="DIR",
+        default="exports/releases",
+        help="folder of the zip (default exports/releases)",
+    )
+    parser.add_argument(
+        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
+    )
+    parser.add_argument(
+        "--draft", action="store_true", help="write a PRELIMINARY zip whatever the checks say"
+    )
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
 
@@ -36,8 +48,8 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.checks.shop import DEFAULT, load_shop
     from tactcad.design.load import find
     from tactcad.design.messages import CheckFailure
-    from tactcad.export.release.make import release
     from tactcad.parts.designs import load
+    from tactcad.release.make import release
 
     from .progress import progress
 
@@ -51,7 +63,9 @@ def run(args: argparse.Namespace) -> int:
         except CheckFailure as error:  # the other designs still have their turn
             print(f"tactcad: {error}", file=sys.stderr)
             reasons = getattr(error, "failures", (str(error),))
-            records.append({"design": design.name, "revision": design.design.revision, "path": None, "failures": reasons})
+            records.append(
+                {"design": design.name, "revision": design.design.revision, "path": None, "failures": reasons}
+            )
             continue
         records.append({**asdict(done), "path": str(done.path)})
         if done.replaced:

@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.studies import calibration_text, grasp, grasp_text, readings
+    from tactcad.lab import calibration_text, grasp, grasp_text, readings
 
     known = calibration_text.read(args.calibration)
     found = [

@@ -30,8 +30,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.export import folder
+    from tactcad.paper import array_model as array
+    from tactcad.paper import published, report, validation
     from tactcad.parts.designs import load
-    from tactcad.studies import array, folder, published, report, validation
 
     if args.out:
         folder.refuse_foreign(Path(args.out), {".html", ".json", ".svg"}, report.SCHEMA)  # before the work

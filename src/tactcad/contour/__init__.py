@@ -5,6 +5,14 @@ from .rounded import Corner, rounded_polygon
 from .segment import Arc, Line, Point, Segment
 
 __all__ = [
-    "Arc", "Contour", "Corner", "Line", "Point", "Segment",
-    "chain", "circle", "rectangle", "rounded_polygon",
+    "Arc",
+    "Contour",
+    "Corner",
+    "Line",
+    "Point",
+    "Segment",
+    "chain",
+    "circle",
+    "rectangle",
+    "rounded_polygon",
 ]

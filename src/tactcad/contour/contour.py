@@ -89,9 +89,7 @@ class Contour:
         first = self.segments[0]
         if not isinstance(first, Arc):
             return None
-        alike = all(
-            isinstance(s, Arc) and s.centre == first.centre and s.ccw == first.ccw for s in self
-        )
+        alike = all(isinstance(s, Arc) and s.centre == first.centre and s.ccw == first.ccw for s in self)
         return (first.centre, first.radius) if alike else None
 
 
@@ -143,7 +141,11 @@ def _product_moment(s: Segment) -> float:
     if isinstance(s, Line):
         (x0, y0), (x1, y1) = s.start, s.end
         dy = y1 - y0
-        return dy / 24 * (y0 * (3 * x0 * x0 + 2 * x0 * x1 + x1 * x1) + y1 * (x0 * x0 + 2 * x0 * x1 + 3 * x1 * x1))
+        return (
+            dy
+            / 24
+            * (y0 * (3 * x0 * x0 + 2 * x0 * x1 + x1 * x1) + y1 * (x0 * x0 + 2 * x0 * x1 + 3 * x1 * x1))
+        )
     (a, b), r = s.centre, s.radius
     first, last = s.start_angle, s.start_angle + s.sweep
 
@@ -156,8 +158,14 @@ def _product_moment(s: Segment) -> float:
         i_cs = n * n / 2
         i_ccs = -(c**3) / 3
         i_cccs = -(c**4) / 4
-        return r / 2 * (b * (a * a * i_c + 2 * a * r * i_cc + r * r * i_ccc)
-                        + r * (a * a * i_cs + 2 * a * r * i_ccs + r * r * i_cccs))
+        return (
+            r
+            / 2
+            * (
+                b * (a * a * i_c + 2 * a * r * i_cc + r * r * i_ccc)
+                + r * (a * a * i_cs + 2 * a * r * i_ccs + r * r * i_cccs)
+            )
+        )
 
     return antiderivative(last) - antiderivative(first)
 

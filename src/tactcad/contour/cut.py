@@ -11,8 +11,9 @@ from .segment import Arc, Line, Point, Segment
 ON_LINE_MM = 1e-9  # nearer to the cut than this counts as on it: rounding, not geometry
 
 
-def cut(contour: Contour, axis: Literal["x", "y"], at: float, keep: Literal["below", "above"],
-        name: str = "cut") -> tuple[Contour, ...]:
+def cut(
+    contour: Contour, axis: Literal["x", "y"], at: float, keep: Literal["below", "above"], name: str = "cut"
+) -> tuple[Contour, ...]:
     """The parts of the enclosed area on one side of the line x = at (or y = at), mm.
 
     Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where
@@ -26,7 +27,7 @@ def cut(contour: Contour, axis: Literal["x", "y"], at: float, keep: Literal["bel
     if kept and all(side * (_middle(p)[i] - at) > -ON_LINE_MM for p in pieces):
         return (outline,)  # nothing lies beyond the line
     # along the cut the area lies to the left: up at the right-hand end of what is kept "below" in x
-    forward = (-side if axis == "x" else side)
+    forward = -side if axis == "x" else side
     return _closed(_chains(kept), 1 - i, forward, name)
 
 

@@ -125,7 +125,9 @@ def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | No
         if abs(_cross(v, outward[0])) > SAME_DIRECTION:
             return None
         return "void" if lean > 0 else "material"
-    sign = 1 if corner > 0 else -1  # a corner of the material opens to the void, an inside corner to the material
+    sign = (
+        1 if corner > 0 else -1
+    )  # a corner of the material opens to the void, an inside corner to the material
     shares = _cross(v, outward[1]) / corner * sign, _cross(outward[0], v) / corner * sign
     if min(shares) < -SAME_DIRECTION:
         return None
@@ -137,7 +139,9 @@ def _is_free(p: Point, q: Point, pieces: Sequence[_Piece]) -> bool:
     connection = Line(p, q)
     near = 10 * ROUNDING_MM
     return all(
-        min(dist(x, p), dist(x, q)) <= near for piece in pieces for x in meeting_points(connection, piece.segment)
+        min(dist(x, p), dist(x, q)) <= near
+        for piece in pieces
+        for x in meeting_points(connection, piece.segment)
     )
 
 

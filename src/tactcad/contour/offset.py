@@ -59,7 +59,9 @@ def _moved(s: Segment, by: float) -> _Moved | None:
     x, y = s.centre
     k = grown / s.radius
     ends = [(x + k * (p[0] - x), y + k * (p[1] - y)) for p in (s.start, s.end)]
-    return _Moved(Arc(ends[0], ends[1] if s.start != s.end else ends[0], s.centre, s.ccw, s.name), s.start, s.end)
+    return _Moved(
+        Arc(ends[0], ends[1] if s.start != s.end else ends[0], s.centre, s.ccw, s.name), s.start, s.end
+    )
 
 
 @dataclass(frozen=True)

@@ -32,9 +32,7 @@ def rounded_polygon(corners: list[Corner]) -> Contour:
     their centre (a full round) become one arc. Raises ValueError where fillets do not fit an edge.
     """
     count = len(corners)
-    arcs = [
-        _fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)
-    ]
+    arcs = [_fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)]
     pieces: list[Segment] = []
     for i, corner in enumerate(corners):
         after = (i + 1) % count

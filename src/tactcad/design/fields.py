@@ -55,7 +55,12 @@ class Choice:
 
     def read(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.options:
-            raise InputError(where, "unknown choice", value=value, legal=self.legal + in_brackets(near(str(value), self.options)))
+            raise InputError(
+                where,
+                "unknown choice",
+                value=value,
+                legal=self.legal + in_brackets(near(str(value), self.options)),
+            )
         return value
 
     def schema(self) -> dict:
@@ -127,12 +132,7 @@ class Numbers:
         return tuple(self.item.read(v, f"{where}[{i}]") for i, v in enumerate(value))
 
     def schema(self) -> dict:
-        return {
-            "type": "array",
-            "items": self.item.schema(),
-            "minItems": self.least,
-            "maxItems": self.most,
-        }
+        return {"type": "array", "items": self.item.schema(), "minItems": self.least, "maxItems": self.most}
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,20 @@ from .messages import CheckFailure, InputError, shortened
 # what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
 REFUSED_BY_MACHINE = NO_ROOM | {
-    errno.EACCES, errno.EPERM, errno.EROFS, errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENOENT, errno.ENAMETOOLONG,
-    errno.EBUSY, errno.ELOOP, errno.EMFILE, errno.ENFILE, errno.EINVAL,
-}  # fmt: skip
+    errno.EACCES,
+    errno.EPERM,
+    errno.EROFS,
+    errno.EEXIST,
+    errno.ENOTDIR,
+    errno.EISDIR,
+    errno.ENOENT,
+    errno.ENAMETOOLONG,
+    errno.EBUSY,
+    errno.ELOOP,
+    errno.EMFILE,
+    errno.ENFILE,
+    errno.EINVAL,
+}
 
 
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
@@ -50,7 +61,9 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     except OSError as error:
         raise InputError(shown, f"cannot be read: {error.strerror}", legal=kind) from None
     if data is None or len(data) > most_bytes:
-        raise InputError(shown, "larger than such a file can be", legal=f"{kind} of at most {most_bytes} bytes")
+        raise InputError(
+            shown, "larger than such a file can be", legal=f"{kind} of at most {most_bytes} bytes"
+        )
     return data
 
 
@@ -66,7 +79,9 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
         before = error.object[: error.start]
         line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
         found = error.object[error.start : error.end]
-        raise InputError(f"{path}:{line}:{column}", "is not UTF-8 text", value=found, legal=f"{kind} in UTF-8") from None
+        raise InputError(
+            f"{path}:{line}:{column}", "is not UTF-8 text", value=found, legal=f"{kind} in UTF-8"
+        ) from None
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
         raise InputError(f"{path}:{line}:1", "a NUL character: not a text file", legal=kind)
@@ -82,7 +97,9 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     try:
         return json.loads(text, parse_constant=_no_number, parse_float=_finite)
     except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}", legal=kind) from None
+        raise InputError(
+            f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}", legal=kind
+        ) from None
     except RecursionError:
         raise InputError(str(path), "nested too deeply", legal=kind) from None
     except ValueError as error:  # NaN, or an integer of thousands of digits
@@ -107,7 +124,9 @@ def write_whole(path: str | Path, data: bytes) -> None:
     try:
         place = Path(os.path.realpath(path))
         if os.path.lexists(place) and not place.is_file():
-            raise InputError(str(path), "not a file; nothing was changed", legal="a new name, or a file to replace")
+            raise InputError(
+                str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
+            )
         handle, part = tempfile.mkstemp(prefix=f".{place.name[:100]}.", suffix=".part", dir=place.parent)
         try:
             with open(handle, "wb") as stream:

@@ -42,7 +42,9 @@ def find(source: str | Path) -> Path:
         if (folder / f"{text}.toml").exists():
             return folder / f"{text}.toml"
     raise InputError(
-        "DESIGN", "no design of that name in hardware/", value=text,
+        "DESIGN",
+        "no design of that name in hardware/",
+        value=text,
         legal=f"a path ending in .toml, or {one_of(text, known)}" if known else "a path ending in .toml",
     )
 
@@ -139,7 +141,9 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
         if not (math.isfinite(arm) and arm > 0):
             raise InputError(f"{where}.{key}", "not an arm length", value=key, legal="arm lengths in mm")
         if arm in gaps:
-            raise InputError(f"{where}.{key}", "this arm length is given twice", legal="one gap in mm for each")
+            raise InputError(
+                f"{where}.{key}", "this arm length is given twice", legal="one gap in mm for each"
+            )
         gaps[arm] = spec.read(value, f"{where}.{key}")
     return dict(sorted(gaps.items()))
 

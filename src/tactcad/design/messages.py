@@ -26,7 +26,7 @@ class InputError(ValueError):
 
 
 def near(word: str, known: Iterable[str]) -> str:
-    """"did you mean X?" for the known word that `word` looks like; "" where none does."""
+    """ "did you mean X?" for the known word that `word` looks like; "" where none does."""
     import difflib  # most commands never mistype
 
     found = difflib.get_close_matches(word[:200], list(known), n=1)

@@ -10,7 +10,9 @@ from .fields import Spec
 from .load import SECTION_TYPES
 from .tree import Design, Element, Hinge
 
-_TEXT_ORIGIN = "[origin] holds the source of any value by its path, as \"element.pad_length\" = \"paper: 2 x 3 mm2\"."
+_TEXT_ORIGIN = (
+    '[origin] holds the source of any value by its path, as "element.pad_length" = "paper: 2 x 3 mm2".'
+)
 
 
 def _rows(kind: type) -> list[tuple[str, Spec, str]]:
@@ -34,7 +36,10 @@ def _default(f: dataclasses.Field) -> str:
 
 def text_schema() -> str:
     """Every table with its fields: name, default, legal values, meaning."""
-    lines = ["Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.", ""]
+    lines = [
+        "Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.",
+        "",
+    ]
     optional = {f.name for f in dataclasses.fields(Design) if f.default is None}
     for name, kind in SECTION_TYPES.items():
         if name == "origin":
@@ -56,13 +61,18 @@ def _table(name: str, kind: type, optional: bool) -> list[str]:
 def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of the design file."""
     tables = {name: _object(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}
-    override = {"type": "object", "patternProperties": {"^[1-9][0-9]{0,3}$": _object(Hinge)}, "additionalProperties": False}
+    override = {
+        "type": "object",
+        "patternProperties": {"^[1-9][0-9]{0,3}$": _object(Hinge)},
+        "additionalProperties": False,
+    }
     tables["element"]["properties"]["override"] = override
     gaps = tables["stop"]["properties"]["gaps"]
     tables["stop"]["properties"]["gaps"] = {"type": "object", "additionalProperties": gaps}
     tables["origin"] = {"type": "object"}
     required = [
-        f.name for f in dataclasses.fields(Design)
+        f.name
+        for f in dataclasses.fields(Design)
         if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
     ]
     return {

@@ -11,9 +11,7 @@ from .messages import InputError
 # Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes minutes for keys
 # of many thousand names, so they are refused before it sees them.
 # Possessive, hence linear in the length of the text; 16 names are few enough to parse at once.
-_LONG_KEY = re.compile(
-    r"""(?<![\w-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){16}"""
-)
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){16}""")
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
@@ -22,7 +20,12 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     long = _LONG_KEY.search(text)
     if long:
         line = text.count("\n", 0, long.start()) + 1
-        raise InputError(f"{where}:{line}", "a key of too many names", value=long.group(), legal="names joined by at most 3 dots")
+        raise InputError(
+            f"{where}:{line}",
+            "a key of too many names",
+            value=long.group(),
+            legal="names joined by at most 3 dots",
+        )
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -75,9 +75,7 @@ class Array:
     )
     pitch: float = given(Number("mm", 0.2, 50, "distance of neighbouring pads along a row"))
     row_pitch: float = given(Number("mm", 0.1, 50, "distance of facing pads' centres across the rows"))
-    spacer: float | None = given(
-        Number("mm", 0.05, 30, "spacer thickness"), None, "pitch - sheet thickness"
-    )
+    spacer: float | None = given(Number("mm", 0.05, 30, "spacer thickness"), None, "pitch - sheet thickness")
 
 
 @dataclass(frozen=True)
@@ -166,9 +164,7 @@ class Clamp:
     )
     carrier_thickness: float = given(Number("mm", 2, 40, "carrier plate"), 6.0)
     carrier_margin: float = given(Number("mm", 0, 20, "carrier beyond the end plates"), 2.0)
-    carrier_screw_offset: float = given(
-        Number("mm", 0.5, 200, "carrier screws behind the clamp edge"), 10.6
-    )
+    carrier_screw_offset: float = given(Number("mm", 0.5, 200, "carrier screws behind the clamp edge"), 10.6)
     mount_thread: str = given(Choice(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
     mount_pitch_y: float = given(Number("mm", 5, 200, "distance of these threads along the row"), 32.0)
 
@@ -183,7 +179,9 @@ class Gauge:
     grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
     grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
     carrier_arm_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the pad"), 1.2)
-    carrier_body_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the clamp"), 2.8)
+    carrier_body_side: float = given(
+        Number("mm", 0.01, 50, "carrier from hinge centre towards the clamp"), 2.8
+    )
     carrier_width: float = given(Number("mm", 0.01, 20, "carrier across the element"), 1.5)
     carrier_modulus: float = given(Number("MPa", 0, 2e5, "Young's modulus of backing and adhesive"), 3000.0)
     carrier_conductivity: float = given(Number("W/(m K)", 0.01, 50, "of backing and adhesive"), 0.2)
@@ -239,10 +237,16 @@ class Calibration:
     micrometer_resolution: float = given(Number("mm", 0, 0.1, "micrometer's resolution"), 0.0005)
     friction: float = given(Number("", 0, 1, "friction between tip and pad"), 0.2)
     load_point: float = given(Number("mm", 0, 1, "uncertainty of the load point along the arm"), 0.02)
-    stage_travel: float = given(Number("mm", 0.5, 100, "horizontal micro-stages reach this far each way"), 12.5)
-    axis_travel: float = given(Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 6.5)
+    stage_travel: float = given(
+        Number("mm", 0.5, 100, "horizontal micro-stages reach this far each way"), 12.5
+    )
+    axis_travel: float = given(
+        Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 6.5
+    )
     retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
-    roller: str = given(Choice(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2")
+    roller: str = given(
+        Choice(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
+    )
 
 
 @dataclass(frozen=True)
@@ -274,7 +278,8 @@ class Cart:
     """[cart]: plate on four ball bearings that roll along the arms."""
 
     bearing: str = given(
-        Choice(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
+        Choice(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"),
+        "623-2Z",
     )
     length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
     width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)
@@ -291,7 +296,9 @@ class Holder:
 
     vacuum_diameter: float = given(Number("mm", 4, 250, "holes and plenum lie inside this circle"), 26.0)
     hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
-    rings: float = given(Number("", 1, 12, "hexagonal rings of holes around the middle one, a whole number"), 3.0)
+    rings: float = given(
+        Number("", 1, 12, "hexagonal rings of holes around the middle one, a whole number"), 3.0
+    )
     lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), 6.0)
     plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
     floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
@@ -309,7 +316,7 @@ class Stop:
     gaps: dict[float, float] | None = field(
         default=None,
         metadata={
-            "spec": Number("mm", 0.001, 5, "gap by arm length, a table: \"4\" = 0.13"),
+            "spec": Number("mm", 0.001, 5, 'gap by arm length, a table: "4" = 0.13'),
             "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, by 0.005 mm",
         },
     )
@@ -322,7 +329,13 @@ class Rating:
     force: float = given(Number("N", 1e-6, 1e4, "force asked of each element at its pad"), 2.0)
     yield_factor: float = given(Number("", 1, 10, "safety against yield of the rated force, in use"), 1.5)
     deflection_factor: float = given(
-        Number("", 1, 10, "safety against yield of the rated deflection, which neither overload nor calibration passes"), 1.2
+        Number(
+            "",
+            1,
+            10,
+            "safety against yield of the rated deflection, which neither overload nor calibration passes",
+        ),
+        1.2,
     )
     overload_force: float = given(
         Number("N", 1e-6, 1e5, "whole moving weight on one element: the stop must carry it"), 13.04

@@ -119,7 +119,11 @@ def _stray(contours: list[Contour], others: list[Contour]) -> tuple[float, Point
 def shown(value: Any) -> str:
     """A value on one line: numbers to nine digits, of a whole part or hole its first values."""
     if isinstance(value, dict):
-        plain = [f"{k} {shown(v)}" for k, v in value.items() if not isinstance(v, dict | list) and v not in (None, "")]
+        plain = [
+            f"{k} {shown(v)}"
+            for k, v in value.items()
+            if not isinstance(v, dict | list) and v not in (None, "")
+        ]
         return ", ".join(plain[:6])
     if isinstance(value, list):
         return "[" + ", ".join(shown(v) for v in value) + "]"

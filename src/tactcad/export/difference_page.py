@@ -13,7 +13,10 @@ from .difference import Change, shown
 from .geometry import contour_of
 from .sides import Side, not_compared
 
-OLD, NEW = "#D55E00", "#0072B2"  # Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+OLD, NEW = (
+    "#D55E00",
+    "#0072B2",
+)  # Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
 STYLE = f"""
 :root{{color-scheme:light}}
 body{{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}}
@@ -34,9 +37,13 @@ figure svg,figure img{{width:100%;height:auto;display:block;border:1px solid #d9
 figcaption{{font-size:14px;color:#4a525b}}
 """
 SECTIONS = {
-    "design": "Design", "revision": "Design", "values": "Design file", "parts": "Parts",
-    "scenes": "Scenes: placements and bills of materials", "elements": "Elements: hinge, stiffness, force at yield",
-}  # fmt: skip
+    "design": "Design",
+    "revision": "Design",
+    "values": "Design file",
+    "parts": "Parts",
+    "scenes": "Scenes: placements and bills of materials",
+    "elements": "Elements: hinge, stiffness, force at yield",
+}
 LEAST_WINDOW = 0.015  # of the part's larger side, for the enlarged view
 BEYOND = 6.0  # the enlarged view shows this many times the distance on each side
 
@@ -92,7 +99,9 @@ def _tables(changes: Sequence[Change]) -> Iterable[str]:
 
 def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
     contours = [c for c in changes if c.path[0] == "parts" and c.path[-1] == "contours"]
-    alone = [c for c in changes if c.path[0] == "parts" and len(c.path) == 2 and (c.old or c.new).get("contours")]
+    alone = [
+        c for c in changes if c.path[0] == "parts" and len(c.path) == 2 and (c.old or c.new).get("contours")
+    ]
     if not contours and not alone:
         return
     yield "<h2>Contours</h2>"
@@ -108,7 +117,9 @@ def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
         if c.at is not None:
             half = max(BEYOND * c.moved, LEAST_WINDOW * max(box[2] - box[0], box[3] - box[1]))
             window = (c.at[0] - half, c.at[1] - half * 0.6, c.at[0] + half, c.at[1] + half * 0.6)
-            caption = f"where they are furthest apart: {c.moved:.6g} mm at ({shown(c.at[0])}, {shown(c.at[1])})"
+            caption = (
+                f"where they are furthest apart: {c.moved:.6g} mm at ({shown(c.at[0])}, {shown(c.at[1])})"
+            )
             yield f"<figure>{_drawing(before, after, window)}<figcaption>{caption}</figcaption></figure>"
         yield "</div>"
     for c in alone:
@@ -129,7 +140,9 @@ def _box(contours: Sequence[Contour]) -> tuple[float, float, float, float]:
     return (x0 - margin, y0 - margin, x1 + margin, y1 + margin)
 
 
-def _drawing(old: Sequence[Contour], new: Sequence[Contour], window: tuple[float, float, float, float]) -> str:
+def _drawing(
+    old: Sequence[Contour], new: Sequence[Contour], window: tuple[float, float, float, float]
+) -> str:
     x0, y0, x1, y1 = window
     pen = 'fill="none" stroke-width="1.6" vector-effect="non-scaling-stroke"'
     return (

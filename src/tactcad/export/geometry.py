@@ -11,6 +11,7 @@ from typing import Any
 
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.tree import Design
+from tactcad.drawing.extent import part_box
 from tactcad.mechanics import ladder, strength
 from tactcad.parts.description import Extrusion, Hole, ModelFile, Part
 from tactcad.parts.element import element_number
@@ -19,10 +20,8 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.section import cut_section, section
 from tactcad.parts.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.bom import bom_rows
 from tactcad.scenes.scene import Scene
-
-from .bom import bom_rows
-from .extent import part_box
 
 Record = dict[str, Any]
 
@@ -36,7 +35,9 @@ def geometry(design: Design) -> Record:
     scenes = [make_scene(design, name) for name in scene_names(design)]
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
-        "parts": {no: part_record(part, max(s.count(part) for s in scenes)) for no, part in sorted(parts.items())},
+        "parts": {
+            no: part_record(part, max(s.count(part) for s in scenes)) for no, part in sorted(parts.items())
+        },
         "scenes": {s.name: {"placed": _placed(s), "bom": bill(s)} for s in scenes},
         "elements": _elements(design),
     }
@@ -56,14 +57,25 @@ def part_record(part: Part, qty: int) -> Record:
         "box_mm": None if file else part_box(part),
         "cut_length_mm": cut.cut_length if cut else None,
         "holes": _numbered([_hole(f) for f in part.features if isinstance(f, Hole)] + _round_openings(part)),
-        "pockets": _numbered([
-            {"name": f.name, "at_mm": f.at, "axis": f.axis, "area_mm2": f.volume / f.depth, "depth_mm": f.depth}
-            for f in part.features if not isinstance(f, Hole)
-        ]),
-        "limits": {c.name: {"nominal_mm": c.nominal, "upper_mm": c.upper, "lower_mm": c.lower, "key": c.key}
-                   for c in part.characteristics},
+        "pockets": _numbered(
+            [
+                {
+                    "name": f.name,
+                    "at_mm": f.at,
+                    "axis": f.axis,
+                    "area_mm2": f.volume / f.depth,
+                    "depth_mm": f.depth,
+                }
+                for f in part.features
+                if not isinstance(f, Hole)
+            ]
+        ),
+        "limits": {
+            c.name: {"nominal_mm": c.nominal, "upper_mm": c.upper, "lower_mm": c.lower, "key": c.key}
+            for c in part.characteristics
+        },
         "contours": [contour_record(c) for c in contours(part)],
-    }  # fmt: skip
+    }
     return _rounded(record)
 
 
@@ -125,19 +137,21 @@ def _elements(design: Design) -> Record:
     known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
     at_yield = strength.yield_force_where_known(hinges, design_alloy(design))
     return {
-        place.designator: _rounded({
-            "part_no": element_number(design, place),
-            "arm_mm": place.arm,
-            "load_arm_mm": place.load_arm,
-            "hinge_thickness_mm": place.hinge.t,
-            "hinge_length_mm": place.hinge.l,
-            "fillet_radius_mm": place.hinge.r,
-            "arm_height_mm": place.hinge.h,
-            "stiffness_n_per_mm": float(K) if valid else None,
-            "yield_force_n": float(force) if valid else None,
-        })
+        place.designator: _rounded(
+            {
+                "part_no": element_number(design, place),
+                "arm_mm": place.arm,
+                "load_arm_mm": place.load_arm,
+                "hinge_thickness_mm": place.hinge.t,
+                "hinge_length_mm": place.hinge.l,
+                "fillet_radius_mm": place.hinge.r,
+                "arm_height_mm": place.hinge.h,
+                "stiffness_n_per_mm": float(K) if valid else None,
+                "yield_force_n": float(force) if valid else None,
+            }
+        )
         for place, K, force, valid in zip(layout.elements, known.stiffness, at_yield, known.valid)
-    }  # fmt: skip
+    }
 
 
 def _hole(hole: Hole) -> Record:

@@ -66,7 +66,9 @@ def check_golden(design: Design, path: Path) -> list[Finding]:
     no golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
-        return [_finding("flag", design, f"there is no {path.name} in exports/golden: `make golden` writes it")]
+        return [
+            _finding("flag", design, f"there is no {path.name} in exports/golden: `make golden` writes it")
+        ]
     try:
         old = read_golden(path)
     except ValueError as error:

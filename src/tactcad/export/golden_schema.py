@@ -43,13 +43,21 @@ def _part_fault(part: dict[str, Any]) -> str:
     if not isinstance(contours, list):
         return "it has no contours"
     for rows in contours:
-        if not (isinstance(rows, list) and rows and all(isinstance(r, list) and all(map(_is_number, r)) for r in rows)):
+        if not (
+            isinstance(rows, list)
+            and rows
+            and all(isinstance(r, list) and all(map(_is_number, r)) for r in rows)
+        ):
             return "a contour is no list of rows of numbers"
         try:
             contour_of(rows)
         except ValueError as error:
             return f"a contour cannot be read: {error}"
-    return "" if _is_flat({k: v for k, v in part.items() if k not in (*TABLES, "contours")}) else "it holds more than plain values"
+    return (
+        ""
+        if _is_flat({k: v for k, v in part.items() if k not in (*TABLES, "contours")})
+        else "it holds more than plain values"
+    )
 
 
 def _is_table_of(value: Any, kind: type) -> bool:

@@ -127,7 +127,9 @@ class Inputs:
 
 def inputs_of(design: object, rooms: Iterable[str], libraries: Iterable[str]) -> Inputs:
     """Today's inputs for a design (a tree of frozen dataclasses) that these rooms and libraries work on."""
-    return Inputs(flattened(design), {room: source_digest(room) for room in rooms}, library_versions(libraries))
+    return Inputs(
+        flattened(design), {room: source_digest(room) for room in rooms}, library_versions(libraries)
+    )
 
 
 def inputs_from_json(record: object) -> Inputs | None:
@@ -150,7 +152,10 @@ def reasons(before: Inputs | None, now: Inputs) -> list[str]:
         f"{path} changed {_shown(before.values, path)} -> {_shown(now.values, path)}"
         for path in _changed(before.values, now.values)
     ]
-    sources = [f"source of tactcad{'.' if room else ''}{room} changed" for room in _changed(before.sources, now.sources)]
+    sources = [
+        f"source of tactcad{'.' if room else ''}{room} changed"
+        for room in _changed(before.sources, now.sources)
+    ]
     libraries = [
         f"{name} {before.libraries.get(name, ABSENT)} -> {now.libraries.get(name, ABSENT)}"
         for name in _changed(before.libraries, now.libraries)

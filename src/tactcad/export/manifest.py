@@ -14,7 +14,9 @@ from tactcad.design.messages import InputError
 
 NAME = "manifest.json"
 SCHEMA = "tactcad-manifest-1"
-MOST_BYTES = 1_000_000_000  # no file of an export comes near; a pipe or device named in a manifest is not read
+MOST_BYTES = (
+    1_000_000_000  # no file of an export comes near; a pipe or device named in a manifest is not read
+)
 KINDS = ("step-part", "step-assembly", "dxf", "bom", "picture", "drawing", "inspection", "report")
 
 
@@ -91,7 +93,11 @@ def read_manifest(folder: Path) -> Manifest:
 
 def _require_kinds(manifest: Manifest) -> None:
     """Raise ValueError where text is no text or a number no number."""
-    texts = [manifest.design, manifest.revision, *(value for file in manifest.files for value in vars(file).values())]
+    texts = [
+        manifest.design,
+        manifest.revision,
+        *(value for file in manifest.files for value in vars(file).values()),
+    ]
     numbers: list[Any] = []
     for part in manifest.parts:
         texts += [part.part_no, part.name, part.process]

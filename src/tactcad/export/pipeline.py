@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .products import Product, Shapes
 
 # What an exported file may depend on: a change in any of them rebuilds.
-ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "export")
+ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
 LIBRARIES = ("build123d", "cadquery-ocp", "ezdxf", "numpy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
 
@@ -52,8 +52,15 @@ class Exported:
 
 
 def export(
-    design: Design, scene_names: Sequence[str], out: str | os.PathLike[str], progress: Progress,
-    pose: Pose | None = None, guides: bool = False, detail: str = "full", drawings: bool = False, draft: bool = False,
+    design: Design,
+    scene_names: Sequence[str],
+    out: str | os.PathLike[str],
+    progress: Progress,
+    pose: Pose | None = None,
+    guides: bool = False,
+    detail: str = "full",
+    drawings: bool = False,
+    draft: bool = False,
 ) -> Exported:
     """Write the scenes of a design to the folder `out`, all or nothing; in another pose than the rest's where
     given, with the assembly guides and the drawings where asked for (as a draft: marked PRELIMINARY), and at the
@@ -64,7 +71,11 @@ def export(
     design breaks a rule, or `out` is not ours to replace or cannot be written, CheckFailure where a
     file does not read back as it should.
     """
-    wanted = {"design": design, "scenes": tuple(scene_names)} | ({"pose": pose} if pose else {}) | ({"guides": True} if guides else {})
+    wanted = (
+        {"design": design, "scenes": tuple(scene_names)}
+        | ({"pose": pose} if pose else {})
+        | ({"guides": True} if guides else {})
+    )
     wanted |= {"detail": detail} if detail != "full" else {}
     sheets = ("draft" if draft else "final") if drawings else ""
     wanted |= {"drawings": sheets} if drawings else {}
@@ -81,7 +92,9 @@ def export(
             _refuse_unprintable(design)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail, sheets)
+        return _rebuild(
+            design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail, sheets
+        )
 
 
 def _refuse_broken(design: Design) -> None:
@@ -91,10 +104,12 @@ def _refuse_broken(design: Design) -> None:
 
 
 def _refuse_unprintable(design: Design) -> None:
-    from .drawing.fonts import refuse_letters_it_lacks  # loads matplotlib
+    from tactcad.drawing.fonts import refuse_letters_it_lacks  # loads matplotlib
 
     texts = design.design
-    refuse_letters_it_lacks({f"design.{name}": getattr(texts, name) for name in ("title", "author", "organisation", "revision")})
+    refuse_letters_it_lacks(
+        {f"design.{name}": getattr(texts, name) for name in ("title", "author", "organisation", "revision")}
+    )
 
 
 def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
@@ -109,8 +124,17 @@ def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
 
 
 def _rebuild(
-    design: Design, scene_names: Sequence[str], out: Path, place: Published, inputs: Inputs,
-    why: tuple[str, ...], progress: Progress, pose: Pose | None, guides: bool, detail: str, sheets: str,
+    design: Design,
+    scene_names: Sequence[str],
+    out: Path,
+    place: Published,
+    inputs: Inputs,
+    why: tuple[str, ...],
+    progress: Progress,
+    pose: Pose | None,
+    guides: bool,
+    detail: str,
+    sheets: str,
 ) -> Exported:
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
@@ -151,7 +175,9 @@ def _rebuild(
     return Exported(out, count, made, tuple(shapes.built), why)
 
 
-def _write_products(folder: Path, products: Sequence[Product], cache: Cache, progress: Progress) -> tuple[str, ...]:
+def _write_products(
+    folder: Path, products: Sequence[Product], cache: Cache, progress: Progress
+) -> tuple[str, ...]:
     """Write every product's bytes, from the cache where it has them; returns the paths that were made anew."""
     made = []
     for n, product in enumerate(products):
@@ -177,11 +203,13 @@ def _write_bills(
     folder: Path, design: Design, scenes: Sequence[Scene], records: Sequence[FileRecord]
 ) -> list[FileRecord]:
     """A bill of materials a scene as CSV and JSON: bom.csv for the array, bom-NAME.csv for other scenes."""
-    from . import bom
+    from tactcad.scenes import bom
 
     revision = design.design.revision
     # a shop cuts from the DXF where there is one, and makes the rest from the STEP file
-    files = {r.part_no: (r.path, r.sha256) for kind in ("step-part", "dxf") for r in records if r.kind == kind}
+    files = {
+        r.part_no: (r.path, r.sha256) for kind in ("step-part", "dxf") for r in records if r.kind == kind
+    }
     written = []
     for scene in scenes:
         rows = bom.bom_rows(scene, revision, files)

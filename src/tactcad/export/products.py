@@ -24,8 +24,8 @@ from .step_text import Header
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from .drawing.sheets import Written
-    from .picture import View
+    from tactcad.drawing.picture import View
+    from tactcad.drawing.sheets import Written
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,10 @@ def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
         placement = (Placement(part.part_no, part),)
         view = "oblique"
         product(
-            f"pictures/{part.part_no}.svg", "picture",
-            lambda: _picture(placement, view, shapes, part.name, f"{part.part_no} revision {revision}"), view,
+            f"pictures/{part.part_no}.svg",
+            "picture",
+            lambda: _picture(placement, view, shapes, part.name, f"{part.part_no} revision {revision}"),
+            view,
         )
     return made
 
@@ -115,18 +117,25 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     head = header(design, name, f"{design.design.title}: {scene.name}")
     products = [
         Product(
-            f"step/{name}_{revision}.step", "step-assembly", "", digest(("step-assembly", shapes.made_by, scene, head)),
+            f"step/{name}_{revision}.step",
+            "step-assembly",
+            "",
+            digest(("step-assembly", shapes.made_by, scene, head)),
             lambda: _scene_step(scene, shapes, head),
         )
     ]
     opened = tuple(p for p in scene.placements if p.designator not in scene.cover)
     for label, view, placements in (
-        ("above", "above", scene.placements), ("below", "below", scene.placements), ("open", "above", opened),
+        ("above", "above", scene.placements),
+        ("below", "below", scene.placements),
+        ("open", "above", opened),
     ):
         text = f"{design.design.title}: {scene.name}, {'cover taken off' if label == 'open' else 'from ' + label}"
         products.append(
             Product(
-                f"pictures/{name}-{label}.svg", "picture", "",
+                f"pictures/{name}-{label}.svg",
+                "picture",
+                "",
                 digest(("picture", shapes.made_by, placements, view, text, head)),
                 partial(_picture, placements, view, shapes, text, f"{name} revision {revision}"),
             )
@@ -136,64 +145,90 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
 
 def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
     """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
-    from . import guide
+    from tactcad.drawing import guide
 
     if not scene.steps:
         return []
     name, revision = f"{design.name}-{scene.name}", design.design.revision
     description = f"{name} revision {revision}"
 
-    def picture(label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]) -> Product:
+    def picture(
+        label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
+    ) -> Product:
         key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
         make = partial(_picture, placements, "above", shapes, title, description, marked)
         return Product(guide.picture_path(scene, label), "picture", "", key, make)
 
-    products = [picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())]
+    products = [
+        picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())
+    ]
     for n, step in enumerate(scene.steps, start=1):
         if step.designators:
             standing, coming = guide.at_step(scene, n)
-            products.append(picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming))
+            products.append(
+                picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming)
+            )
     page = guide.page(design, scene)
     products.append(Product(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
     return products
 
 
 def drawing_products(
-    design: Design, parts: Sequence[Part], shapes: Shapes, products: Sequence[Product],
-    say: Callable[[int, int, str], None], draft: bool = False,
+    design: Design,
+    parts: Sequence[Part],
+    shapes: Shapes,
+    products: Sequence[Product],
+    say: Callable[[int, int, str], None],
+    draft: bool = False,
 ) -> list[Product]:
     """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name.
 
     The first one that is asked for makes all that the cache has not, side by side.
     """
-    from .drawing.fonts import font_file
+    from tactcad.drawing.fonts import font_file
 
     font_file()  # a missing font is said before anything is made
     made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
     keys = {
-        part.part_no: digest((
-            "drawing", shapes.made_by, part, [s.key for s in _made_from(part, sources)], design.design, design.tolerance,
-            design.holes, draft,
-        ))
+        part.part_no: digest(
+            (
+                "drawing",
+                shapes.made_by,
+                part,
+                [s.key for s in _made_from(part, sources)],
+                design.design,
+                design.tolerance,
+                design.holes,
+                draft,
+            )
+        )
         for part in made_here
-    }  # fmt: skip
+    }
     drawn: dict[str, Written] = {}
 
     def drawing(part_no: str) -> Written:
         if not drawn:
-            missing = [part for part in made_here if any(shapes.cache.get(f"{keys[part.part_no]} {e}") is None for e in ("pdf", "svg"))]
+            missing = [
+                part
+                for part in made_here
+                if any(shapes.cache.get(f"{keys[part.part_no]} {e}") is None for e in ("pdf", "svg"))
+            ]
             drawn.update(_drawings(design, missing, shapes, sources, say, draft))
         return drawn[part_no]
 
     revision = design.design.revision
     return [
         Product(
-            f"drawings/{part.part_no}_{revision}.{ending}", "drawing", part.part_no, f"{keys[part.part_no]} {ending}",
+            f"drawings/{part.part_no}_{revision}.{ending}",
+            "drawing",
+            part.part_no,
+            f"{keys[part.part_no]} {ending}",
             lambda part_no=part.part_no, ending=ending: getattr(drawing(part_no), ending),
         )
-        for part in made_here for ending in ("pdf", "svg")
-    ]  # fmt: skip
+        for part in made_here
+        for ending in ("pdf", "svg")
+    ]
 
 
 def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
@@ -204,62 +239,84 @@ def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[P
 
 
 def _drawings(
-    design: Design, parts: Sequence[Part], shapes: Shapes, sources: Mapping[tuple[str, str], Product],
-    say: Callable[[int, int, str], None], draft: bool,
+    design: Design,
+    parts: Sequence[Part],
+    shapes: Shapes,
+    sources: Mapping[tuple[str, str], Product],
+    say: Callable[[int, int, str], None],
+    draft: bool,
 ) -> dict[str, Written]:
+    from tactcad.drawing.notes import MadeFrom
+    from tactcad.drawing.sheets import Order, all_written
     from tactcad.solids.bytes import to_bytes
 
-    from .drawing.notes import MadeFrom
-    from .drawing.sheets import Order, all_written
     from .manifest import sha256_of
 
     orders = []
     for part in parts:
         files = [
-            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make))) for s in _made_from(part, sources)
+            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make)))
+            for s in _made_from(part, sources)
         ]
         orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
     return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
 
 
 def assembly_products(
-    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+    design: Design,
+    scenes: Sequence[Scene],
+    shapes: Shapes,
+    say: Callable[[int, int, str], None],
+    draft: bool = False,
 ) -> list[Product]:
     """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
-    keys = {s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft)) for s in scenes}
+    keys = {
+        s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft))
+        for s in scenes
+    }
     drawn: dict[str, Written] = {}
 
     def drawing(name: str) -> Written:
         if not drawn:
-            missing = [s for s in scenes if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))]
+            missing = [
+                s
+                for s in scenes
+                if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))
+            ]
             drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
         return drawn[name]
 
     return [
         Product(
-            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}", "drawing", "", f"{keys[scene.name]} {ending}",
+            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}",
+            "drawing",
+            "",
+            f"{keys[scene.name]} {ending}",
             lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
         )
-        for scene in scenes for ending in ("pdf", "svg")
-    ]  # fmt: skip
+        for scene in scenes
+        for ending in ("pdf", "svg")
+    ]
 
 
 def _assembly_drawings(
     design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
 ) -> dict[str, Written]:
+    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
+    from tactcad.drawing.sheets import all_written
+    from tactcad.scenes.bom import bom_rows
     from tactcad.solids.bytes import to_bytes
-
-    from .bom import bom_rows
-    from .drawing.assembly_file import AssemblyOrder, assembly_written
-    from .drawing.sheets import all_written
 
     orders = [
         AssemblyOrder(
-            design, scene, bom_rows(scene, design.design.revision, {}),
-            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}, draft,
+            design,
+            scene,
+            bom_rows(scene, design.design.revision, {}),
+            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts},
+            draft,
         )
         for scene in scenes
-    ]  # fmt: skip
+    ]
     return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
 
 
@@ -283,7 +340,7 @@ def _measured(part: Part, shapes: Shapes) -> dict:
 
 
 def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
-    from .extent import part_box
+    from tactcad.drawing.extent import part_box
 
     off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
     if off > 1e-6:
@@ -313,18 +370,29 @@ def _part_dxf(part: Part) -> bytes:
 
 
 def _picture(
-    placements: Sequence[Placement], view: str, shapes: Shapes, title: str, description: str,
+    placements: Sequence[Placement],
+    view: str,
+    shapes: Shapes,
+    title: str,
+    description: str,
     marked: Sequence[Placement] = (),
 ) -> bytes:
+    from tactcad.drawing import picture
     from tactcad.parts.library.screws import for_pictures
     from tactcad.solids.place import placed_shape
-
-    from . import picture
 
     eye: View = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing([placed_shape(shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation) for p in some], eye)
+        return picture.drawing(
+            [
+                placed_shape(
+                    shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation
+                )
+                for p in some
+            ],
+            eye,
+        )
 
     data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
     # a screw that is drawn thinner may be what the picture's edge is at

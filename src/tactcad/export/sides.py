@@ -20,8 +20,17 @@ from .manifest import NAME, Manifest, check_manifest, read_manifest
 
 # What an export's files say of a part; holes, placements and stiffness are in none of them.
 IN_EXPORTS = (
-    "name", "process", "qty", "volume_mm3", "area_mm2", "mass_g", "centre_mm", "box_mm", "cut_length_mm", "contours",
-)  # fmt: skip
+    "name",
+    "process",
+    "qty",
+    "volume_mm3",
+    "area_mm2",
+    "mass_g",
+    "centre_mm",
+    "box_mm",
+    "cut_length_mm",
+    "contours",
+)
 FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 
 
@@ -61,22 +70,34 @@ def read_side(source: str) -> Side:
         sections = {name: record[name] for name in ("parts", "scenes", "elements")}
         return Side(source, "golden", record["design"], record["revision"], sections)
     design = load(source)
-    return Side(source, "design", design.name, design.design.revision, geometry(design), _values(flattened(design)))
+    return Side(
+        source, "design", design.name, design.design.revision, geometry(design), _values(flattened(design))
+    )
 
 
 def _export(source: str, folder: Path) -> Side:
     wrong = check_manifest(folder)
     if wrong:
-        raise InputError(source, f"not a sound export: {wrong[0]}", legal=f"a folder with {NAME}, as `tactcad export` writes")
+        raise InputError(
+            source,
+            f"not a sound export: {wrong[0]}",
+            legal=f"a folder with {NAME}, as `tactcad export` writes",
+        )
     manifest = read_manifest(folder)
     inputs = inputs_from_json(manifest.inputs)
     # an export records its design as "design", beside the scenes it was asked for
-    values = {k.removeprefix("design."): v for k, v in inputs.values.items() if k.startswith("design.")} if inputs else None
+    values = (
+        {k.removeprefix("design."): v for k, v in inputs.values.items() if k.startswith("design.")}
+        if inputs
+        else None
+    )
     try:
         record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise InputError(source, f"not a sound export: {error}") from None
-    return Side(source, "export", manifest.design, manifest.revision, record, values and _values(values), folder)
+    return Side(
+        source, "export", manifest.design, manifest.revision, record, values and _values(values), folder
+    )
 
 
 def _values(fields: dict[str, Any]) -> dict[str, Any]:
@@ -114,7 +135,10 @@ def compare_sides(old: Side, new: Side) -> list[Change]:
     """What changed, in as much as both sides tell it: names, the design's values, then the geometry."""
     records = []
     for side in (old, new):
-        record = {**side.record, "parts": {number: dict(part) for number, part in side.record["parts"].items()}}
+        record = {
+            **side.record,
+            "parts": {number: dict(part) for number, part in side.record["parts"].items()},
+        }
         if "export" in (old.kind, new.kind):
             record = _as_exported(record)
         head: Record = {"design": side.design, "revision": side.revision}
@@ -141,7 +165,10 @@ def _as_exported(record: Record) -> Record:
     for number, part in record["parts"].items():
         known = IN_EXPORTS if part["process"] == "wire-cut" else IN_EXPORTS[:-1]
         parts[number] = {name: part[name] for name in known if name in part}
-    return {"parts": parts, "scenes": {name: {"bom": scene["bom"]} for name, scene in record["scenes"].items()}}
+    return {
+        "parts": parts,
+        "scenes": {name: {"bom": scene["bom"]} for name, scene in record["scenes"].items()},
+    }
 
 
 def _drop_unknown(old: Record, new: Record) -> None:

@@ -58,7 +58,10 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     top = shape_tool.NewShape()
     _name(top, header.name)
     for p in scene.placements:
-        _name(shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)), p.designator)
+        _name(
+            shape_tool.AddComponent(top, prototypes[p.part.part_no], location(p.origin, p.rotation)),
+            p.designator,
+        )
     shape_tool.UpdateAssemblies()
     data = _written(document, header)
     _check_scene(data, scene, header.name)
@@ -70,7 +73,9 @@ def _document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
     return document, XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
 
 
-def _add_prototype(document: TDocStd_Document, tool: XCAFDoc_ShapeTool, part: Part, shape: TopoDS_Shape) -> TDF_Label:
+def _add_prototype(
+    document: TDocStd_Document, tool: XCAFDoc_ShapeTool, part: Part, shape: TopoDS_Shape
+) -> TDF_Label:
     label = tool.AddShape(shape, False)
     _name(label, part.part_no)
     colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
@@ -93,7 +98,9 @@ def _written(document: TDocStd_Document, header: Header) -> bytes:
     writer.SetNameMode(True)
     set_up_writer()
     writer.Transfer(document, STEPControl_AsIs)
-    stream = BytesIO()  # no file: a killed export leaves none behind, and a full temporary folder does not matter
+    stream = (
+        BytesIO()
+    )  # no file: a killed export leaves none behind, and a full temporary folder does not matter
     if writer.WriteStream(stream) != IFSelect_RetDone:
         raise CheckFailure(f"{header.name}: the kernel could not write the STEP file")
     return canonical(stream.getvalue().decode("latin-1"), header).encode("latin-1")
@@ -177,9 +184,15 @@ def _volume(shape: TopoDS_Shape) -> float:
 
 def _check_part(data: bytes, part: Part) -> None:
     text = data.decode("latin-1")
-    for entity, count in (("PRODUCT(", 1), ("NEXT_ASSEMBLY_USAGE_OCCURRENCE(", 0), ("MANIFOLD_SOLID_BREP(", 1)):
+    for entity, count in (
+        ("PRODUCT(", 1),
+        ("NEXT_ASSEMBLY_USAGE_OCCURRENCE(", 0),
+        ("MANIFOLD_SOLID_BREP(", 1),
+    ):
         if text.count(f"={entity}") != count:
-            raise CheckFailure(f"{part.part_no}: STEP file has {text.count(f'={entity}')} {entity[:-1]}, not {count}")
+            raise CheckFailure(
+                f"{part.part_no}: STEP file has {text.count(f'={entity}')} {entity[:-1]}, not {count}"
+            )
     read = read_assembly(data)
     if read.name != part.part_no or read.instances or not read.valid:
         raise CheckFailure(f"{part.part_no}: STEP file reads back as {read.name!r}, valid: {read.valid}")
@@ -189,7 +202,9 @@ def _check_part(data: bytes, part: Part) -> None:
 def _check_volume(read: Assembly, part: Part) -> None:
     volumes = read.solids.get(part.part_no, ())
     if len(volumes) != 1 or not isclose(volumes[0], part.volume, rel_tol=VOLUME_AGREES):
-        raise CheckFailure(f"{part.part_no}: STEP file reads back with volumes {volumes} mm3, not {part.volume:.9g}")
+        raise CheckFailure(
+            f"{part.part_no}: STEP file reads back with volumes {volumes} mm3, not {part.volume:.9g}"
+        )
 
 
 def _check_scene(data: bytes, scene: Scene, name: str) -> None:

@@ -15,11 +15,27 @@ from tactcad.parts.overload import overloads
 
 NAME = "strength.csv"
 COLUMNS = (
-    "design", "revision", "element", "part_no", "alloy", "yield_strength_MPa", "arm_mm", "stiffness_N_per_mm",
-    "rated_force_N", "yield_force_N", "yield_factor_at_rated", "goodman_factor_at_rated", "overload_force_N",
-    "largest_stop_gap_mm", "stop_closes_at_N", "hinge_deflection_at_overload_mm", "rated_deflection_mm",
-    "fillet_stress_at_overload_MPa", "yield_factor_at_overload", "not_known_because",
-)  # fmt: skip
+    "design",
+    "revision",
+    "element",
+    "part_no",
+    "alloy",
+    "yield_strength_MPa",
+    "arm_mm",
+    "stiffness_N_per_mm",
+    "rated_force_N",
+    "yield_force_N",
+    "yield_factor_at_rated",
+    "goodman_factor_at_rated",
+    "overload_force_N",
+    "largest_stop_gap_mm",
+    "stop_closes_at_N",
+    "hinge_deflection_at_overload_mm",
+    "rated_deflection_mm",
+    "fillet_stress_at_overload_MPa",
+    "yield_factor_at_overload",
+    "not_known_because",
+)
 
 
 def strength_bytes(layout: Layout) -> bytes:
@@ -34,19 +50,38 @@ def strength_bytes(layout: Layout) -> bytes:
     yields = strength.yield_force_where_known(section, alloy)
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
-    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)  # the fillet's stress at that force
+    goodman = strength.goodman(
+        alloy, rated * alloy.yield_strength / yields
+    )  # the fillet's stress at that force
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)
     for i, (place, state) in enumerate(zip(places, states)):
         figures = (
-            stiffness[i], state.rated_force, yields[i], yields[i] / state.rated_force, goodman[i],
-            design.rating.overload_force, state.gap, state.closing_force, state.deflection,
-            state.rated_deflection, state.stress, state.yield_factor,
-        )  # fmt: skip
-        writer.writerow((
-            design.name, design.design.revision, place.designator, element_number(design, place),
-            alloy.name, f"{alloy.yield_strength:g}", f"{place.arm:g}",
-            *("" if state.refused else f"{float(value):.4g}" for value in figures), state.refused,
-        ))  # fmt: skip
+            stiffness[i],
+            state.rated_force,
+            yields[i],
+            yields[i] / state.rated_force,
+            goodman[i],
+            design.rating.overload_force,
+            state.gap,
+            state.closing_force,
+            state.deflection,
+            state.rated_deflection,
+            state.stress,
+            state.yield_factor,
+        )
+        writer.writerow(
+            (
+                design.name,
+                design.design.revision,
+                place.designator,
+                element_number(design, place),
+                alloy.name,
+                f"{alloy.yield_strength:g}",
+                f"{place.arm:g}",
+                *("" if state.refused else f"{float(value):.4g}" for value in figures),
+                state.refused,
+            )
+        )
     return text.getvalue().encode()

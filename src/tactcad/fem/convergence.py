@@ -82,7 +82,9 @@ def converged_plane(
     return Converged(limit, abs(limit / pair[1].compliance - 1.0), pair[1])
 
 
-def converged_solid(shape: HingeShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH) -> Converged:
+def converged_solid(
+    shape: HingeShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
+) -> Converged:
     """Rung fem-solid on meshes of density mesh - 1 and `mesh` (2 or 3); `error` is what the limit adds to the finer.
 
     On one mesh of the plane the solid stands between plane stress and plane strain, at the share
@@ -114,7 +116,9 @@ def _share(shape: HingeShape, E: float, nu: float, width: float, density: int, a
     return _share_of(solid, shape, E, nu, width, density)
 
 
-def _share_of(solid: SolidSolution, shape: HingeShape, E: float, nu: float, width: float, density: int) -> float:
+def _share_of(
+    solid: SolidSolution, shape: HingeShape, E: float, nu: float, width: float, density: int
+) -> float:
     """Where the solid stands between plane stress (0) and plane strain (1) of its own mesh in the plane."""
     stress, strain = (
         solve_plane(shape, E, nu, width, density=density, plane_strain=p).compliance for p in (False, True)

@@ -48,9 +48,13 @@ def plane_health(shape: HingeShape, E: float, nu: float, width: float, density: 
     _, rounding = elasticity.refined(reduced, f[free])
     smallest, largest = corner_angles(mesh)
     return Health(
-        smallest, largest, float(abs(reduced).sum(axis=0).max() * onenormest(inverse, t=1)),
-        rounding, solution.compliance, solution.unknowns,
-    )  # fmt: skip
+        smallest,
+        largest,
+        float(abs(reduced).sum(axis=0).max() * onenormest(inverse, t=1)),
+        rounding,
+        solution.compliance,
+        solution.unknowns,
+    )
 
 
 def corner_angles(mesh: PlaneMesh) -> tuple[float, float]:

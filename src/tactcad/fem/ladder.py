@@ -35,14 +35,20 @@ def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
 
 
-def converged(s: HingeSection, rung: str, shape: HingeShape | None = None, mesh: int = SOLID_MESH) -> Converged:
+def converged(
+    s: HingeSection, rung: str, shape: HingeShape | None = None, mesh: int = SOLID_MESH
+) -> Converged:
     """The rung's solution on the shape cut from a contour, or on the reference shape."""
     require_range(s, rung)
     if not float(s.fillet_radius) > 0.0:
         raise CheckFailure(f"rung {rung} needs rounded slot corners: fillet_radius is 0")
     E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)
     shape = shape or reference_shape(s)
-    return converged_plane(shape, E, nu, b) if rung == "fem-plane" else converged_solid(shape, E, nu, b, mesh=mesh)
+    return (
+        converged_plane(shape, E, nu, b)
+        if rung == "fem-plane"
+        else converged_solid(shape, E, nu, b, mesh=mesh)
+    )
 
 
 def solve(

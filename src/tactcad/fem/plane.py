@@ -34,7 +34,13 @@ class PlaneSolution:
 
 
 def solve_plane(
-    shape: HingeShape, E: float, nu: float, width: float, *, density: int = 3, plane_strain: bool = False,
+    shape: HingeShape,
+    E: float,
+    nu: float,
+    width: float,
+    *,
+    density: int = 3,
+    plane_strain: bool = False,
     whole: bool = False,
 ) -> PlaneSolution:
     """Clamped at the body's end, parabolic shear of 1 N on the arm's end; work-conjugate deflection."""

@@ -164,8 +164,10 @@ def read(contour: Contour, load_x: float) -> HingeShape:
         low, high = found.get((arm, False)), found.get((arm, True))
         return Block(
             (x1 if arm == arm_at_right else x0),
-            low.face if low else floor_low, high.face if high else floor_high,
-            Fillet(low.wall, low.radius) if low else None, Fillet(high.wall, high.radius) if high else None,
+            low.face if low else floor_low,
+            high.face if high else floor_high,
+            Fillet(low.wall, low.radius) if low else None,
+            Fillet(high.wall, high.radius) if high else None,
         )
 
     shape = HingeShape(floor_low, floor_high, block(True), block(False))
@@ -187,8 +189,12 @@ class _SlotCorner:
 
 
 def _hinge_fillets(outer: Contour) -> list[_SlotCorner]:
-    corners = [c for i, s in enumerate(outer.segments) if isinstance(s, Arc) and not s.ccw
-               for c in _slot_corners(outer, i)]
+    corners = [
+        c
+        for i, s in enumerate(outer.segments)
+        if isinstance(s, Arc) and not s.ccw
+        for c in _slot_corners(outer, i)
+    ]
     if not corners:
         raise CheckFailure("the contour has no slot with rounded corners between clamp edge and load line")
     thinnest = min(c.high - c.low for c in corners)
@@ -252,8 +258,10 @@ def _require_same(outer: Contour, shape: HingeShape) -> None:
             raise CheckFailure(f"the {name} of the element is not one piece") from None
         for face, keep in ((block.low, "above"), (block.high, "below")):
             real = _without_pad(real, face, keep, block.end, name)
-        if abs(real.area - between(drawn, *span).area) > SAME_AREA * drawn.area or \
-                abs(real.length - between(drawn, *span).length) > SAME_AREA * drawn.length:
+        if (
+            abs(real.area - between(drawn, *span).area) > SAME_AREA * drawn.area
+            or abs(real.length - between(drawn, *span).length) > SAME_AREA * drawn.length
+        ):
             raise CheckFailure(
                 f"the {name} is not a plain rectangle between slot and "
                 f"{'load line' if name == 'arm' else 'clamp edge'}; the hinge model cannot follow it"

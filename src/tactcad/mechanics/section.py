@@ -93,6 +93,15 @@ class HingeSection:
 
 # The element that three independent codes were compared on, mm and MPa.
 REFERENCE = HingeSection(
-    hinge_thickness=0.25, hinge_length=0.75, fillet_radius=0.15, load_arm=6.0, arm_height=2.0,
-    body_height=4.0, body_length=4.0, poisson=0.33, youngs_modulus=69000.0, width=3.0, two_sided=True,
+    hinge_thickness=0.25,
+    hinge_length=0.75,
+    fillet_radius=0.15,
+    load_arm=6.0,
+    arm_height=2.0,
+    body_height=4.0,
+    body_length=4.0,
+    poisson=0.33,
+    youngs_modulus=69000.0,
+    width=3.0,
+    two_sided=True,
 )

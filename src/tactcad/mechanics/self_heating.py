@@ -58,7 +58,10 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     """
     if power.on_time > power.period:
         raise InputError(
-            "readout.on_time", "longer than readout.period", value=power.on_time, legal=f"up to {power.period:g} s"
+            "readout.on_time",
+            "longer than readout.period",
+            value=power.on_time,
+            legal=f"up to {power.period:g} s",
         )
     steady = continuous(excitation, gauge, power)
     tau = time_constant(gauge, power)

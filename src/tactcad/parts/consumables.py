@@ -30,18 +30,47 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
     ohm = f"{g.resistance:g} ohm"
     return (
         Supply(
-            "STRAIN-GAUGE", f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for aluminium",
-            n, "pcs", f"strain gauge {ohm}, grid {g.grid_length:g} mm, carrier trimmed to "
+            "STRAIN-GAUGE",
+            f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for aluminium",
+            n,
+            "pcs",
+            f"strain gauge {ohm}, grid {g.grid_length:g} mm, carrier trimmed to "
             f"{g.carrier_arm_side + g.carrier_body_side:g} x {g.carrier_width:g} mm",
-            alternates="any foil gauge of that grid and resistance", spares=spare_gauges, consumable=False,
+            alternates="any foil gauge of that grid and resistance",
+            spares=spare_gauges,
+            consumable=False,
         ),
         Supply(
-            "BRIDGE-RESISTOR", f"bridge completion, {ohm}, or a reference gauge on the same alloy",
-            3 * n, "pcs", f"precision resistor {ohm}, 0.1 %, 5 ppm/K", alternates="strain gauge as above, unloaded",
-            spares=3, consumable=False,
+            "BRIDGE-RESISTOR",
+            f"bridge completion, {ohm}, or a reference gauge on the same alloy",
+            3 * n,
+            "pcs",
+            f"precision resistor {ohm}, 0.1 %, 5 ppm/K",
+            alternates="strain gauge as above, unloaded",
+            spares=3,
+            consumable=False,
         ),
-        Supply("TERMINAL", "solder terminal pair, self-adhesive", n, "pcs", "strain gauge terminal strip", spares=spare_gauges),
+        Supply(
+            "TERMINAL",
+            "solder terminal pair, self-adhesive",
+            n,
+            "pcs",
+            "strain gauge terminal strip",
+            spares=spare_gauges,
+        ),
         Supply("ADHESIVE", "strain gauge adhesive, cold curing", 1, "pack", "cyanoacrylate gauge adhesive"),
-        Supply("COATING", "protective coating over gauge and terminals", 1, "pack", "polyurethane or silicone gauge coating"),
-        Supply("LEAD-WIRE", "lead wire, three per gauge", round(3 * 0.5 * n, 1), "m", "AWG 36 stranded, polyimide or PTFE insulated"),
+        Supply(
+            "COATING",
+            "protective coating over gauge and terminals",
+            1,
+            "pack",
+            "polyurethane or silicone gauge coating",
+        ),
+        Supply(
+            "LEAD-WIRE",
+            "lead wire, three per gauge",
+            round(3 * 0.5 * n, 1),
+            "m",
+            "AWG 36 stranded, polyimide or PTFE insulated",
+        ),
     )

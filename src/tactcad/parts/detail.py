@@ -18,5 +18,9 @@ def envelope(part: Part) -> Part:
         return part
     body = replace(part.body, openings=()) if isinstance(part.body, Extrusion) else part.body
     return replace(
-        part, body=body, features=(), mass_override=part.mass, process=part.process if part.bought else "reference"
+        part,
+        body=body,
+        features=(),
+        mass_override=part.mass,
+        process=part.process if part.bought else "reference",
     )

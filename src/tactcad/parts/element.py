@@ -1,12 +1,12 @@
 r"""The sensing element: one wire-cut side view, extruded by the sheet's thickness.
 
-      stop land                                      +-------------------------+ rear_height
-        ___                          ledge           |  o        O        o    |
-       /   \_____arm_____   ______________           |                         |
-      |                  | |              |__________|                         |
-      |__    ____________|_|______________     flat face                       |
-         |  |            hinge t                        \______ wire recess ___|
-         +--+ pad                                     x ->
+stop land                                      +-------------------------+ rear_height
+  ___                          ledge           |  o        O        o    |
+ /   \_____arm_____   ______________           |                         |
+|                  | |              |__________|                         |
+|__    ____________|_|______________     flat face                       |
+   |  |            hinge t                        \______ wire recess ___|
+   +--+ pad                                     x ->
 """
 
 from __future__ import annotations
@@ -37,9 +37,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         name=f"Sensing element, arm {shortest(place.arm)}",
         process="wire-cut",
         material=sheet_material(design),
-        body=Extrusion(
-            outline(layout, place.arm, e, gap), design.sheet.thickness, mounting_holes(layout)
-        ),
+        body=Extrusion(outline(layout, place.arm, e, gap), design.sheet.thickness, mounting_holes(layout)),
         colour=ALUMINIUM,
         finish="Ra 0.8 on hinge faces",
         notes=(

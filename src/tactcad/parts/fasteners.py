@@ -53,10 +53,18 @@ def clamping(layout: Layout) -> Clamping:
 
 def _dowel(layout: Layout) -> float:
     plate, stack = layout.design.clamp.end_plate_thickness, layout.stack
-    fitting = [n for n in dowel_lengths(layout.design.clamp.dowel) if stack + 2 * LEAST_GRIP <= n <= stack + 2 * plate]
+    fitting = [
+        n
+        for n in dowel_lengths(layout.design.clamp.dowel)
+        if stack + 2 * LEAST_GRIP <= n <= stack + 2 * plate
+    ]
     if fitting:
         return fitting[-1]
-    return float(ceil(stack + 2 * LEAST_GRIP)) if ceil(stack + 2 * LEAST_GRIP) <= stack + 2 * plate else stack + 2 * plate
+    return (
+        float(ceil(stack + 2 * LEAST_GRIP))
+        if ceil(stack + 2 * LEAST_GRIP) <= stack + 2 * plate
+        else stack + 2 * plate
+    )
 
 
 @dataclass(frozen=True)

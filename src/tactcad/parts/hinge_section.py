@@ -35,6 +35,12 @@ def design_alloy(design: Design) -> Alloy:
     """The design's alloy with the values that the design file gives."""
     m, known = design.material, ALLOYS[design.material.alloy]
     return Alloy(
-        m.alloy, m.youngs_modulus, m.poisson, m.density, m.yield_strength, m.fatigue_strength,
-        known.source, known.tensile_strength,
+        m.alloy,
+        m.youngs_modulus,
+        m.poisson,
+        m.density,
+        m.yield_strength,
+        m.fatigue_strength,
+        known.source,
+        known.tensile_strength,
     )

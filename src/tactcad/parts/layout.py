@@ -185,11 +185,7 @@ class Layout:
     def blanks(self) -> tuple[tuple[int, int], ...]:
         """(row, index) of every place of the two rows that no element takes."""
         lengths = [len(arms) for arms in self.design.array.row_arms] + [0]
-        return tuple(
-            (row, index)
-            for row in (1, 2)
-            for index in range(lengths[row - 1], self.positions)
-        )
+        return tuple((row, index) for row in (1, 2) for index in range(lengths[row - 1], self.positions))
 
     # --- plates ---
 
@@ -212,7 +208,9 @@ class Layout:
         lowest = self.lowest_carrier
         for length in SET_SCREW_LENGTHS[c.screw]:
             reach = round(length - c.carrier_thickness + SUNK, 9)
-            if self.stop_plate_top + reach >= lowest - 1e-9 and reach >= LEAST_GAP:  # decimals, kept in binary
+            if (
+                self.stop_plate_top + reach >= lowest - 1e-9 and reach >= LEAST_GAP
+            ):  # decimals, kept in binary
                 return HoldDown(length, reach)
         return HoldDown(None, round(lowest - self.stop_plate_top, 9))
 
@@ -222,7 +220,8 @@ class Layout:
         c = self.design.clamp
         below = max(counterbore_diameter(c.screw), float(c.dowel)) / 2 + END_PLATE_WEB
         return max(
-            self.design.holes.height + below + tapped_depth(c.screw), self.design.element.rear_height + LEAST_GAP
+            self.design.holes.height + below + tapped_depth(c.screw),
+            self.design.element.rear_height + LEAST_GAP,
         )
 
     @property

@@ -27,18 +27,25 @@ class Measurement:
 MICROSCOPE = "measuring microscope, 0.001 or better"
 WAYS = {
     "hinge thickness": (
-        "hinge_thickness", "thinnest place between the hinge's two faces (mean of both edges of the sheet)", MICROSCOPE
+        "hinge_thickness",
+        "thinnest place between the hinge's two faces (mean of both edges of the sheet)",
+        MICROSCOPE,
     ),
     "pad height over the dowel hole's centre": (
-        "", "pad face over the centre of the dowel hole, square to the flat face",
+        "",
+        "pad face over the centre of the dowel hole, square to the flat face",
         "coordinate measuring machine, or height gauge over a pin in the dowel hole",
     ),
     "stop gap": ("", "stop land below the ledge, square to the flat face", MICROSCOPE),
     "slot length": ("hinge_length", "between the slot's two walls, along the arm", MICROSCOPE),
     "load arm": ("load_arm", "middle of the slot to middle of the pad's face, along the arm", MICROSCOPE),
-    "arm height": ("arm_height", "arm's back over its flat face, beside the slot", "micrometer or measuring microscope, 0.002"),
+    "arm height": (
+        "arm_height",
+        "arm's back over its flat face, beside the slot",
+        "micrometer or measuring microscope, 0.002",
+    ),
     "sheet thickness": ("width", "across the element, on arm and body beside the slot", "micrometer, 0.002"),
-}  # fmt: skip
+}
 AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance asks for")
 
 

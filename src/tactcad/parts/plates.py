@@ -33,7 +33,9 @@ def spacer(layout: Layout) -> Part:
         colour="#9aa4ae",
         notes=("burr-free, flat faces as rolled",),
         characteristics=(
-            Characteristic("thickness", layout.spacer, layout.spacer + SPACER_TOLERANCE, layout.spacer - SPACER_TOLERANCE),
+            Characteristic(
+                "thickness", layout.spacer, layout.spacer + SPACER_TOLERANCE, layout.spacer - SPACER_TOLERANCE
+            ),
         ),
     )
 
@@ -76,16 +78,28 @@ def end_plate(layout: Layout, head: bool) -> Part:
     features: list[Feature] = []
     for side in (-1.0, 1.0):
         for i, x in enumerate(layout.screw_x):
-            features.append(_screw_hole(f"screw_{i + 1}", d, c, head, (side * x, d.holes.height - z0, 0.0), depth))
+            features.append(
+                _screw_hole(f"screw_{i + 1}", d, c, head, (side * x, d.holes.height - z0, 0.0), depth)
+            )
         for i, x in enumerate(layout.dowel_x):
             features.append(
                 Hole(
-                    f"dowel_{i + 1}", (side * x, d.holes.height - z0, 0.0), (0, 0, 1),
-                    dowel_hole_diameter(d) if head else dowel_diameter(d.clamp.dowel), depth, True,
-                    tolerance=f"+{d.holes.dowel_hole_upper:g}/0" if head else "H7, reamed with the pin in press fit",
+                    f"dowel_{i + 1}",
+                    (side * x, d.holes.height - z0, 0.0),
+                    (0, 0, 1),
+                    dowel_hole_diameter(d) if head else dowel_diameter(d.clamp.dowel),
+                    depth,
+                    True,
+                    tolerance=f"+{d.holes.dowel_hole_upper:g}/0"
+                    if head
+                    else "H7, reamed with the pin in press fit",
                 )
             )
-        features.append(_blind_tapped("carrier", d.clamp.screw, (side * layout.carrier_screw_x, height, depth / 2), (0, -1, 0)))
+        features.append(
+            _blind_tapped(
+                "carrier", d.clamp.screw, (side * layout.carrier_screw_x, height, depth / 2), (0, -1, 0)
+            )
+        )
     kind = "head" if head else "tapped"
     return Part(
         part_no=f"{d.name}-end-plate-{kind}",
@@ -115,7 +129,9 @@ def stop_plate(layout: Layout) -> Part:
         notes=("break edges 0.2", "ground face down, on the ledges"),
         characteristics=(
             Characteristic(
-                "thickness", d.clamp.stop_plate_thickness, d.clamp.stop_plate_thickness + 0.05,
+                "thickness",
+                d.clamp.stop_plate_thickness,
+                d.clamp.stop_plate_thickness + 0.05,
                 d.clamp.stop_plate_thickness - 0.05,
             ),
         ),
@@ -138,12 +154,23 @@ def carrier(layout: Layout) -> Part:
         for sy in (-1.0, 1.0):
             features.append(
                 Hole(
-                    "end_plate_screw", (sx * layout.carrier_screw_x, sy * layout.end_plate_y, t), (0, 0, -1),
-                    metric.clearance, t, True, counterbore=counterbore,
+                    "end_plate_screw",
+                    (sx * layout.carrier_screw_x, sy * layout.end_plate_y, t),
+                    (0, 0, -1),
+                    metric.clearance,
+                    t,
+                    True,
+                    counterbore=counterbore,
                 )
             )
             features.append(
-                _tapped("mount", d.clamp.mount_thread, (sx * layout.mount_x, sy * d.clamp.mount_pitch_y / 2, t), (0, 0, -1), t)
+                _tapped(
+                    "mount",
+                    d.clamp.mount_thread,
+                    (sx * layout.mount_x, sy * d.clamp.mount_pitch_y / 2, t),
+                    (0, 0, -1),
+                    t,
+                )
             )
         for y in layout.hold_down_y:
             features.append(_tapped("hold_down", thread, (sx * layout.hold_down_x, y, t), (0, 0, -1), t))
@@ -182,6 +209,13 @@ def _blind_tapped(name: str, thread: str, at: Vector, axis: Vector) -> Hole:
     m = METRIC[thread]
     full = blind_thread(thread)
     return Hole(
-        name, at, axis, m.tap_drill, round(full + 2 * m.pitch, 9), False,
-        thread=thread, thread_depth=full, drill_point=True,
+        name,
+        at,
+        axis,
+        m.tap_drill,
+        round(full + 2 * m.pitch, 9),
+        False,
+        thread=thread,
+        thread_depth=full,
+        drill_point=True,
     )

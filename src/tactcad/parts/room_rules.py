@@ -47,7 +47,9 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
     least = max(LEAST_ARM_GAP, neighbours_take(layout) + LEAST_BESIDE)
     if layout.spacer < least - SAME:
         yield (
-            "array.spacer", "arms too near their neighbours and the end plates to move freely", layout.spacer,
+            "array.spacer",
+            "arms too near their neighbours and the end plates to move freely",
+            layout.spacer,
             f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + {SPACER_TOLERANCE + LEAST_BESIDE:g} = "
             f"{neighbours_take(layout) + LEAST_BESIDE:g} mm",
         )
@@ -66,8 +68,10 @@ def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
         high = layout.ledge_of(p.hinge) - stop_gap(layout, p) - p.hinge.h
         if high <= d.tolerance.arm_height + SAME:
             yield (
-                "tolerance.arm_height", f"as much as the stop land of element {p.number} stands over its arm",
-                d.tolerance.arm_height, f"less than {high:.4g} mm",
+                "tolerance.arm_height",
+                f"as much as the stop land of element {p.number} stands over its arm",
+                d.tolerance.arm_height,
+                f"less than {high:.4g} mm",
             )
 
 
@@ -80,8 +84,10 @@ def slots_stay_open(layout: Layout) -> Iterator[Finding]:
         if left <= limit + SAME:
             least = (limit + high * sin(w)) * 2 / (1 + cos(w))
             yield (
-                "element.hinge_length", f"the slot of element {p.number} closes before its arm has turned as far as it may",
-                p.hinge.l, f"more than {least:.4g} mm, or a narrower stop gap",
+                "element.hinge_length",
+                f"the slot of element {p.number} closes before its arm has turned as far as it may",
+                p.hinge.l,
+                f"more than {least:.4g} mm, or a narrower stop gap",
             )
 
 
@@ -92,11 +98,15 @@ def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
     for p, w in zip(layout.elements, turns(layout)):
         low = d.element.pad_height + hinge_centre(layout, p)
         towards[p.index] = towards.get(p.index, 0.0) + max(0.0, low * sin(w) - p.arm * (1 - cos(w)))
-    facing = [towards[i] for i in range(min(map(len, d.array.row_arms)))] if len(d.array.row_arms) == 2 else [0.0]
+    facing = (
+        [towards[i] for i in range(min(map(len, d.array.row_arms)))] if len(d.array.row_arms) == 2 else [0.0]
+    )
     least = d.element.pad_length + max(facing) + 2 * d.tolerance.load_arm
     if len(d.array.row_arms) == 2 and d.array.row_pitch <= least + SAME:
         yield (
-            "array.row_pitch", "pressed arms may meet the opposite row's", d.array.row_pitch,
+            "array.row_pitch",
+            "pressed arms may meet the opposite row's",
+            d.array.row_pitch,
             f"more than pad_length + {max(facing):.3g} of turning + 2 tolerance.load_arm = {least:.4g} mm",
         )
 
@@ -106,20 +116,26 @@ def leads_have_room(layout: Layout) -> Iterator[Finding]:
     d, e = layout.design, layout.design.element
     if leads_that_fit(layout) < LEADS:
         yield (
-            "element.recess_depth", f"{LEADS} leads of {LEAD:g} mm do not fit into the wire recess of {d.array.pitch:g} mm width",
-            e.recess_depth, f"at least {LEAD * -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME))):g} mm, and a pitch of {LEAD:g} mm or more",
+            "element.recess_depth",
+            f"{LEADS} leads of {LEAD:g} mm do not fit into the wire recess of {d.array.pitch:g} mm width",
+            e.recess_depth,
+            f"at least {LEAD * -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME))):g} mm, and a pitch of {LEAD:g} mm or more",
         )
     out, room = gauge_stands_out(layout), gauge_room(layout)
     if LEAST_GAP - SAME <= room < out - SAME:  # still less is another rule's
         yield (
-            "element.pad_height", "the object would touch gauge and leads before the pad", e.pad_height,
+            "element.pad_height",
+            "the object would touch gauge and leads before the pad",
+            e.pad_height,
             f"at least {e.pad_height + out - room:g} mm",
         )
 
 
 def leads_that_fit(layout: Layout) -> int:
     """How many leads lie in the recess of one element."""
-    return floor(layout.design.array.pitch / LEAD + SAME) * floor(layout.design.element.recess_depth / LEAD + SAME)
+    return floor(layout.design.array.pitch / LEAD + SAME) * floor(
+        layout.design.element.recess_depth / LEAD + SAME
+    )
 
 
 def gauge_stands_out(layout: Layout) -> float:
@@ -136,7 +152,12 @@ def gauge_room(layout: Layout) -> float:
 def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
     g, sheet = layout.design.gauge, layout.design.sheet.thickness
     if g.carrier_width > sheet + SAME:
-        yield ("gauge.carrier_width", "wider than the element", g.carrier_width, f"at most sheet.thickness = {sheet:g} mm")
+        yield (
+            "gauge.carrier_width",
+            "wider than the element",
+            g.carrier_width,
+            f"at most sheet.thickness = {sheet:g} mm",
+        )
     if g.grid_width > g.carrier_width + SAME:
         yield ("gauge.grid_width", "wider than its carrier", g.grid_width, f"at most {g.carrier_width:g} mm")
     side = min(g.carrier_arm_side, g.carrier_body_side)

@@ -53,10 +53,22 @@ def stop_limit(layout: Layout, place: ElementPlace) -> StopLimit:
     """
     design = layout.design
     return _limit(
-        place.hinge.t, place.hinge.l, place.hinge.r, place.hinge.h, place.arm, place.load_arm, place.body_length,
-        design.element.body_height, design.sheet.thickness, design.element.sides == "two",
-        design.material.youngs_modulus, design.material.poisson, design.material.yield_strength,
-        design.rating.deflection_factor, design.rating.overload_force, design.stop.tolerance,
+        place.hinge.t,
+        place.hinge.l,
+        place.hinge.r,
+        place.hinge.h,
+        place.arm,
+        place.load_arm,
+        place.body_length,
+        design.element.body_height,
+        design.sheet.thickness,
+        design.element.sides == "two",
+        design.material.youngs_modulus,
+        design.material.poisson,
+        design.material.yield_strength,
+        design.rating.deflection_factor,
+        design.rating.overload_force,
+        design.stop.tolerance,
     )
 
 
@@ -71,7 +83,9 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
-def _limit(t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance) -> StopLimit:
+def _limit(
+    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance
+) -> StopLimit:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))

@@ -55,7 +55,10 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
         if name not in names:
             why = [line for line in left_out(design) if line.startswith(f"scene {name} ")]
             raise InputError(
-                "--scene", why[0] if why else "no such scene in this design", value=name, legal=one_of(name, names)
+                "--scene",
+                why[0] if why else "no such scene in this design",
+                value=name,
+                legal=one_of(name, names),
             )
     return tuple(name for name in names if not wanted or name in wanted)
 

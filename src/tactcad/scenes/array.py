@@ -19,10 +19,7 @@ from .scene import UPRIGHT, Contact, Placement, Rotation, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
-ROW: dict[int, Rotation] = {
-    1: ((1, 0, 0), (0, 0, -1), (0, 1, 0)),
-    2: ((-1, 0, 0), (0, 0, 1), (0, 1, 0)),
-}
+ROW: dict[int, Rotation] = {1: ((1, 0, 0), (0, 0, -1), (0, 1, 0)), 2: ((-1, 0, 0), (0, 0, 1), (0, 1, 0))}
 ALONG_Y: Rotation = ROW[2]  # local z runs along +y
 AGAINST_Y: Rotation = ROW[1]  # local z runs along -y
 DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
@@ -43,7 +40,11 @@ def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), st
     if stops:
         build.stop_plate()
     return Scene(
-        "array", tuple(build.placements), tuple(build.contacts), array_supplies(layout), frozenset(build.cover),
+        "array",
+        tuple(build.placements),
+        tuple(build.contacts),
+        array_supplies(layout),
+        frozenset(build.cover),
         steps=array_steps(layout, tuple(p.designator for p in build.placements)),
     )
 
@@ -61,7 +62,9 @@ class _Builder:
     def place(self, designator: str, part: Part, origin, rotation: Rotation) -> str:
         if part.bought:
             self.cover.add(designator)
-        self.placements.append(Placement(designator, part, tuple(round(float(v), 9) for v in origin), rotation))
+        self.placements.append(
+            Placement(designator, part, tuple(round(float(v), 9) for v in origin), rotation)
+        )
         return designator
 
     def touch(self, first: str, second: str) -> None:
@@ -152,7 +155,11 @@ class _Builder:
         first = len([p for p in self.placements if p.designator.startswith("SC")])
         corners = [(sx, sy) for sy in (-1, 1) for sx in (1, -1)]
         for n, (sx, sy) in enumerate(corners, start=first + 1):
-            at = (sx * layout.carrier_screw_x, sy * layout.end_plate_y, layout.carrier_bottom + fixing.under_head)
+            at = (
+                sx * layout.carrier_screw_x,
+                sy * layout.end_plate_y,
+                layout.carrier_bottom + fixing.under_head,
+            )
             name = self.place(f"SC{n}", screws.cap_screw(thread, fixing.length), at, DOWN)
             self.touch(name, "CA1")
             self.contacts.append(Contact(name, "EP1" if sy < 0 else "EP2", "thread"))
@@ -166,6 +173,8 @@ class _Builder:
         length = layout.hold_down.length
         spots = [(side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y]
         for n, (x, y) in enumerate(spots, start=1):
-            name = self.place(f"SS{n}", screws.set_screw(thread, length), (x, y, layout.stop_plate_top + length), DOWN)
+            name = self.place(
+                f"SS{n}", screws.set_screw(thread, length), (x, y, layout.stop_plate_top + length), DOWN
+            )
             self.touch(name, "ST1")
             self.contacts.append(Contact(name, "CA1", "thread"))

@@ -11,7 +11,12 @@ from tactcad.parts.library import screws
 from .array import AGAINST_Y, ALONG_Y, DOWN
 from .scene import UPRIGHT, Contact, ContactKind, Motion, Placement, Rotation, Scene, Step
 
-POINTING: dict[Vector, Rotation] = {(0, 0, 1): UPRIGHT, (0, 0, -1): DOWN, (0, 1, 0): ALONG_Y, (0, -1, 0): AGAINST_Y}
+POINTING: dict[Vector, Rotation] = {
+    (0, 0, 1): UPRIGHT,
+    (0, 0, -1): DOWN,
+    (0, 1, 0): ALONG_Y,
+    (0, -1, 0): AGAINST_Y,
+}
 
 
 class Builder:
@@ -55,7 +60,9 @@ class Builder:
     def meet(self, first: str, second: str, kind: ContactKind = "touch") -> None:
         self.contacts.append(Contact(first, second, kind))
 
-    def screw(self, thread: str, length: float, under_head: Vector, direction: Vector, head_on: str, into: str) -> str:
+    def screw(
+        self, thread: str, length: float, under_head: Vector, direction: Vector, head_on: str, into: str
+    ) -> str:
         """A cap screw with its head's bearing face at `under_head`, pointing in `direction`."""
         name = self.place("RS", screws.cap_screw(thread, length), under_head, POINTING[direction])
         self.meet(name, head_on)
@@ -66,7 +73,8 @@ class Builder:
         """Everything of another scene, turned and moved; its designators stay."""
         for p in scene.placements:
             turned = tuple(
-                tuple(sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
+                tuple(sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3))
+                for i in range(3)
             )
             at = tuple(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
             self._ready.add(self._add(Placement(p.designator, p.part, _rounded(at), turned)))
@@ -75,18 +83,43 @@ class Builder:
         self.supplies += scene.supplies
 
     def step(
-        self, title: str, explode: Vector, text: str, fan: bool = False, bench: bool = False, aside: tuple[str, ...] = ()
+        self,
+        title: str,
+        explode: Vector,
+        text: str,
+        fan: bool = False,
+        bench: bool = False,
+        aside: tuple[str, ...] = (),
     ) -> None:
         """Close a step: it takes what was placed since the one before; a subassembly's parts are ready."""
-        names = tuple(p.designator for p in self.placements[self._stepped:])
+        names = tuple(p.designator for p in self.placements[self._stepped :])
         self._stepped = len(self.placements)
-        self.steps.append(Step(title, names, explode, text, fan, bench, aside, frozenset(self._ready & set(names)), self._unit))
+        self.steps.append(
+            Step(
+                title,
+                names,
+                explode,
+                text,
+                fan,
+                bench,
+                aside,
+                frozenset(self._ready & set(names)),
+                self._unit,
+            )
+        )
 
     def scene(self, name: str, motions: Iterable[Motion] = (), cover: Iterable[str] = ()) -> Scene:
         groups = tuple((group, frozenset(names)) for group, names in self.groups.items())
         return Scene(
-            name, tuple(self.placements), tuple(self.contacts), tuple(self.supplies), frozenset(cover), groups,
-            tuple(motions), tuple(self.steps), tuple(self._scenes),
+            name,
+            tuple(self.placements),
+            tuple(self.contacts),
+            tuple(self.supplies),
+            frozenset(cover),
+            groups,
+            tuple(motions),
+            tuple(self.steps),
+            tuple(self._scenes),
         )
 
 

@@ -30,7 +30,9 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     rig = RigLayout(design)
     pads = pad_middles(rig.array)
     if not 1 <= pose.element <= len(pads):
-        raise InputError("element", "the array has none of that number", value=pose.element, legal=f"1 to {len(pads)}")
+        raise InputError(
+            "element", "the array has none of that number", value=pose.element, legal=f"1 to {len(pads)}"
+        )
     px, py = pads[pose.element - 1]
     dx, dy = -px, py  # the array lies on its back: its y runs against the scene's
     b = Builder()
@@ -41,14 +43,17 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     c = design.calibration
     b.meet(contact, "TI1", "press")
     b.step(
-        "Roller tip", (0, -130, AXIS_LIFT - 40),
+        "Roller tip",
+        (0, -130, AXIS_LIFT - 40),
         "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, roller along y: "
         f"lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, set x by the edge of "
         f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
     )
     b.step(
-        "Calibrate, then fit the stop plate", (0, 0, 0),
-        _limits(design) + " Afterwards take the array off its mount and the carrier off the array, and go on with the step Stop "
+        "Calibrate, then fit the stop plate",
+        (0, 0, 0),
+        _limits(design)
+        + " Afterwards take the array off its mount and the carrier off the array, and go on with the step Stop "
         "plate of the array's own guide. Zero every signal anew.",
     )
     if pose.height == 0:
@@ -70,7 +75,14 @@ def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
         low = b.place("SF", fixed, (*at, z))
         b.meet(below, low)
         for sx, sy in CORNERS:
-            b.screw(THREAD, LENGTH, (at[0] + sx * STAGE_HOLE, at[1] + sy * STAGE_HOLE, z + UNDER), (0, 0, -1), low, below)
+            b.screw(
+                THREAD,
+                LENGTH,
+                (at[0] + sx * STAGE_HOLE, at[1] + sy * STAGE_HOLE, z + UNDER),
+                (0, 0, -1),
+                low,
+                below,
+            )
         micrometer = b.place("MM", head, (at[0] + side[0] * half, at[1] + side[1] * half, z + t / 2), out)
         b.meet(low, micrometer)
         at = (dx, 0.0) if axis == "x" else (dx, dy)
@@ -78,7 +90,8 @@ def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
         high = b.place("SM", moving, (*at, z + t))
         b.meet(low, high)
         b.step(
-            f"Stage along {axis}", (0, 0, 30 + 25 * level),
+            f"Stage along {axis}",
+            (0, 0, 30 + 25 * level),
             f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other end and fix the "
             "other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
@@ -99,7 +112,9 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
     roller = dowel_diameter(rig.design.calibration.roller) / 2
     pressed = rig.array.elements[pose.element - 1]
     deflected = (
-        {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)} if pose.deflection else {}
+        {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)}
+        if pose.deflection
+        else {}
     )
     b.subassembly(array(rig.design, deflected, stops=False), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
     b.meet(mount, "CA1")
@@ -107,7 +122,8 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
         at = (dx + x, dy + y, z + PLATE - carried.under_carrier_screw(rig))
         b.screw(rig.design.clamp.mount_thread, carried.CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
     b.step(
-        "Array on its mount", (0, 0, 120),
+        "Array on its mount",
+        (0, 0, 120),
         "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would close before the end "
         "of the travel) on the mount with its carrier down, and fix it by four screws from below. Leads leave along x, loose.",
         bench=True,
@@ -116,7 +132,8 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
         at = (dx + sx * STAGE_HOLE, dy + sy * STAGE_HOLE, z + UNDER)
         b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under)
     b.step(
-        "Mount on the stages", (0, 0, 145),
+        "Mount on the stages",
+        (0, 0, 145),
         "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller within 0.02 mm over the "
         "whole y travel.",
     )
@@ -130,7 +147,9 @@ def _limits(design: Design) -> str:
     for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):
         if not load.refused and load.place.arm not in seen:
             seen.add(load.place.arm)
-            lines.append(f"arm {load.place.arm:g} carries {load.force:.2f} N and would yield at {floor(load.travel_at_yield * 1e3):g} um")
+            lines.append(
+                f"arm {load.place.arm:g} carries {load.force:.2f} N and would yield at {floor(load.travel_at_yield * 1e3):g} um"
+            )
     return (
         f"Nothing protects the elements here: never turn the micrometer beyond {c.travel * 1e3:g} um from first touch."
         + (f" There {', '.join(lines)}." if lines else "")
@@ -145,11 +164,13 @@ def _motions(design: Design, pads, px: float, py: float) -> tuple[Motion, ...]:
     ways = [Motion("roller down to the pad", (("axis", lifted, (0.0, 0.0, 0.0)),))]
     for n, (start, end) in enumerate(zip(corners, corners[1:] + corners[:1]), start=1):
         ways.append(
-            Motion(f"stages along side {n} of the pads' rectangle, roller lifted", (
-                ("axis", lifted, lifted),
-                ("stage-x", (start[0], 0.0, 0.0), (end[0], 0.0, 0.0)),
-                ("stage-y", (*start, 0.0), (*end, 0.0)),
-            ))
+            Motion(
+                f"stages along side {n} of the pads' rectangle, roller lifted",
+                (
+                    ("axis", lifted, lifted),
+                    ("stage-x", (start[0], 0.0, 0.0), (end[0], 0.0, 0.0)),
+                    ("stage-y", (*start, 0.0), (*end, 0.0)),
+                ),
+            )
         )
     return tuple(ways)
-

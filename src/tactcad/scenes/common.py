@@ -38,10 +38,15 @@ def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
         at = (x, rig.post_y + POST[1] / 2 + y, -BASE[1] + head)
         b.screw("M5", stand.BASE_SCREW, at, (0, 0, 1), base, post)
     b.step(
-        "Stand", (0, 0, 0) if stages else (0, 0, -60),
+        "Stand",
+        (0, 0, 0) if stages else (0, 0, -60),
         "Screw the post on the base plate from below. Before the last turn, check with a square on the upper face "
         "that the post's front stands square within 0.02 mm on 100 mm, both ways."
-        + ("" if stages else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."),
+        + (
+            ""
+            if stages
+            else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."
+        ),
     )
     return post
 
@@ -73,14 +78,16 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
             b.meet(axle, ball, "press")
             b.meet(ball, STAND)
         b.step(
-            f"Wheels, {which}", (0, sy * 70, 25),
+            f"Wheels, {which}",
+            (0, sy * 70, 25),
             "Put shim, bearing, shim on each axle and start its thread."
             + (
                 " Then stand the cart on a surface plate, press lightly on its middle so that all four wheels touch, and "
                 "tighten the axles in that state, crosswise: the axles' play in the bores takes up the threads' error. No "
                 "wheel may be loose over a 0.02 mm feeler gauge. Every outer ring must turn at a breath: it has "
                 f"{c.shim:g} mm of air to plate and head."
-                if sy > 0 else ""
+                if sy > 0
+                else ""
             ),
             fan=True,
         )
@@ -91,12 +98,20 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
     b.meet(plate, body)
     b.meet(body, ring)
     b.step(
-        "Holder's body and seal", (0, 0, 60),
-        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.", fan=True,
+        "Holder's body and seal",
+        (0, 0, 60),
+        "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.",
+        fan=True,
     )
-    fitting = b.place("HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y)
+    fitting = b.place(
+        "HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
+    )
     b.meet(fitting, body, "thread")
-    b.step("Hose fitting", (0, -40, 45), "Screw the hose fitting in by hand and a quarter turn more; its washer seals.")
+    b.step(
+        "Hose fitting",
+        (0, -40, 45),
+        "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
+    )
     lid = b.place("HL", holder.holder_lid(rig), (roll, 0, top))
     b.meet(body, lid)
     b.meet(ring, lid)
@@ -104,18 +119,33 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
         at = (roll + sx * h, sy * h, top + under)
         b.screw("M3", rig.holder_fixing[0], at, (0, 0, -1), lid, plate)
     b.step(
-        "Holder's lid", (0, 0, 95),
+        "Holder's lid",
+        (0, 0, 95),
         "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with the pump shut off, the "
         "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may not pull the cart.",
         fan=True,
     )
     object_ = b.place("SA", holder.sample(rig, dents, depth), (roll, 0, rig.lid_top))
     b.meet(lid, object_)
-    b.step("Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum.")
+    b.step(
+        "Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum."
+    )
     b.supplies += [
-        Supply("HOSE-4", "silicone hose 4 x 1 mm, soft", 1, "m", "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A"),
-        Supply("VACUUM-PUMP", f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve", 1, "pcs",
-               f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air", consumable=False),
+        Supply(
+            "HOSE-4",
+            "silicone hose 4 x 1 mm, soft",
+            1,
+            "m",
+            "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A",
+        ),
+        Supply(
+            "VACUUM-PUMP",
+            f"vacuum source, {rig.holder.vacuum:g} kPa below air, with gauge and valve",
+            1,
+            "pcs",
+            f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air",
+            consumable=False,
+        ),
     ]
     b.group(None)
     return object_
@@ -140,7 +170,8 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     b.meet(fixed, moving)
     b.group(None)
     b.step(
-        "Vertical stage", (0, -40, AXIS_LIFT),
+        "Vertical stage",
+        (0, -40, AXIS_LIFT),
         f"Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the post's rows at "
         f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to the base plate: "
         "0.01 mm on the whole travel against a square.",
@@ -151,7 +182,9 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     plate = b.place("AP", stand.axis_plate(rig), (0, back - PLATE, z), ALONG_Y)
     b.meet(moving, plate)
     for sx, sy in CORNERS:
-        b.screw(THREAD, LENGTH, (sx * STAGE_HOLE, back - UNDER, z + sy * STAGE_HOLE), (0, 1, 0), plate, moving)
+        b.screw(
+            THREAD, LENGTH, (sx * STAGE_HOLE, back - UNDER, z + sy * STAGE_HOLE), (0, 1, 0), plate, moving
+        )
     b.step("Axis plate", (0, -80, AXIS_LIFT), "Screw the axis plate on the stage's moving half.")
     front = back - 2 * PLATE
     gauge_plate = b.place("GP", stand.gauge_plate(rig), (0, front, z), ALONG_Y)
@@ -161,7 +194,9 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     for dz in bought.GAUGE_THREADS:
         b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
     b.step(
-        "Force gauge", (0, -130, AXIS_LIFT), "On the bench: screw the force gauge on its plate from behind, heads sunk.",
+        "Force gauge",
+        (0, -130, AXIS_LIFT),
+        "On the bench: screw the force gauge on its plate from behind, heads sunk.",
         bench=True,
     )
     b.meet(plate, gauge_plate)
@@ -169,7 +204,8 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
         at = (sx * stand.GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * stand.GAUGE_SCREW_Z)
         b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
     b.step(
-        "Gauge on its axis", (0, -150, AXIS_LIFT),
+        "Gauge on its axis",
+        (0, -150, AXIS_LIFT),
         "Screw the gauge plate on the axis plate, beside the gauge. Zero the gauge only after its cable is strapped to the post.",
     )
     tip_z = touch + height
@@ -177,7 +213,9 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
         r = dowels.dowel_diameter(rig.design.calibration.roller) / 2
         tip = b.place("TI", stand.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
         length = roller_length(rig)
-        contact = b.place("RO", dowels.dowel(rig.design.calibration.roller, length), (0, length / 2, tip_z + r), AGAINST_Y)
+        contact = b.place(
+            "RO", dowels.dowel(rig.design.calibration.roller, length), (0, length / 2, tip_z + r), AGAINST_Y
+        )
     else:
         tip = contact = b.place("TI", stand.flat_tip(rig), (0, 0, tip_z))
     b.meet(gauge, tip, "thread")

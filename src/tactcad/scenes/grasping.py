@@ -52,7 +52,8 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     b.group(None)
     if weights:
         b.step(
-            "Weights", (0, 0, 330),
+            "Weights",
+            (0, 0, 330),
             "One disc a loading step, laid on without a knock; each is weighed before. Without any, the grasping force is "
             f"the moving weight: {g.moving_weight:g} N.",
         )
@@ -63,12 +64,14 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     up, still = (0.0, 0.0, g.lift), (0.0, 0.0, 0.0)
     motions = (
         Motion("array down to the sample", (("axis", up, still),)),
-        Motion("cart rolls under the lifted array", (
-            ("axis", up, up), ("cart", (-c.roll, 0.0, 0.0), (c.roll, 0.0, 0.0)),
-        )),
-        Motion("cart rolls with the array on the sample", (
-            ("axis", still, still), ("cart", (-c.roll / 5, 0.0, 0.0), (c.roll / 5, 0.0, 0.0)),
-        )),
+        Motion(
+            "cart rolls under the lifted array",
+            (("axis", up, up), ("cart", (-c.roll, 0.0, 0.0), (c.roll, 0.0, 0.0))),
+        ),
+        Motion(
+            "cart rolls with the array on the sample",
+            (("axis", still, still), ("cart", (-c.roll / 5, 0.0, 0.0), (c.roll / 5, 0.0, 0.0))),
+        ),
     )
     return b.scene("grasping", motions, cover=set(b.groups["axis"]) - set(_array_names(b)))
 
@@ -80,7 +83,9 @@ def _array_names(b: Builder) -> list[str]:
 def moving_mass(scene: Scene) -> float:
     """Mass of a grasping scene's moving axis without the added weights, g."""
     axis = dict(scene.groups)["axis"]
-    return sum(p.part.mass for p in scene.placements if p.designator in axis and not p.designator.startswith("WT"))
+    return sum(
+        p.part.mass for p in scene.placements if p.designator in axis and not p.designator.startswith("WT")
+    )
 
 
 def moving_weight(scene: Scene) -> float:
@@ -98,7 +103,8 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
         at = (sx * STAGE_HOLE, front + rig.riser_depth - stand.RISER_UNDER_HEAD, z + sy * RISER_PITCH)
         b.screw("M4", stand.RISER_SCREW, at, (0, 1, 0), riser, post)
     b.step(
-        "Riser", (0, -50, 110),
+        "Riser",
+        (0, -50, 110),
         "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square on the base plate.",
     )
     rail = b.place("RL", bought.rail(length), (0, front, z), AGAINST_Y)
@@ -106,7 +112,8 @@ def _guide(b: Builder, rig: RigLayout, post: str) -> str:
     for dz in bought.rail_holes(length):
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
     b.step(
-        "Guide rail", (0, -85, 110),
+        "Guide rail",
+        (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the middle outwards.",
     )
     return rail
@@ -120,9 +127,15 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
     b.unit("vertical axis")
     front = BAR_FRONT + BAR
     zc = rig.carriage_middle + lift
-    carriage = b.place("CG", bought.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
+    carriage = b.place(
+        "CG", bought.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL
+    )
     b.meet(rail, carriage)
-    b.step("Carriage", (0, -85, 200), "Slide the carriage from its transport rail on the guide, seals taken off, one drop of thin oil.")
+    b.step(
+        "Carriage",
+        (0, -85, 200),
+        "Slide the carriage from its transport rail on the guide, seals taken off, one drop of thin oil.",
+    )
     foot = b.place("FO", carried.foot(rig), (0, 0, rig.foot_bottom + lift))
     bar = b.place("BR", carried.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
     b.meet(foot, bar)
@@ -130,7 +143,9 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
         at = (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, rig.bar_bottom + lift - carried.FOOT_UNDER_HEAD)
         b.screw("M4", 10.0, at, (0, 0, 1), foot, bar)
     b.step(
-        "Foot and bar", (0, -140, 0), "On the bench: screw the foot under the bar, from below, square within 0.02 mm.",
+        "Foot and bar",
+        (0, -140, 0),
+        "On the bench: screw the foot under the bar, from below, square within 0.02 mm.",
         bench=True,
     )
     b.subassembly(array(design), UPRIGHT, (0, 0, rig.array_z + lift))
@@ -139,16 +154,22 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
         at = (x, y, rig.foot_bottom + lift + carried.under_carrier_screw(rig))
         b.screw(design.clamp.mount_thread, carried.CARRIER_SCREW, at, (0, 0, -1), foot, "CA1")
     b.step(
-        "Array under the foot", (0, -140, -35),
+        "Array under the foot",
+        (0, -140, -35),
         "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to the post.",
     )
     for sx in (-1, 1):
         for sy in (-1, 1):
-            at = (sx * 7.5, front - carried.BAR_UNDER_HEAD, rig.bar_bottom + lift + CARRIAGE_ON_BAR + sy * 5.0)
+            at = (
+                sx * 7.5,
+                front - carried.BAR_UNDER_HEAD,
+                rig.bar_bottom + lift + CARRIAGE_ON_BAR + sy * 5.0,
+            )
             b.screw("M3", 8.0, at, (0, 1, 0), bar, carriage)
     b.meet(bar, carriage)
     b.step(
-        "Bar on the carriage", (0, -160, 0),
+        "Bar on the carriage",
+        (0, -160, 0),
         "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under any pad; the "
         f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, shim under the foot.",
     )
@@ -158,7 +179,14 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
     platform = b.place("PF", carried.platform(rig), (0, 0, z - PLATFORM))
     b.meet(bar, platform)
     for sx in (-1, 1):
-        b.screw("M4", 10.0, (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, z - PLATFORM + under), (0, 0, -1), platform, bar)
+        b.screw(
+            "M4",
+            10.0,
+            (sx * carried.BAR_SCREW_X, carried.BAR_MIDDLE, z - PLATFORM + under),
+            (0, 0, -1),
+            platform,
+            bar,
+        )
     b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
     pin = b.place("PN", carried.pin(rig, thick), (0, 0, z))
     b.meet(platform, pin)
@@ -169,7 +197,8 @@ def _moving(b: Builder, rig: RigLayout, rail: str, lift: float, thick: float, ba
         name = b.place("BA", disc, (0, 0, z))
         b.meet(platform, name)
         b.step(
-            "Ballast", (0, 0, 305),
+            "Ballast",
+            (0, 0, 305),
             f"Weigh all that moves: with the ballast it must be {design.grasping.moving_weight:g} N. Turn the ballast thinner until it is.",
         )
         z += disc.body.thickness

@@ -17,12 +17,19 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
     the way into the sample; the array lifted, without weights, and pressed in."""
     if name == "calibration":
         # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no stiffness
-        free = [design.calibration.travel if load.refused else load.deflection for load in calibration_loads(design)]
+        free = [
+            design.calibration.travel if load.refused else load.deflection
+            for load in calibration_loads(design)
+        ]
         deflections = [floor(d * 1e3 + 1e-6) / 1e3 for d in free]
         return tuple(Pose(element=n, deflection=d) for n, d in enumerate(deflections, start=1))
     if name == "sample-stiffness":
         travel = design.sample.travel
-        return (Pose(deflection=travel / 2), Pose(deflection=travel), Pose(cart=design.cart.roll / 2, height=1.0))
+        return (
+            Pose(deflection=travel / 2),
+            Pose(deflection=travel),
+            Pose(cart=design.cart.roll / 2, height=1.0),
+        )
     if name == "grasping":
         return (
             Pose(weights=0),

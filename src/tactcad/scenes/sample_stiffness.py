@@ -19,7 +19,8 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     post = place_stand(b, rig, stages=False)
     contact = place_force_axis(b, rig, post, rig.sample_top, pose.height - pose.deflection, roller=False)
     b.step(
-        "Tip", (0, -130, AXIS_LIFT - 40),
+        "Tip",
+        (0, -130, AXIS_LIFT - 40),
         "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a trace of thread lacquer. "
         f"Lower it until the gauge reads 0.01 N: that is zero. Then {design.sample.step * 1e3:g} um steps to "
         f"{design.sample.travel * 1e3:g} um, three times; subtract the gauge's own {design.calibration.load_cell_stiffness:g} N/mm.",
@@ -30,8 +31,9 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     lifted = (0.0, 0.0, design.calibration.retract)
     motions = (
         Motion("tip down to the sample", (("axis", lifted, (0.0, 0.0, 0.0)),)),
-        Motion("cart rolls under the lifted tip", (
-            ("axis", lifted, lifted), ("cart", (-c.roll, 0.0, 0.0), (c.roll, 0.0, 0.0)),
-        )),
+        Motion(
+            "cart rolls under the lifted tip",
+            (("axis", lifted, lifted), ("cart", (-c.roll, 0.0, 0.0), (c.roll, 0.0, 0.0))),
+        ),
     )
     return b.scene("sample-stiffness", motions, cover=b.groups["axis"])

@@ -56,7 +56,9 @@ def _built(part: Part) -> Solid:
 
 
 def _only_solid(shape: object, part: Part) -> Solid:
-    solids = list(shape.solids()) if hasattr(shape, "solids") else [s for piece in shape for s in piece.solids()]
+    solids = (
+        list(shape.solids()) if hasattr(shape, "solids") else [s for piece in shape for s in piece.solids()]
+    )
     if len(solids) != 1:
         raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
     return solids[0]

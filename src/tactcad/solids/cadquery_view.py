@@ -1,12 +1,12 @@
 """The same parts and scenes for people who work in CadQuery, and their models as bought parts here.
 
-    from tactcad.solids.cadquery_view import assembly, workplane
-    from tactcad.parts.designs import load
-    from tactcad.scenes import make_scene
+from tactcad.solids.cadquery_view import assembly, workplane
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene
 
-    scene = make_scene(load("macro-array"), "array")
-    workplane(scene.parts[1])      # a cadquery.Workplane with the part's solid
-    assembly(scene).export("array.step")
+scene = make_scene(load("macro-array"), "array")
+workplane(scene.parts[1])      # a cadquery.Workplane with the part's solid
+assembly(scene).export("array.step")
 """
 
 from __future__ import annotations
@@ -47,7 +47,9 @@ def _colour(colour: str) -> cq.Color:
     return cq.Color(*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)), 1.0)
 
 
-def bought_from_step(path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase) -> Part:
+def bought_from_step(
+    path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
+) -> Part:
     """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has not one."""
     from .files import model_file
 
@@ -55,7 +57,12 @@ def bought_from_step(path: str | Path, part_no: str, name: str, material: Materi
 
 
 def bought_from_cadquery(
-    model: cq.Workplane | cq.Shape, path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
+    model: cq.Workplane | cq.Shape,
+    path: str | Path,
+    part_no: str,
+    name: str,
+    material: Material,
+    purchase: Purchase,
 ) -> Part:
     """A bought part modelled in CadQuery: its one solid is written to `path` (STEP), and used from there.
 
@@ -64,6 +71,8 @@ def bought_from_cadquery(
     shape = model.val() if isinstance(model, cq.Workplane) else model
     solids = shape.Solids()
     if len(solids) != 1:
-        raise InputError(part_no, "a CadQuery model that is not one solid", value=len(solids), legal="one solid")
+        raise InputError(
+            part_no, "a CadQuery model that is not one solid", value=len(solids), legal="one solid"
+        )
     solids[0].exportStep(str(path))
     return bought_from_step(path, part_no, name, material, purchase)

@@ -16,7 +16,9 @@ from .measure import measure
 def read_step_solid(model: ModelFile) -> Solid:
     """The one solid of a STEP file. Raises InputError where file, hash or solid are not as described."""
     if _sha256(model.path) != model.sha256:
-        raise InputError(model.path, "the STEP file has changed since it was described", legal=f"sha256 {model.sha256}")
+        raise InputError(
+            model.path, "the STEP file has changed since it was described", legal=f"sha256 {model.sha256}"
+        )
     return _only_solid(model.path)
 
 

@@ -10,7 +10,9 @@ Mesh = tuple[np.ndarray, np.ndarray]  # vertices (n, 3) in mm, triangles (m, 3)
 
 def closed(mesh: Mesh) -> manifold3d.Manifold:
     """The mesh as a closed surface. Raises ValueError where it is none."""
-    made = manifold3d.Manifold(manifold3d.Mesh64(np.ascontiguousarray(mesh[0]), np.ascontiguousarray(mesh[1], dtype=np.uint64)))
+    made = manifold3d.Manifold(
+        manifold3d.Mesh64(np.ascontiguousarray(mesh[0]), np.ascontiguousarray(mesh[1], dtype=np.uint64))
+    )
     if made.status() != manifold3d.Error.NoError:
         raise ValueError(f"not a closed mesh: {made.status()}")
     return made
@@ -18,7 +20,9 @@ def closed(mesh: Mesh) -> manifold3d.Manifold:
 
 def placed(mesh: manifold3d.Manifold, origin, rotation) -> manifold3d.Manifold:
     """At a scene's place: rotation x local point + origin (mm)."""
-    return mesh.transform(np.column_stack([np.asarray(rotation, dtype=float), np.asarray(origin, dtype=float)]))
+    return mesh.transform(
+        np.column_stack([np.asarray(rotation, dtype=float), np.asarray(origin, dtype=float)])
+    )
 
 
 def meeting(first: manifold3d.Manifold, second: manifold3d.Manifold, reach: float) -> tuple[float, float]:

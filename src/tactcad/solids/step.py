@@ -15,7 +15,10 @@ def write_step(shape: TopoDS_Shape) -> bytes:
     """The shape as a STEP file, without names or colours. Raises ValueError where the kernel cannot write it."""
     writer, stream = STEPControl_Writer(), BytesIO()
     set_up_writer()
-    if writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone or writer.WriteStream(stream) != IFSelect_RetDone:
+    if (
+        writer.Transfer(shape, STEPControl_AsIs) != IFSelect_RetDone
+        or writer.WriteStream(stream) != IFSelect_RetDone
+    ):
         raise ValueError("the kernel cannot write it as STEP")
     return stream.getvalue()
 

@@ -44,7 +44,9 @@ def bearing(size: str) -> Part:
         material=BEARING_STEEL,
         body=Revolution(chain([(b.d / 2, 0), (b.D / 2, 0), (b.D / 2, b.B), (b.d / 2, b.B)])),
         colour="#a7adb5",
-        purchase=Purchase(f"ISO 15 {size}", alternates=f"{size.split('-')[0]}-2RS, same dimensions, more drag"),
+        purchase=Purchase(
+            f"ISO 15 {size}", alternates=f"{size.split('-')[0]}-2RS, same dimensions, more drag"
+        ),
         mass_override=b.mass,
         spares=1,
     )

@@ -12,7 +12,13 @@ _SERIES = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40, 4
 # Longest preferred length by diameter, ISO 8734:1997 table 1.
 _LONGEST = {"2": 20, "2.5": 24, "3": 30, "4": 40, "5": 50}
 # Deviations of m6 (ISO 286-2): +2/+8 um up to 3 mm, +4/+12 um above.
-_M6 = {"2": (0.002, 0.008), "2.5": (0.002, 0.008), "3": (0.002, 0.008), "4": (0.004, 0.012), "5": (0.004, 0.012)}
+_M6 = {
+    "2": (0.002, 0.008),
+    "2.5": (0.002, 0.008),
+    "3": (0.002, 0.008),
+    "4": (0.004, 0.012),
+    "5": (0.004, 0.012),
+}
 
 
 def dowel_lengths(size: str) -> tuple[float, ...]:
@@ -34,7 +40,9 @@ def dowel(size: str, length: float) -> Part:
     """ISO 8734 pin (or, beyond the standard's lengths, ground rod cut to length), along +z from 0."""
     standard = length in dowel_lengths(size)
     designation = (
-        f"ISO 8734 {size} m6 x {length:g} - A - St" if standard else f"ground rod {size} m6, cut to {length:g} mm"
+        f"ISO 8734 {size} m6 x {length:g} - A - St"
+        if standard
+        else f"ground rod {size} m6, cut to {length:g} mm"
     )
     return Part(
         part_no=f"ISO8734-{size}x{length:g}-pin" if standard else f"GROUND-{size}m6x{length:g}-rod",

@@ -55,11 +55,17 @@ def _between(low: float, high: float) -> tuple[float, ...]:
 
 # Preferred lengths, ISO 4762:2004 table 1 and ISO 4026:2003 table 1.
 CAP_SCREW_LENGTHS = {
-    "M2": _between(3, 20), "M2.5": _between(4, 25), "M3": _between(5, 30), "M4": _between(6, 40),
+    "M2": _between(3, 20),
+    "M2.5": _between(4, 25),
+    "M3": _between(5, 30),
+    "M4": _between(6, 40),
     "M5": _between(8, 50),
 }
 SET_SCREW_LENGTHS = {
-    "M2": _between(2, 10), "M2.5": _between(2.5, 12), "M3": _between(3, 16), "M4": _between(4, 20),
+    "M2": _between(2, 10),
+    "M2.5": _between(2.5, 12),
+    "M3": _between(3, 16),
+    "M4": _between(4, 20),
     "M5": _between(5, 25),
 }
 
@@ -107,8 +113,16 @@ def cap_screw(thread: str, length: float) -> Part:
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")
-    body = _revolved([(0, -m.head_height), (m.head / 2, -m.head_height), (m.head / 2, 0), (m.d / 2, 0),
-                      (m.d / 2, length), (0, length)])
+    body = _revolved(
+        [
+            (0, -m.head_height),
+            (m.head / 2, -m.head_height),
+            (m.head / 2, 0),
+            (m.d / 2, 0),
+            (m.d / 2, length),
+            (0, length),
+        ]
+    )
     designation = f"ISO 4762 {thread}x{length:g} A2-70"
     return Part(
         part_no=f"ISO4762-{thread}x{length:g}-A2-70-screw",
@@ -129,7 +143,9 @@ def set_screw(thread: str, length: float) -> Part:
     if length not in SET_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4026 {thread} has no length {length:g}; it has {SET_SCREW_LENGTHS[thread]}")
     chamfer = (m.d - m.set_point) / 2
-    body = _revolved([(0, 0), (m.d / 2, 0), (m.d / 2, length - chamfer), (m.set_point / 2, length), (0, length)])
+    body = _revolved(
+        [(0, 0), (m.d / 2, 0), (m.d / 2, length - chamfer), (m.set_point / 2, length), (0, length)]
+    )
     return Part(
         part_no=f"ISO4026-{thread}x{length:g}-A2-21H",
         name=f"Set screw {thread}x{length:g}, flat point",
@@ -138,7 +154,9 @@ def set_screw(thread: str, length: float) -> Part:
         body=body,
         features=(_socket(m.set_key, min(m.set_key_depth, length / 2), 0.0),),
         colour="#5c6066",
-        purchase=Purchase(f"ISO 4026 {thread}x{length:g} A2-21H", alternates=f"DIN 913 {thread}x{length:g} A2"),
+        purchase=Purchase(
+            f"ISO 4026 {thread}x{length:g} A2-21H", alternates=f"DIN 913 {thread}x{length:g} A2"
+        ),
         spares=2,
     )
 
@@ -175,7 +193,16 @@ def nut(thread: str) -> Part:
         material=STAINLESS,
         body=Extrusion(_hexagon(m.nut), m.nut_height),
         features=(
-            Hole("thread", (0, 0, 0), (0, 0, 1), m.tap_drill, m.nut_height, True, thread=thread, thread_depth=m.nut_height),
+            Hole(
+                "thread",
+                (0, 0, 0),
+                (0, 0, 1),
+                m.tap_drill,
+                m.nut_height,
+                True,
+                thread=thread,
+                thread_depth=m.nut_height,
+            ),
         ),
         colour="#8a8d91",
         purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
@@ -193,7 +220,9 @@ def threaded_rod(thread: str, length: float) -> Part:
         material=STAINLESS,
         body=Extrusion(circle((0, 0), m.d), length),
         colour="#8a8d91",
-        purchase=Purchase(f"DIN 976-1 A {thread} A2-70, cut to {length:g} mm", alternates=f"DIN 975 {thread} A2"),
+        purchase=Purchase(
+            f"DIN 976-1 A {thread} A2-70, cut to {length:g} mm", alternates=f"DIN 975 {thread} A2"
+        ),
     )
 
 

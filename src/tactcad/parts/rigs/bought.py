@@ -39,8 +39,16 @@ def force_gauge(rig: RigLayout) -> Part:
         "around_shaft", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, GAUGE_SHAFT, (circle((0, 0), SHAFT),)
     )
     threads = tuple(
-        Hole("mount", (0, deep / 2, GAUGE_SHAFT + 45.0 + z), (0, -1, 0), METRIC["M4"].tap_drill, 9.0, False,
-             thread="M4", thread_depth=8.0)
+        Hole(
+            "mount",
+            (0, deep / 2, GAUGE_SHAFT + 45.0 + z),
+            (0, -1, 0),
+            METRIC["M4"].tap_drill,
+            9.0,
+            False,
+            thread="M4",
+            thread_depth=8.0,
+        )
         for z in GAUGE_THREADS
     )
     return Part(
@@ -54,7 +62,8 @@ def force_gauge(rig: RigLayout) -> Part:
         purchase=Purchase(
             f"digital force gauge {c.load_cell_range:g} N, {c.load_cell_resolution:g} N, "
             f"{c.load_cell_stiffness:g} N/mm at its shaft, M6 shaft",
-            manufacturer="Sauter", mpn="FH 5",
+            manufacturer="Sauter",
+            mpn="FH 5",
             alternates="any gauge of that range; enter its measured stiffness in calibration.load_cell_stiffness",
         ),
         mass_override=640.0,
@@ -67,7 +76,8 @@ def stage_fixed(travel: float) -> Part:
     thread, _, under = PLATE_SCREW
     holes = tuple(
         sunk("mount", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t, under)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     )
     return Part(
         part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-FIXED",
@@ -89,7 +99,8 @@ def stage_moving(travel: float) -> Part:
     half, t = STAGE / 2, STAGE_PLATE
     threads = tuple(
         tapped("mount", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     )
     return Part(
         part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-MOVING",
@@ -124,7 +135,8 @@ def rail(length: float) -> Part:
     """Miniature guide rail, width 9: local z out of its mounting face, y along it, holes 20 apart."""
     half = length / 2
     holes = tuple(
-        Hole("mount", (0, y, 6.5), (0, 0, -1), 3.5, 6.5, True, counterbore=(6.0, 3.5)) for y in rail_holes(length)
+        Hole("mount", (0, y, 6.5), (0, 0, -1), 3.5, 6.5, True, counterbore=(6.0, 3.5))
+        for y in rail_holes(length)
     )
     return Part(
         part_no=f"RAIL-9x{length:g}-guide",
@@ -134,7 +146,9 @@ def rail(length: float) -> Part:
         body=Extrusion(rectangle(-4.5, -half, 4.5, half), 6.5),
         features=holes,
         colour="#6f7378",
-        purchase=Purchase(f"miniature guide rail, width 9, length {length:g}, holes M3 at 20", alternates="MGN9R and alike"),
+        purchase=Purchase(
+            f"miniature guide rail, width 9, length {length:g}, holes M3 at 20", alternates="MGN9R and alike"
+        ),
     )
 
 
@@ -147,13 +161,31 @@ def rail_holes(length: float) -> tuple[float, ...]:
 def carriage() -> Part:
     """The rail's carriage, ends without seals: section in (x, y) with y out of the rail's mounting face,
     extruded along the rail."""
-    section = chain([
-        (-10, 2.2), (-4.5, 2.2), (-4.5, 6.5), (4.5, 6.5), (4.5, 2.2), (10, 2.2), (10, RAIL_HEIGHT), (-10, RAIL_HEIGHT),
-    ])
+    section = chain(
+        [
+            (-10, 2.2),
+            (-4.5, 2.2),
+            (-4.5, 6.5),
+            (4.5, 6.5),
+            (4.5, 2.2),
+            (10, 2.2),
+            (10, RAIL_HEIGHT),
+            (-10, RAIL_HEIGHT),
+        ]
+    )
     threads = tuple(
-        Hole("mount", (sx * 7.5, RAIL_HEIGHT, CARRIAGE_LENGTH / 2 + sy * 5.0), (0, -1, 0), 2.5, 3.0, False,
-             thread="M3", thread_depth=3.0)
-        for sx in (-1, 1) for sy in (-1, 1)
+        Hole(
+            "mount",
+            (sx * 7.5, RAIL_HEIGHT, CARRIAGE_LENGTH / 2 + sy * 5.0),
+            (0, -1, 0),
+            2.5,
+            3.0,
+            False,
+            thread="M3",
+            thread_depth=3.0,
+        )
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     )
     return Part(
         part_no="CARRIAGE-9-UNSEALED",
@@ -194,9 +226,19 @@ def disc_weight(rig: RigLayout) -> Part:
 
 def hose_fitting() -> Part:
     """Barbed fitting M5 for soft hose of 4 mm bore: axis z, thread below z = 0, shoulder at z = 0."""
-    profile = chain([
-        (1.2, -4.0), (2.5, -4.0), (2.5, 0), (FITTING_RADIUS, 0), (FITTING_RADIUS, 5.0), (2.0, 5.0), (2.5, 9.0), (2.0, 13.0), (1.2, 13.0),
-    ])
+    profile = chain(
+        [
+            (1.2, -4.0),
+            (2.5, -4.0),
+            (2.5, 0),
+            (FITTING_RADIUS, 0),
+            (FITTING_RADIUS, 5.0),
+            (2.0, 5.0),
+            (2.5, 9.0),
+            (2.0, 13.0),
+            (1.2, 13.0),
+        ]
+    )
     return Part(
         part_no="FITTING-M5-HOSE4-barb",
         name="Hose fitting M5, barb for 4 mm",
@@ -205,6 +247,7 @@ def hose_fitting() -> Part:
         body=Revolution(profile),
         colour="#c2b280",
         purchase=Purchase(
-            "barbed hose fitting M5, hose bore 4 mm, with sealing washer", alternates="push-in fitting M5 for tube 4 mm"
+            "barbed hose fitting M5, hose bore 4 mm, with sealing washer",
+            alternates="push-in fitting M5 for tube 4 mm",
         ),
     )

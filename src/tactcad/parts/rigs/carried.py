@@ -55,7 +55,8 @@ def array_mount(rig: RigLayout) -> Part:
     x = max(rig.array.carrier_size[0] / 2, STAGE / 2)
     features: list[Feature] = [
         sunk("stage", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, PLATE), (0, 0, -1), PLATE, under)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     mount = rig.design.clamp.mount_thread
     features += [
@@ -105,7 +106,8 @@ def bar(rig: RigLayout) -> Part:
     """Vertical bar on the carriage. Contour in (x, z), front face at local z = 0, lower end at y = 0."""
     features: list[Feature] = [
         sunk("carriage", "M3", (sx * 7.5, CARRIAGE_ON_BAR + sy * 5.0, 0.0), (0, 0, 1), BAR, BAR_UNDER_HEAD)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     for sx in (-1, 1):
         features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, BAR / 2), (0, 1, 0)))
@@ -127,7 +129,8 @@ def platform(rig: RigLayout) -> Part:
     """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the underside."""
     half = rig.design.grasping.weight_diameter / 2
     features: list[Feature] = [
-        sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, PLATFORM), (0, 0, -1), PLATFORM, PLATFORM_UNDER_HEAD) for sx in (-1, 1)
+        sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, PLATFORM), (0, 0, -1), PLATFORM, PLATFORM_UNDER_HEAD)
+        for sx in (-1, 1)
     ]
     features.append(sunk("pin", "M4", (0.0, 0.0, 0.0), (0, 0, 1), PLATFORM, PLATFORM_UNDER_HEAD))
     return Part(
@@ -135,7 +138,9 @@ def platform(rig: RigLayout) -> Part:
         name="Weight platform",
         process="milled",
         material=plate_alloy(rig),
-        body=Extrusion(rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM),
+        body=Extrusion(
+            rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM
+        ),
         features=tuple(features),
         colour=COLOUR,
         finish="Ra 1.6, clear anodised after machining",

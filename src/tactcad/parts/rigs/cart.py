@@ -32,16 +32,26 @@ def cart_plate(rig: RigLayout) -> Part:
     entry = round(rig.axle_in_plate - 2 * m.d, 9)  # the last 2 d of the axle are engaged
     axles = tuple(
         Hole(
-            "axle", (sx * c.wheel_base / 2, sy * y, rig.axle_z - c.clearance), (0, -sy, 0), m.tap_drill,
-            round(rig.axle_in_plate + 1.0 + 2 * m.pitch, 9), False, counterbore=(m.clearance, entry),
-            thread=rig.axle_thread, thread_depth=2 * m.d + 1.0, drill_point=True,
+            "axle",
+            (sx * c.wheel_base / 2, sy * y, rig.axle_z - c.clearance),
+            (0, -sy, 0),
+            m.tap_drill,
+            round(rig.axle_in_plate + 1.0 + 2 * m.pitch, 9),
+            False,
+            counterbore=(m.clearance, entry),
+            thread=rig.axle_thread,
+            thread_depth=2 * m.d + 1.0,
+            drill_point=True,
         )
-        for sx in (-1.0, 1.0) for sy in (-1.0, 1.0)
+        for sx in (-1.0, 1.0)
+        for sy in (-1.0, 1.0)
     )
     h, (length, under) = rig.holder_screw, rig.holder_fixing
     engaged = length - under - rig.holder_body
     holder = tuple(
-        tapped("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged) for sx in (-1, 1) for sy in (-1, 1)
+        tapped("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     )
     return Part(
         part_no=f"{rig.design.name}-cart-plate",
@@ -55,7 +65,9 @@ def cart_plate(rig: RigLayout) -> Part:
         notes=("break edges 0.2", "axle threads of one side in one setting"),
         characteristics=(
             Characteristic(
-                "axles over the underside", rig.axle_z - c.clearance, rig.axle_z - c.clearance + 0.05,
+                "axles over the underside",
+                rig.axle_z - c.clearance,
+                rig.axle_z - c.clearance + 0.05,
                 rig.axle_z - c.clearance - 0.05,
             ),
         ),

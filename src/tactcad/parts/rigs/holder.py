@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
+from tactcad.parts.library import orings
 
 from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase
-from ..library import orings
 from ..library.screws import METRIC
 from .cart import COLOUR, plate_alloy
 from .holes import sunk
@@ -29,16 +29,29 @@ def holder_body(rig: RigLayout) -> Part:
     features = [
         Pocket("plenum", (0, 0, t), (0, 0, -1), (1, 0, 0), plenum(rig), rig.holder.plenum_depth),
         Pocket(
-            "seal", (0, 0, t), (0, 0, -1), (1, 0, 0), circle((0, 0), outer), orings.GROOVE_DEPTH,
+            "seal",
+            (0, 0, t),
+            (0, 0, -1),
+            (1, 0, 0),
+            circle((0, 0), outer),
+            orings.GROOVE_DEPTH,
             (circle((0, 0), inner),),
         ),
         Hole(
-            "port", (0, -s, t - rig.port_depth), (0, 1, 0), m5.tap_drill, round(s - flat, 9), True,
-            thread="M5", thread_depth=min(6.0, round(s - flat, 9)),
+            "port",
+            (0, -s, t - rig.port_depth),
+            (0, 1, 0),
+            m5.tap_drill,
+            round(s - flat, 9),
+            True,
+            thread="M5",
+            thread_depth=min(6.0, round(s - flat, 9)),
         ),
     ]
     features += [
-        Hole("screw", (sx * h, sy * h, t), (0, 0, -1), METRIC["M3"].clearance, t, True) for sx in (-1, 1) for sy in (-1, 1)
+        Hole("screw", (sx * h, sy * h, t), (0, 0, -1), METRIC["M3"].clearance, t, True)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     return Part(
         part_no=f"{rig.design.name}-holder-body",
@@ -64,10 +77,13 @@ def holder_lid(rig: RigLayout) -> Part:
     """Plate under the sample with the suction holes; z = 0 is the underside."""
     t, s, h = rig.holder.lid_thickness, rig.holder_side / 2, rig.holder_screw
     holes = [
-        Hole("suction", (x, y, t), (0, 0, -1), rig.holder.hole_diameter, t, True) for x, y in rig.suction_holes
+        Hole("suction", (x, y, t), (0, 0, -1), rig.holder.hole_diameter, t, True)
+        for x, y in rig.suction_holes
     ]
     under = rig.holder_fixing[1]
-    screws = [sunk("screw", "M3", (sx * h, sy * h, t), (0, 0, -1), t, under) for sx in (-1, 1) for sy in (-1, 1)]
+    screws = [
+        sunk("screw", "M3", (sx * h, sy * h, t), (0, 0, -1), t, under) for sx in (-1, 1) for sy in (-1, 1)
+    ]
     return Part(
         part_no=f"{rig.design.name}-holder-lid",
         name="Sample holder, lid",
@@ -89,7 +105,8 @@ def sample(rig: RigLayout, dents: tuple[tuple[float, float], ...] = (), depth: f
     pressed = bool(dents) and depth > 0
     pockets = tuple(
         Pocket("dent", (x, y, t), (0, 0, -1), (1, 0, 0), rectangle(-a, -b, a, b), depth)
-        for x, y in dents if pressed
+        for x, y in dents
+        if pressed
     )
     number = f"SAMPLE-{d.sample.side:g}x{d.sample.side:g}x{t:g}-rubber"
     return Part(
@@ -101,7 +118,9 @@ def sample(rig: RigLayout, dents: tuple[tuple[float, float], ...] = (), depth: f
         features=pockets,
         colour="#b5523b",
         notes=("reference part: the object that is measured",),
-        purchase=None if pressed else Purchase(
+        purchase=None
+        if pressed
+        else Purchase(
             f"rubber sheet {t:g} mm, cut to {d.sample.side:g} x {d.sample.side:g} mm",
             alternates="any rubber of 2 to 10 N/mm under one pad",
         ),

@@ -33,6 +33,13 @@ def tapped_blind(name: str, thread: str, at: Vector, axis: Vector, full: float |
     m = METRIC[thread]
     full = blind_thread(thread) if full is None else full
     return Hole(
-        name, at, axis, m.tap_drill, round(full + 2 * m.pitch, 9), False,
-        thread=thread, thread_depth=full, drill_point=True,
+        name,
+        at,
+        axis,
+        m.tap_drill,
+        round(full + 2 * m.pitch, 9),
+        False,
+        thread=thread,
+        thread_depth=full,
+        drill_point=True,
     )

@@ -11,9 +11,9 @@ from functools import cached_property
 from math import ceil, cos, floor, hypot, pi, sqrt
 
 from tactcad.design.tree import Cart, Design, Holder
+from tactcad.parts.library import orings
 
 from ..layout import Layout
-from ..library import orings
 from ..library.bearings import BEARINGS, Bearing
 from ..library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor
 
-from .. import plates
+from tactcad.parts import plates
+from tactcad.parts.library import dowels, screws
+
 from ..description import Part
 from ..element import element
 from ..fasteners import carrier_screw, clamping
 from ..layout import Layout
-from ..library import dowels, screws
 from . import bought, carried
 from .layout import STANDARD_GRAVITY, RigLayout
 
@@ -72,7 +73,12 @@ def _array(layout: Layout, gap: float | None) -> Iterator[tuple[Part, int]]:
         yield element(layout, place, gap), 1
     yield plates.blank(layout), len(layout.blanks())
     yield plates.spacer(layout), 2 * (layout.positions + 1)
-    for part in (plates.end_plate(layout, True), plates.end_plate(layout, False), plates.stop_plate(layout), plates.carrier(layout)):
+    for part in (
+        plates.end_plate(layout, True),
+        plates.end_plate(layout, False),
+        plates.stop_plate(layout),
+        plates.carrier(layout),
+    ):
         yield part, 1
     thread, through = d.clamp.screw, 2 * len(layout.screw_x)
     if c.rod:

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterator
 from math import hypot, pi, tan
 
 from tactcad.mechanics.rigs import holding_force, tipping_margin
+from tactcad.parts.library import orings
 
 from ..broken import Broken
 from ..deflected import deflection_at_pad_edge
 from ..layout import HOLE_WEB, Layout
-from ..library import orings
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
 from .bought import FITTING_RADIUS
@@ -48,7 +48,12 @@ Rule = Callable[[Layout], Iterator[Finding]]
 def axles_carry_wheels(layout: Layout) -> Iterator[Finding]:
     rig = RigLayout(layout.design)
     if rig.has_cart and rig.axle_length is None:
-        yield ("cart.shim", f"no ISO 4762 {rig.axle_thread} has so long a plain shank", rig.cart.shim, "thinner shims")
+        yield (
+            "cart.shim",
+            f"no ISO 4762 {rig.axle_thread} has so long a plain shank",
+            rig.cart.shim,
+            "thinner shims",
+        )
 
 
 def axles_fit_plate(layout: Layout) -> Iterator[Finding]:
@@ -61,17 +66,32 @@ def axles_fit_plate(layout: Layout) -> Iterator[Finding]:
     if c.clearance > low + SAME:
         yield ("cart.clearance", "axles too near the plate's underside", c.clearance, f"at most {low:g} mm")
     elif c.clearance < high - SAME:
-        yield ("cart.thickness", "axles too near the plate's upper face", c.thickness, f"at least {c.thickness + high - c.clearance:g} mm")
+        yield (
+            "cart.thickness",
+            "axles too near the plate's upper face",
+            c.thickness,
+            f"at least {c.thickness + high - c.clearance:g} mm",
+        )
     deep = rig.axle_in_plate + 1.0 + 2 * m.pitch + m.tap_drill
     if c.width / 2 < deep - SAME:
         yield ("cart.width", "axles of both sides meet in the plate", c.width, f"at least {2 * deep:g} mm")
     end = c.wheel_base + 2 * around
     if c.length < end - SAME:
-        yield ("cart.wheel_base", "axles too near the plate's ends", c.wheel_base, f"at most {c.length - 2 * around:g} mm")
+        yield (
+            "cart.wheel_base",
+            "axles too near the plate's ends",
+            c.wheel_base,
+            f"at most {c.length - 2 * around:g} mm",
+        )
     apart = abs(c.wheel_base / 2 - rig.holder_screw)
     least = (m.clearance + METRIC["M3"].d) / 2 + HOLE_WEB
     if apart < least - SAME:
-        yield ("cart.wheel_base", "axles meet the holder's screws", c.wheel_base, f"at least {least:g} mm beside {rig.holder_screw:g} mm")
+        yield (
+            "cart.wheel_base",
+            "axles meet the holder's screws",
+            c.wheel_base,
+            f"at least {least:g} mm beside {rig.holder_screw:g} mm",
+        )
 
 
 def cart_cannot_tip(layout: Layout) -> Iterator[Finding]:
@@ -81,21 +101,33 @@ def cart_cannot_tip(layout: Layout) -> Iterator[Finding]:
     margin = tipping_margin(rig.contacts, layout.design.sample.side / 2)
     if margin < LEAST_TIPPING - SAME:
         yield (
-            "cart.wheel_base", f"a load at the sample's corner is {margin:g} mm inside the wheels: the cart may tip",
-            rig.cart.wheel_base, f"wheels {LEAST_TIPPING:g} mm outside the sample, both ways",
+            "cart.wheel_base",
+            f"a load at the sample's corner is {margin:g} mm inside the wheels: the cart may tip",
+            rig.cart.wheel_base,
+            f"wheels {LEAST_TIPPING:g} mm outside the sample, both ways",
         )
 
 
 def holder_on_cart(layout: Layout) -> Iterator[Finding]:
     rig = RigLayout(layout.design)
     if rig.has_cart and rig.holder_side > min(rig.cart.width, rig.cart.length) + SAME:
-        yield ("holder.margin", "holder larger than the cart", rig.holder_side, f"at most {min(rig.cart.width, rig.cart.length):g} mm in all")
+        yield (
+            "holder.margin",
+            "holder larger than the cart",
+            rig.holder_side,
+            f"at most {min(rig.cart.width, rig.cart.length):g} mm in all",
+        )
 
 
 def cart_clears_post(layout: Layout) -> Iterator[Finding]:
     rig = RigLayout(layout.design)
     if rig.has_cart and rig.cart_half > rig.post_y - LEAST_AIR:
-        yield ("cart.width", "cart reaches the post", rig.cart.width, f"at most {rig.cart.width - 2 * (rig.cart_half - rig.post_y + LEAST_AIR):g} mm")
+        yield (
+            "cart.width",
+            "cart reaches the post",
+            rig.cart.width,
+            f"at most {rig.cart.width - 2 * (rig.cart_half - rig.post_y + LEAST_AIR):g} mm",
+        )
 
 
 def holes_under_sample(layout: Layout) -> Iterator[Finding]:
@@ -105,10 +137,20 @@ def holes_under_sample(layout: Layout) -> Iterator[Finding]:
     if h.rings != round(h.rings):
         yield ("holder.rings", "not a whole number", h.rings, "1, 2, 3 ...")
     if h.vacuum_diameter > layout.design.sample.side - 2.0 + SAME:
-        yield ("holder.vacuum_diameter", "holes at the sample's edge draw air", h.vacuum_diameter, f"at most {layout.design.sample.side - 2.0:g} mm")
+        yield (
+            "holder.vacuum_diameter",
+            "holes at the sample's edge draw air",
+            h.vacuum_diameter,
+            f"at most {layout.design.sample.side - 2.0:g} mm",
+        )
     pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / max(1.0, h.rings)
     if pitch < h.hole_diameter + LEAST_AIR - SAME:
-        yield ("holder.rings", f"holes only {pitch:.3g} mm apart", h.rings, f"{h.hole_diameter + LEAST_AIR:g} mm apart at least")
+        yield (
+            "holder.rings",
+            f"holes only {pitch:.3g} mm apart",
+            h.rings,
+            f"{h.hole_diameter + LEAST_AIR:g} mm apart at least",
+        )
 
 
 def vacuum_holds(layout: Layout) -> Iterator[Finding]:
@@ -118,7 +160,12 @@ def vacuum_holds(layout: Layout) -> Iterator[Finding]:
     area = len(rig.suction_holes) * pi * h.hole_diameter**2 / 4
     force = holding_force(h.vacuum, area)
     if force < h.pull - SAME:
-        yield ("holder.vacuum", f"holds {force:.3g} N at its holes against a pull of {h.pull:g} N", h.vacuum, f"at least {h.vacuum * h.pull / force:.3g} kPa, or more holes")
+        yield (
+            "holder.vacuum",
+            f"holds {force:.3g} N at its holes against a pull of {h.pull:g} N",
+            h.vacuum,
+            f"at least {h.vacuum * h.pull / force:.3g} kPa, or more holes",
+        )
 
 
 def plenum_takes_port(layout: Layout) -> Iterator[Finding]:
@@ -127,13 +174,28 @@ def plenum_takes_port(layout: Layout) -> Iterator[Finding]:
         return
     least = orings.GROOVE_DEPTH + 1.0 + METRIC["M5"].d / 2
     if rig.port_depth < least - SAME:
-        yield ("holder.plenum_depth", "port's thread meets the seal's groove", h.plenum_depth, f"at least {h.plenum_depth + least - rig.port_depth:g} mm")
+        yield (
+            "holder.plenum_depth",
+            "port's thread meets the seal's groove",
+            h.plenum_depth,
+            f"at least {h.plenum_depth + least - rig.port_depth:g} mm",
+        )
     wall = (rig.holder_side - h.vacuum_diameter) / 2
     if wall < 5.0 - SAME:
-        yield ("holder.margin", f"wall of {wall:g} mm takes no M5 fitting", h.margin, f"at least {h.margin + 5.0 - wall:g} mm")
+        yield (
+            "holder.margin",
+            f"wall of {wall:g} mm takes no M5 fitting",
+            h.margin,
+            f"at least {h.margin + 5.0 - wall:g} mm",
+        )
     flat = (h.vacuum_diameter / 2 - rig.plenum_corner) * tan(pi / 8)
     if flat < METRIC["M5"].tap_drill / 2 + 0.1 - SAME:
-        yield ("holder.vacuum_diameter", "plenum's flat wall is narrower than the port", h.vacuum_diameter, "a wider plenum")
+        yield (
+            "holder.vacuum_diameter",
+            "plenum's flat wall is narrower than the port",
+            h.vacuum_diameter,
+            "a wider plenum",
+        )
 
 
 def seal_fits_holder(layout: Layout) -> Iterator[Finding]:
@@ -141,11 +203,21 @@ def seal_fits_holder(layout: Layout) -> Iterator[Finding]:
     if not rig.has_cart:
         return
     if rig.o_ring is None:
-        yield ("holder.vacuum_diameter", "no O-ring of the table reaches around the plenum", h.vacuum_diameter, f"less than {max(orings.INSIDE.values()):g} mm")
+        yield (
+            "holder.vacuum_diameter",
+            "no O-ring of the table reaches around the plenum",
+            h.vacuum_diameter,
+            f"less than {max(orings.INSIDE.values()):g} mm",
+        )
         return
     outer = orings.groove(rig.o_ring)[1] / 2
     if outer > rig.holder_side / 2 - GROOVE_WALL + SAME:
-        yield ("holder.margin", "seal's groove reaches the holder's side", h.margin, f"at least {h.margin + outer + GROOVE_WALL - rig.holder_side / 2:.4g} mm")
+        yield (
+            "holder.margin",
+            "seal's groove reaches the holder's side",
+            h.margin,
+            f"at least {h.margin + outer + GROOVE_WALL - rig.holder_side / 2:.4g} mm",
+        )
     if outer + METRIC["M3"].clearance / 2 + GROOVE_WALL > rig.screw_circle + SAME:
         yield ("holder.margin", "seal's groove meets the holder's screws", h.margin, "a wider margin")
 
@@ -154,8 +226,10 @@ def holder_can_be_screwed(layout: Layout) -> Iterator[Finding]:
     rig = RigLayout(layout.design)
     if rig.has_cart and rig.holder_fixing is None:
         yield (
-            "holder.lid_thickness", "no standard M3 screw sinks its head in the lid and engages the cart plate",
-            rig.holder.lid_thickness, "at least 5 mm, and lid, plenum and floor for a screw of at most 30 mm",
+            "holder.lid_thickness",
+            "no standard M3 screw sinks its head in the lid and engages the cart plate",
+            rig.holder.lid_thickness,
+            "at least 5 mm, and lid, plenum and floor for a screw of at most 30 mm",
         )
 
 
@@ -165,7 +239,12 @@ def screws_clear_sample(layout: Layout) -> Iterator[Finding]:
         return
     free = rig.holder_screw - counterbore_diameter("M3") / 2 - layout.design.sample.side / 2
     if free < -SAME:
-        yield ("holder.margin", "sample lies on the lid's screws", rig.holder.margin, f"at least {rig.holder.margin - free:g} mm")
+        yield (
+            "holder.margin",
+            "sample lies on the lid's screws",
+            rig.holder.margin,
+            f"at least {rig.holder.margin - free:g} mm",
+        )
 
 
 def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
@@ -174,7 +253,12 @@ def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
         return
     far = max(max(abs(x), abs(y)) for x, y in pad_middles(layout))
     if far > c.stage_travel + SAME:
-        yield ("calibration.stage_travel", "stages do not reach every pad", c.stage_travel, f"at least {far:g} mm")
+        yield (
+            "calibration.stage_travel",
+            "stages do not reach every pad",
+            c.stage_travel,
+            f"at least {far:g} mm",
+        )
 
 
 def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
@@ -187,7 +271,12 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
         rest = rig.axis_middle(touch) - rig.stage_middle(touch)
         need = max(rest + c.retract, down - rest)
         if need > c.axis_travel + SAME:
-            yield ("calibration.axis_travel", f"vertical axis rests {rest:+.3g} mm off its middle", c.axis_travel, f"at least {need:.4g} mm")
+            yield (
+                "calibration.axis_travel",
+                f"vertical axis rests {rest:+.3g} mm off its middle",
+                c.axis_travel,
+                f"at least {need:.4g} mm",
+            )
 
 
 def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
@@ -198,7 +287,9 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
     for load in calibration_loads(layout.design):
         if c.travel > load.travel_at_yield:  # not where the estimator does not reach
             yield (
-                "calibration.travel", f"the hinge of element {load.place.number} yields before its end", c.travel,
+                "calibration.travel",
+                f"the hinge of element {load.place.number} yields before its end",
+                c.travel,
                 f"at most {load.travel_at_yield:.4g} mm",
             )
 
@@ -214,7 +305,9 @@ def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
         deflection = c.travel if load.refused else load.deflection
         if deflection > most:
             yield (
-                "calibration.travel", f"the pad of element {load.place.number} swings out from under the roller", c.travel,
+                "calibration.travel",
+                f"the pad of element {load.place.number} swings out from under the roller",
+                c.travel,
                 f"at most {c.travel * most / deflection:.4g} mm",
             )
 
@@ -226,7 +319,12 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     free = STAGE_HOLE - counterbore_diameter("M4") / 2
     x, y = (size / 2 for size in layout.carrier_size)
     if min(x, y) > free - LEAST_AIR + SAME:
-        yield ("array.row_arms", "the array's carrier covers the screws of the calibration mount", min(x, y), f"at most {free - LEAST_AIR:g} mm from the middle, along or across")
+        yield (
+            "array.row_arms",
+            "the array's carrier covers the screws of the calibration mount",
+            min(x, y),
+            f"at most {free - LEAST_AIR:g} mm from the middle, along or across",
+        )
 
 
 def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
@@ -234,12 +332,27 @@ def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     under = under_carrier_screw(RigLayout(d))
     if not 2.0 - SAME <= under <= FOOT + SAME:
         low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
-        yield ("clamp.carrier_thickness", f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads", d.clamp.carrier_thickness, f"from {low:g} to {high:g} mm")
+        yield (
+            "clamp.carrier_thickness",
+            f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads",
+            d.clamp.carrier_thickness,
+            f"from {low:g} to {high:g} mm",
+        )
     least = counterbore_diameter(d.clamp.mount_thread) + HOLE_WEB
     if d.clamp.mount_pitch_y < least - SAME:
-        yield ("clamp.mount_pitch_y", "heads of the screws into the carrier run into each other", d.clamp.mount_pitch_y, f"at least {least:g} mm")
+        yield (
+            "clamp.mount_pitch_y",
+            "heads of the screws into the carrier run into each other",
+            d.clamp.mount_pitch_y,
+            f"at least {least:g} mm",
+        )
     if 2 * layout.mount_x < least - SAME:
-        yield ("clamp.carrier_screw_offset", "heads of the screws into the carrier run into the other row's", d.clamp.carrier_screw_offset, f"at least {d.clamp.carrier_screw_offset + 2 * least - 4 * layout.mount_x:g} mm")
+        yield (
+            "clamp.carrier_screw_offset",
+            "heads of the screws into the carrier run into the other row's",
+            d.clamp.carrier_screw_offset,
+            f"at least {d.clamp.carrier_screw_offset + 2 * least - 4 * layout.mount_x:g} mm",
+        )
 
 
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
@@ -250,10 +363,20 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     length = next((n for n in dowel_lengths(size) if n >= d.sheet.thickness), None)
     most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
     if length is None or length > most + SAME:
-        yield ("calibration.roller", f"no standard pin covers a pad and clears its neighbours: shortest {length} mm", size, f"a pin from {d.sheet.thickness:g} to {most:g} mm long")
+        yield (
+            "calibration.roller",
+            f"no standard pin covers a pad and clears its neighbours: shortest {length} mm",
+            size,
+            f"a pin from {d.sheet.thickness:g} to {most:g} mm long",
+        )
     out = dowel_diameter(size) / 2
     if d.calibration.travel > out - ROLLER_OUT + SAME:
-        yield ("calibration.travel", "the roller's holder would come down on the neighbouring pads", d.calibration.travel, f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}")
+        yield (
+            "calibration.travel",
+            "the roller's holder would come down on the neighbouring pads",
+            d.calibration.travel,
+            f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}",
+        )
     if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
         yield ("calibration.roller", "roller touches the facing pad", size, "a thinner one")
 
@@ -263,13 +386,23 @@ def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     if g is None or not rig.has_cart:
         return
     if abs(g.rail_length / 20 - round(g.rail_length / 20)) > SAME:
-        yield ("grasping.rail_length", "not a multiple of the rail's hole pitch", g.rail_length, "a multiple of 20 mm")
+        yield (
+            "grasping.rail_length",
+            "not a multiple of the rail's hole pitch",
+            g.rail_length,
+            "a multiple of 20 mm",
+        )
         return
     half = CARRIAGE_LENGTH / 2
     top = rig.riser_middle + g.rail_length / 2 - rig.carriage_middle - half
     bottom = rig.carriage_middle - half - (rig.riser_middle - g.rail_length / 2)
     if top < g.lift - SAME or bottom < 1.0:
-        yield ("grasping.rail_length", f"carriage can rise {top:.3g} mm and fall {bottom:.3g} mm", g.rail_length, f"rise at least {g.lift:g}, fall at least 1 mm")
+        yield (
+            "grasping.rail_length",
+            f"carriage can rise {top:.3g} mm and fall {bottom:.3g} mm",
+            g.rail_length,
+            f"rise at least {g.lift:g}, fall at least 1 mm",
+        )
 
 
 def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
@@ -280,7 +413,12 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
     beside = layout.mount_x - head - BAR_WIDTH / 2
     before = BAR_FRONT - d.clamp.mount_pitch_y / 2 - head
     if max(beside, before) < 0.2 - SAME:
-        yield ("clamp.mount_pitch_y", "bar stands on the carrier's screws", d.clamp.mount_pitch_y, f"at most {2 * (BAR_FRONT - head - 0.2):g} mm")
+        yield (
+            "clamp.mount_pitch_y",
+            "bar stands on the carrier's screws",
+            d.clamp.mount_pitch_y,
+            f"at most {2 * (BAR_FRONT - head - 0.2):g} mm",
+        )
 
 
 def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
@@ -297,7 +435,12 @@ def _apart_from(layout: Layout, x: float, y: float, what: str) -> Iterator[Findi
     apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
     least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB
     if apart < least - SAME:
-        yield ("clamp.mount_pitch_y", f"screws into the carrier run into {what}: {apart:.3g} mm apart", c.mount_pitch_y, f"at least {least:g} mm apart")
+        yield (
+            "clamp.mount_pitch_y",
+            f"screws into the carrier run into {what}: {apart:.3g} mm apart",
+            c.mount_pitch_y,
+            f"at least {least:g} mm apart",
+        )
 
 
 def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
@@ -306,7 +449,12 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
         return
     free = BAR_FRONT + BAR + RAIL_HEIGHT - 6.5 - LEAST_AIR
     if g.weight_diameter / 2 > free + SAME:
-        yield ("grasping.weight_diameter", "weights rub on the guide", g.weight_diameter, f"at most {2 * free:g} mm")
+        yield (
+            "grasping.weight_diameter",
+            "weights rub on the guide",
+            g.weight_diameter,
+            f"at most {2 * free:g} mm",
+        )
     if g.weights != round(g.weights):
         yield ("grasping.weights", "not a whole number", g.weights, "0, 1, 2 ...")
 
@@ -319,7 +467,11 @@ def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
         return  # parts that cannot be drawn: the design is refused for that
     if low <= wanted <= high:
         return
-    legal = f"from {low:.4g} to {high:.4g} N" if low < high else "fewer or larger weights: their stack is too high"
+    legal = (
+        f"from {low:.4g} to {high:.4g} N"
+        if low < high
+        else "fewer or larger weights: their stack is too high"
+    )
     yield ("grasping.moving_weight", "no ballast under the weights brings what moves to it", wanted, legal)
 
 
@@ -329,7 +481,12 @@ def tip_land_clears_sample(layout: Layout) -> Iterator[Finding]:
         return
     most = min(TIP_LAND, s.thickness / 2)
     if s.travel > most + SAME:
-        yield ("sample.travel", "deeper than the tip's land is high, or than half the sample", s.travel, f"at most {most:g} mm")
+        yield (
+            "sample.travel",
+            "deeper than the tip's land is high, or than half the sample",
+            s.travel,
+            f"at most {most:g} mm",
+        )
 
 
 def port_clears_cart(layout: Layout) -> Iterator[Finding]:
@@ -338,12 +495,19 @@ def port_clears_cart(layout: Layout) -> Iterator[Finding]:
         return
     free = rig.holder_body - rig.port_depth - FITTING_RADIUS
     if free < LEAST_AIR - SAME:
-        yield ("holder.floor", "hose fitting meets the cart plate", h.floor, f"at least {h.floor + LEAST_AIR - free:g} mm")
+        yield (
+            "holder.floor",
+            "hose fitting meets the cart plate",
+            h.floor,
+            f"at least {h.floor + LEAST_AIR - free:g} mm",
+        )
 
 
 def pads_on_sample(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    far = max(max(abs(x) + d.element.pad_length / 2, abs(y) + d.sheet.thickness / 2) for x, y in pad_middles(layout))
+    far = max(
+        max(abs(x) + d.element.pad_length / 2, abs(y) + d.sheet.thickness / 2) for x, y in pad_middles(layout)
+    )
     if far > d.sample.side / 2 + SAME:
         yield ("sample.side", "pads reach beyond the sample", d.sample.side, f"at least {2 * far:g} mm")
 
@@ -373,10 +537,18 @@ RIG_RULES: dict[str, Rule] = {
 
 FITS: dict[str, tuple[Rule, ...]] = {
     "calibration": (
-        stages_reach_pads, mount_clears_carrier, carrier_screws_fit, mount_holes_apart, roller_clears_neighbours,
+        stages_reach_pads,
+        mount_clears_carrier,
+        carrier_screws_fit,
+        mount_holes_apart,
+        roller_clears_neighbours,
     ),
     "grasping": (
-        pads_on_sample, carrier_screws_fit, bar_clears_screws, foot_holes_apart, rail_is_long_enough,
+        pads_on_sample,
+        carrier_screws_fit,
+        bar_clears_screws,
+        foot_holes_apart,
+        rail_is_long_enough,
         ballast_trims_moving_weight,
     ),
 }

@@ -31,7 +31,9 @@ def base_plate(rig: RigLayout, stages: bool) -> Part:
     ]
     if stages:
         features += [
-            tapped_blind("stage", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1)) for sx in (-1, 1) for sy in (-1, 1)
+            tapped_blind("stage", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1))
+            for sx in (-1, 1)
+            for sy in (-1, 1)
         ]
     kind = "stages" if stages else "cart"
     return Part(
@@ -54,7 +56,9 @@ def post(rig: RigLayout) -> Part:
         tapped("row", "M4", (sx * STAGE_HOLE, z, 0.0), (0, 0, 1), t) for z in rig.post_rows for sx in (-1, 1)
     ]
     # the base plate's screws reach 9 mm in, more than the usual blind thread has
-    features += [tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS]
+    features += [
+        tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS
+    ]
     return Part(
         part_no=f"{rig.design.name}-post",
         name="Post",
@@ -73,11 +77,13 @@ def axis_plate(rig: RigLayout) -> Part:
     thread, _, under = PLATE_SCREW
     features = [
         sunk("stage", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, 0.0), (0, 0, 1), PLATE, under)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     features += [
         tapped("gauge_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     return _upright(rig, "axis-plate", "Axis plate", features)
 
@@ -87,7 +93,8 @@ def gauge_plate(rig: RigLayout) -> Part:
     thread, _, under = PLATE_SCREW
     features = [
         sunk("axis_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE, under)
-        for sx in (-1, 1) for sy in (-1, 1)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     features += [sunk("gauge", thread, (0.0, y, PLATE), (0, 0, -1), PLATE, under) for y in GAUGE_THREADS]
     return _upright(rig, "gauge-plate", "Gauge plate", features)
@@ -120,7 +127,9 @@ def flat_tip(rig: RigLayout) -> Part:
         material=STEEL,
         body=Extrusion(around, TIP),
         features=(
-            Pocket("around_land", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, TIP_LAND, (rectangle(-a, -b, a, b),)),
+            Pocket(
+                "around_land", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, TIP_LAND, (rectangle(-a, -b, a, b),)
+            ),
             _shaft_thread(),
         ),
         colour="#565d66",
@@ -140,8 +149,15 @@ def roller_tip(rig: RigLayout) -> Part:
     r = dowel_diameter(rig.design.calibration.roller) / 2
     nose, half = r + 1.0, 6.0
     corners = [
-        Corner((-nose, r)), Corner((-r, r), edge="seat"), Corner((-r, 2 * r), r), Corner((r, 2 * r), r),
-        Corner((r, r)), Corner((nose, r)), Corner((half, r + half - nose)), Corner((half, TIP)), Corner((-half, TIP)),
+        Corner((-nose, r)),
+        Corner((-r, r), edge="seat"),
+        Corner((-r, 2 * r), r),
+        Corner((r, 2 * r), r),
+        Corner((r, r)),
+        Corner((nose, r)),
+        Corner((half, r + half - nose)),
+        Corner((half, TIP)),
+        Corner((-half, TIP)),
         Corner((-half, r + half - nose)),
     ]
     return Part(
@@ -156,7 +172,9 @@ def roller_tip(rig: RigLayout) -> Part:
     )
 
 
-def _shaft_thread(at: tuple[float, float, float] = (0.0, 0.0, TIP), axis: tuple[float, float, float] = (0, 0, -1)) -> Hole:
+def _shaft_thread(
+    at: tuple[float, float, float] = (0.0, 0.0, TIP), axis: tuple[float, float, float] = (0, 0, -1)
+) -> Hole:
     """M6 for the gauge's shaft: 9 of its 10 mm engaged."""
     return Hole("shaft", at, axis, 5.0, 12.0, False, thread="M6", thread_depth=10.0, drill_point=True)
 
@@ -166,8 +184,16 @@ def riser(rig: RigLayout) -> Part:
     length, depth = rig.design.grasping.rail_length, rig.riser_depth
     half = max(length / 2, RISER_PITCH + 8.0)
     features: list[Feature] = [
-        sunk("post", "M4", (sx * STAGE_HOLE, sy * RISER_PITCH, 0.0), (0, 0, 1), depth, min(RISER_UNDER_HEAD, depth))
-        for sx in (-1, 1) for sy in (-1, 1)
+        sunk(
+            "post",
+            "M4",
+            (sx * STAGE_HOLE, sy * RISER_PITCH, 0.0),
+            (0, 0, 1),
+            depth,
+            min(RISER_UNDER_HEAD, depth),
+        )
+        for sx in (-1, 1)
+        for sy in (-1, 1)
     ]
     features += [tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length)]
     return Part(

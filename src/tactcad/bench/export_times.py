@@ -1,0 +1,137 @@
+"""A whole export against a plain script that writes the same kinds of files, and what starting up costs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tactcad.parts.designs import load
+
+from . import arrays, tables
+from .plan import Plan
+from .process import child, command, measured, python
+from .timing import of_samples
+
+TITLE = "Whole exports"
+QUESTION = "How long from design file to finished folder: first, again, and after a change?"
+PLAIN_SCRIPT = Path(__file__).with_name("peers") / "plain_export.py"
+GOALS = {"cold / plain": 1.5, "unchanged / numpy": 3.0, "STEP over smallest": 5.0}
+GOAL_ESTIMATE = 3.0  # times `import numpy`
+
+
+def measure(plan: Plan) -> dict:
+    sizes = plan.of({2: 1}, {10: 1}, {10: 5, 100: 3, 1000: 1})  # elements: runs
+    rows = [_row(elements, runs, plan) for elements, runs in sizes.items()]
+    for row in rows:
+        row["STEP over smallest"] = row["bytes"] / rows[0]["bytes"]
+    starts = _starts(plan)
+    columns = [
+        ("elements", "elements", tables.PLAIN),
+        ("runs", "runs", tables.PLAIN),
+        ("cold", "cold", tables.SECONDS),
+        ("plain", "plain script", tables.SECONDS),
+        ("cold / plain", "ratio", tables.PLAIN),
+        ("changed", "one arm changed", tables.SECONDS),
+        ("unchanged", "unchanged", tables.SECONDS),
+        ("numpy", "import numpy", tables.SECONDS),
+        ("unchanged / numpy", "ratio", tables.PLAIN),
+        ("peak_bytes", "peak memory", tables.MEGA),
+        ("bytes", "assembly STEP", tables.KILO),
+        ("STEP over smallest", "over the smallest", tables.PLAIN),
+    ]
+    started = [
+        ("what", "process", tables.PLAIN),
+        ("seconds", "time", tables.SECONDS),
+        ("median", "median", tables.SECONDS),
+        ("ratio", "over import numpy", tables.PLAIN),
+        ("peak_bytes", "peak memory", tables.MEGA),
+    ]
+    note = (
+        "`tactcad export --scene array` in fresh processes, shortest of the runs. Cold: empty cache. The plain script "
+        "builds each shape once, writes each file once and reads it back once, without tactcad, cache or repeatable bytes."
+    )
+    return {
+        "tables": {
+            "export": tables.table(TITLE, columns, rows, note),
+            "start-up": tables.table("Starting up", started, starts, "Whole processes, in turns."),
+        },
+        "findings": findings(rows, starts),
+        "missing": [],
+    }
+
+
+def _row(elements: int, runs: int, plan: Plan) -> dict:
+    times: dict[str, list[float]] = {name: [] for name in ("cold", "plain", "changed", "unchanged", "numpy")}
+    peaks = []
+    for run in range(runs):
+        folder = plan.folder / f"export-{elements}-{run}"
+        folder.mkdir()
+        design, out = folder / "design.toml", folder / "out"
+        cache = {"TACTCAD_CACHE": str(folder / "cache")}
+        export = command("export", str(design), "--scene", "array", "--out", str(out))
+        design.write_text(arrays.text(elements), "utf-8")
+        load(design)  # a design that breaks a rule would only measure its refusal
+        plan.say(f"{elements} elements, cold, run {run + 1}")
+        cold = measured(export, cache)
+        times["cold"].append(cold.seconds)
+        peaks.append(cold.peak_bytes)
+        plan.say(f"{elements} elements, plain script, run {run + 1}")
+        times["plain"].append(
+            measured(python(str(PLAIN_SCRIPT), str(elements), str(folder / "plain"))).seconds
+        )
+        for _ in range(plan.of(1, 5, 10) if run == 0 else 0):
+            times["unchanged"].append(measured(export, cache).seconds)
+            times["numpy"].append(measured(python("-c", "import numpy")).seconds)
+        files = json.loads((out / "manifest.json").read_text("utf-8"))["files"]
+        size = sum((out / f["path"]).stat().st_size for f in files if f["kind"] == "step-assembly")
+        if plan.mode != "smoke":
+            plan.say(f"{elements} elements, one arm changed, run {run + 1}")
+            design.write_text(arrays.text(elements, changed=True), "utf-8")
+            times["changed"].append(measured(export, cache).seconds)
+    least = {name: min(t) if t else None for name, t in times.items()}
+    ratios = {
+        "cold / plain": least["cold"] / least["plain"],
+        "unchanged / numpy": least["unchanged"] / least["numpy"],
+    }
+    return {"elements": elements, "runs": runs, "bytes": size, "peak_bytes": min(peaks)} | least | ratios
+
+
+def _starts(plan: Plan) -> list[dict]:
+    commands = {
+        "python -c 'import numpy'": python("-c", "import numpy"),
+        "tactcad estimate": command("estimate"),
+        "tactcad schema": command("schema"),
+        "the CAD kernel and build123d": child("kernel"),
+    }
+    chosen = dict(list(commands.items())[: plan.of(2, None, None)])
+    runs: dict[str, list] = {name: [] for name in chosen}
+    for turn in range(plan.of(1, 3, 15)):
+        plan.say(f"starting up, run {turn + 1}")
+        for name, args in chosen.items():
+            runs[name].append(measured(args))
+    rows = []
+    for name, made in runs.items():
+        timed = of_samples([run.seconds for run in made])
+        peak = min(run.peak_bytes for run in made)
+        rows.append({"what": name, "seconds": timed.least, "median": timed.median, "peak_bytes": peak})
+    for row in rows:
+        row["ratio"] = row["seconds"] / rows[0]["seconds"]
+    return rows
+
+
+def findings(rows: list[dict], starts: list[dict]) -> list[str]:
+    lines = []
+    for name, goal in GOALS.items():
+        missed = [f"{row['elements']} elements: {row[name]:.2f}" for row in rows if row[name] > goal]
+        worst = max(row[name] for row in rows)
+        lines.append(
+            f"MISSED: {name} at most {goal:g}: {', '.join(missed)}."
+            if missed
+            else f"met: {name} {worst:.2f} (goal {goal:g})."
+        )
+    estimate = next(row for row in starts if row["what"] == "tactcad estimate")["ratio"]
+    state = "met" if estimate <= GOAL_ESTIMATE else "MISSED"
+    lines.append(
+        f"{state}: `tactcad estimate` takes {estimate:.2f} times `import numpy` (goal {GOAL_ESTIMATE:g})."
+    )
+    return lines

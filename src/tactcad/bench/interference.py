@@ -1,0 +1,235 @@
+"""Do two placed parts overlap? Triangle meshes at each tolerance against the kernel, on pairs with known verdicts,
+on the array's own near pairs, and the whole check against every near pair by the kernel."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+import numpy as np
+
+from tactcad.parts.description import Part
+from tactcad.scenes import make_scene
+from tactcad.scenes.scene import Placement, Scene
+
+from . import arrays, tables
+from .pairs import known_pairs
+from .plan import Plan
+
+TITLE = "Interference by meshes and by the kernel"
+QUESTION = "How often is a mesh's verdict wrong, and what does the kernel's cost?"
+LINEAR = 0.05  # mm
+ANGULAR = (0.5, 0.2, 0.1, 0.05)  # rad
+
+
+def measure(plan: Plan) -> dict:
+    known = [(pair.placements, pair.verdict) for pair in known_pairs(plan.of(1, 2, 20), plan.seed)]
+    own = near(make_scene(arrays.published(), "array"))[:: plan.of(30, 3, 1)]
+    angular = plan.of(ANGULAR[:1], ANGULAR[:3], ANGULAR)
+    rows = _compared(plan, "known pairs", known, angular)
+    rows += _compared(plan, "the array's near pairs", [(pair, None) for pair in own], angular)
+    situations = _situations(plan)
+    columns = [
+        ("pairs", "pairs", tables.PLAIN),
+        ("by", "by", tables.PLAIN),
+        ("count", "number", tables.PLAIN),
+        ("wrong", "wrong verdicts", tables.PLAIN),
+        ("missed", "missed overlaps", tables.PLAIN),
+        ("false", "false overlaps", tables.PLAIN),
+        ("others", "touch and clear mistaken", tables.PLAIN),
+        ("seconds", "time a pair", tables.MILLI),
+        ("median", "median", tables.MILLI),
+        ("time ratio", "over the kernel's", tables.PLAIN),
+        ("meshing", "meshing a part", tables.MILLI),
+    ]
+    note = (
+        "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, verdicts in closed form. "
+        "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median time; meshes are made once a part."
+    )
+    others = [
+        ("elements", "elements", tables.PLAIN),
+        ("placed", "placed parts", tables.PLAIN),
+        ("findings", "contacts judged", tables.PLAIN),
+        ("seconds", "tactcad check", tables.SECONDS),
+        ("kernel seconds", "every near pair", tables.SECONDS),
+        ("time ratio", "times as long", tables.PLAIN),
+        ("same verdicts", "same verdicts", tables.PLAIN),
+    ]
+    return {
+        "tables": {
+            "interference": tables.table(TITLE, columns, rows, note),
+            "situations": tables.table(
+                "Each situation once, against every near pair by the kernel",
+                others,
+                situations,
+                "The scene's declared contacts are taken out, so that every contact wants a verdict.",
+            ),
+        },
+        "findings": findings(rows, situations),
+        "missing": [],
+    }
+
+
+def near(scene: Scene) -> list[tuple[Placement, Placement]]:
+    """Pairs of the scene whose boxes meet."""
+    from tactcad.checks.interference import near_pairs, placed_box
+    from tactcad.solids.build import build
+    from tactcad.solids.measure import bounding_box
+
+    local = {part.part_no: bounding_box(build(part).wrapped) for part in scene.parts}
+    boxes = np.array([placed_box(p, local[p.part.part_no]) for p in scene.placements])
+    return [(scene.placements[i], scene.placements[j]) for i, j in near_pairs(boxes)]
+
+
+def count_wrong(found: list[str], true: list[str]) -> dict[str, int]:
+    """Wrong verdicts in all, and by kind: overlaps not seen, overlaps that are none, touch and clear mistaken."""
+    pairs = Counter(zip(found, true))
+    missed = sum(n for (f, t), n in pairs.items() if t == "overlap" != f)
+    false = sum(n for (f, t), n in pairs.items() if f == "overlap" != t)
+    wrong = sum(n for (f, t), n in pairs.items() if f != t)
+    return {"wrong": wrong, "missed": missed, "false": false, "others": wrong - missed - false}
+
+
+@dataclass
+class Prepared:
+    """What each way of judging makes once a part, by part number: the kernel's shape with its box and its faces' boxes,
+    and closed meshes by angular tolerance."""
+
+    shapes: dict = field(default_factory=dict)
+    boxes: dict = field(default_factory=dict)
+    faces: dict = field(default_factory=dict)
+    meshes: dict = field(default_factory=dict)
+
+    def add(self, part: Part, angular: tuple[float, ...], meshing: dict[float, list[float]]) -> None:
+        from tactcad.solids.build import build
+        from tactcad.solids.measure import bounding_box
+        from tactcad.solids.mesh import triangles
+        from tactcad.solids.mesh_overlap import closed
+        from tactcad.solids.near import Faces
+
+        number = part.part_no
+        if number in self.shapes:
+            return
+        shape = self.shapes[number] = build(part).wrapped
+        self.boxes[number], self.faces[number] = bounding_box(shape), Faces(shape)
+        for a in angular:
+            self.meshes[number, a] = _timed(
+                meshing.setdefault(a, []), lambda a=a: closed(triangles(shape, LINEAR, a))
+            )
+
+
+def kernel_verdict(pair: tuple[Placement, Placement], made: Prepared) -> str:
+    """As `tactcad check` finds it: the kernel's distance, and its common solid where that is none."""
+    from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting, placed_box
+
+    boxes = tuple(placed_box(p, made.boxes[p.part.part_no]) for p in pair)
+    found = meeting(pair, boxes, made.shapes, made.faces)
+    return "overlap" if found.overlap > OVERLAP_MM3 else "touch" if found.distance < TOUCH_MM else "clear"
+
+
+def mesh_verdict(pair: tuple[Placement, Placement], made: Prepared, angular: float) -> str:
+    """By the same limits from what the triangles share, and from their distance."""
+    from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM
+    from tactcad.solids.mesh_overlap import meeting, placed
+
+    a, b = (placed(made.meshes[p.part.part_no, angular], p.origin, p.rotation) for p in pair)
+    overlap, gap = meeting(a, b, 10 * TOUCH_MM)
+    return "overlap" if overlap > OVERLAP_MM3 else "touch" if gap < TOUCH_MM else "clear"
+
+
+def _compared(
+    plan: Plan, name: str, pairs: list[tuple[tuple, str | None]], angular: tuple[float, ...]
+) -> list[dict]:
+    """A row by the kernel and one by each tolerance; on every pair all of them in turn."""
+    ways: list[float | None] = [None, *angular]  # None: the kernel
+    verdicts, seconds = {w: [] for w in ways}, {w: [] for w in ways}
+    meshing: dict[float, list[float]] = {}
+    made, true = Prepared(), []
+    for n, (pair, verdict) in enumerate(pairs):
+        if n % 20 == 0:
+            plan.say(f"{name}: {n} of {len(pairs)}")
+        if verdict is not None:  # every known pair has parts of its own
+            made = Prepared()
+        for p in pair:
+            made.add(p.part, angular, meshing)
+        for w in ways:
+            judge = partial(kernel_verdict, pair, made) if w is None else partial(mesh_verdict, pair, made, w)
+            verdicts[w].append(_timed(seconds[w], judge))
+        true.append(verdict or verdicts[None][-1])
+    rows = []
+    for w in ways:
+        row = {
+            "pairs": name,
+            "by": "kernel" if w is None else f"meshes, {w:g} rad",
+            "angular": w,
+            "count": len(pairs),
+        }
+        if w is not None or pairs[0][1]:  # the kernel is not held against itself
+            row |= count_wrong(verdicts[w], true)
+        row |= {"seconds": float(np.mean(seconds[w])), "median": float(np.median(seconds[w]))}
+        row["time ratio"] = row["seconds"] / float(np.mean(seconds[None]))
+        row["meshing"] = None if w is None else float(np.mean(meshing[w]))
+        rows.append(row)
+    return rows
+
+
+def _timed(into: list[float], action: Callable):
+    start = time.perf_counter()
+    result = action()
+    into.append(time.perf_counter() - start)
+    return result
+
+
+class _Forgetful(dict):
+    """Knows no situation: every pair is looked at anew."""
+
+    def __contains__(self, key: object) -> bool:
+        return False
+
+
+def _situations(plan: Plan) -> list[dict]:
+    from tactcad.checks.interference import check_interference
+    from tactcad.solids.build import build
+
+    rows = []
+    for elements in plan.of((2,), (10,), (10, 100, 1000)):
+        scene = replace(make_scene(arrays.of(elements), "array"), contacts=())
+        shapes = {part.part_no: build(part).wrapped for part in scene.parts}
+        ours, theirs = [], []
+        plan.say(f"{elements} elements: each situation once")
+        mine = _timed(ours, lambda: check_interference(scene, shapes))  # noqa: B023
+        plan.say(f"{elements} elements: every near pair by the kernel")
+        all_pairs = _timed(theirs, lambda: check_interference(scene, shapes, _Forgetful()))  # noqa: B023
+        rows.append(
+            {
+                "elements": elements,
+                "placed": len(scene.placements),
+                "findings": len(mine),
+                "seconds": ours[0],
+                "kernel seconds": theirs[0],
+                "time ratio": theirs[0] / ours[0],
+                "same verdicts": _said(mine) == _said(all_pairs),
+            }
+        )
+    return rows
+
+
+def _said(found: list) -> list[tuple[str, str]]:
+    return sorted((f.check, f.message.split(" by ")[0]) for f in found)
+
+
+def findings(rows: list[dict], situations: list[dict]) -> list[str]:
+    known = [row for row in rows if row["pairs"] == "known pairs"]
+    kernel, coarsest, finest = known[0], known[1], known[-1]
+    last = situations[-1]
+    return [
+        f"On {kernel['count']} pairs with known verdicts the kernel is wrong {kernel['wrong']} times, {finest['by']} {finest['wrong']} times: "
+        f"{finest['missed']} overlaps missed, {finest['false']} seen where there are none.",
+        f"At {coarsest['angular']:g} rad meshes, once made, take {coarsest['time ratio']:.2g} of the kernel's time a pair, at {finest['angular']:g} rad "
+        f"{finest['time ratio']:.2g}; making one takes {1e3 * coarsest['meshing']:.0f} and {1e3 * finest['meshing']:.0f} ms.",
+        f"{last['elements']} elements: the check judges {last['findings']} contacts in {last['seconds']:.1f} s, every near pair by the kernel takes "
+        f"{last['kernel seconds']:.1f} s, {last['time ratio']:.1f} times as long; {'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
+    ]

@@ -1,0 +1,65 @@
+"""Whole processes: time from start to end, largest memory, and what they printed."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import tactcad
+from tactcad.design.messages import CheckFailure
+
+METER = Path(__file__).with_name("meter.py")
+
+
+@dataclass(frozen=True)
+class Run:
+    """One process: seconds, largest resident memory in bytes, standard output."""
+
+    seconds: float
+    peak_bytes: int
+    output: str
+
+
+def measured(command: Sequence[str], environment: Mapping[str, str] | None = None) -> Run:
+    """Run a command to its end, on one thread. Raises CheckFailure with its last words where it fails."""
+    with tempfile.TemporaryDirectory() as folder:
+        result = Path(folder) / "meter.json"
+        meter = [sys.executable, "-I", "-S", str(METER), str(result), *command]
+        environment = {**os.environ, **surroundings(), **(environment or {})}
+        run = subprocess.run(meter, env=environment, capture_output=True, text=True, check=False)
+        if run.returncode:
+            words = (run.stderr or run.stdout).strip().splitlines() or ["it said nothing"]
+            raise CheckFailure(f"{' '.join(command)[:200]} ended with status {run.returncode}: {words[-1]}")
+        return Run(**json.loads(result.read_text("utf-8")), output=run.stdout)
+
+
+def surroundings() -> dict[str, str]:
+    """One thread a process, and the tactcad that is running for every child too."""
+    here = str(Path(tactcad.__file__).parents[1])
+    path = os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
+    return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": path}
+
+
+def python(*args: str) -> list[str]:
+    return [sys.executable, *args]
+
+
+def command(*args: str) -> list[str]:
+    """`tactcad ARGS` as a process."""
+    return python("-m", "tactcad", *args)
+
+
+def child(task: str, **arguments: object) -> list[str]:
+    """A task of `children` as a process; it prints its result as JSON on its last line."""
+    return python("-m", "tactcad.bench.children", task, json.dumps(arguments))
+
+
+def last_line(run: Run) -> dict:
+    """The JSON that a child printed last."""
+    return json.loads(run.output.strip().splitlines()[-1])

@@ -1,0 +1,83 @@
+"""STEP assemblies with one prototype a part, and with every placed part a shape of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tactcad.scenes.scene import Scene
+
+from . import tables
+from .plan import Plan
+from .process import child, last_line, measured
+from .timing import of_samples
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+TITLE = "STEP with and without shared prototypes"
+QUESTION = "What do shared prototypes save in an assembly file?"
+FORMS = {"shared": True, "copies": False}
+
+
+def unshared(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> tuple[Scene, dict[str, TopoDS_Shape]]:
+    """The scene with a part number and a shape, copied, for every placement."""
+    from tactcad.solids.bytes import from_bytes, to_bytes
+
+    placements = tuple(
+        replace(p, part=replace(p.part, part_no=f"{p.part.part_no}_{p.designator}")) for p in scene.placements
+    )
+    data = {part.part_no: to_bytes(shapes[part.part_no]) for part in scene.parts}
+    copies = {
+        new.part.part_no: from_bytes(data[old.part.part_no]) for new, old in zip(placements, scene.placements)
+    }
+    return replace(scene, placements=placements), copies
+
+
+def measure(plan: Plan) -> dict:
+    rows = []
+    for elements in plan.of((2,), (10, 40), (10, 100, 400)):
+        runs: dict[str, list] = {name: [] for name in FORMS}
+        for turn in range(plan.of(1, 1, 3)):
+            for name, shared in FORMS.items():
+                plan.say(f"{elements} elements, {name}, run {turn + 1}")
+                runs[name].append(measured(child("step", elements=elements, shared=shared)))
+        for name, made in runs.items():
+            found = [last_line(run) for run in made]
+            timed = of_samples([f["seconds"]["step"] for f in found])
+            rows.append(
+                {
+                    "elements": elements,
+                    "solids": found[0]["solids"],
+                    "form": name,
+                    "bytes": found[0]["bytes"],
+                    "seconds": timed.least,
+                    "median": timed.median,
+                    "peak_bytes": min(run.peak_bytes for run in made),
+                }
+            )
+    for shared, copies in zip(rows[::2], rows[1::2]):
+        copies["size ratio"] = copies["bytes"] / shared["bytes"]
+        copies["time ratio"] = copies["seconds"] / shared["seconds"]
+    columns = [
+        ("elements", "elements", tables.PLAIN),
+        ("solids", "solids", tables.PLAIN),
+        ("form", "prototypes", tables.PLAIN),
+        ("bytes", "file", tables.KILO),
+        ("size ratio", "over shared", tables.PLAIN),
+        ("seconds", "written and read back", tables.SECONDS),
+        ("median", "median", tables.SECONDS),
+        ("time ratio", "over shared", tables.PLAIN),
+        ("peak_bytes", "peak memory", tables.MEGA),
+    ]
+    last = rows[-1]
+    finding = (
+        f"{last['elements']} elements, {last['solids']} solids: copies make the file {last['size ratio']:.1f} times as large, and "
+        f"writing it and reading it back {last['time ratio']:.1f} times as long."
+    )
+    return {
+        "tables": {"prototypes": tables.table(TITLE, columns, rows)},
+        "findings": [finding],
+        "missing": [],
+    }

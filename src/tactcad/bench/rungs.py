@@ -1,0 +1,144 @@
+"""Every rung of the ladder: its error over the envelope, and its time per element."""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+
+from tactcad.fit import fit_samples
+from tactcad.fit.fit_samples import Columns, draw_box, section
+from tactcad.mechanics import ladder
+from tactcad.paper.report import sig
+
+from . import tables, truth
+from .front import told
+from .plan import Plan
+from .timing import interleaved
+
+TITLE = "Rungs of the model ladder"
+QUESTION = "How wrong is each rung against converged finite elements, and what does it cost?"
+GOAL_MILLION = 0.3  # s for a million designs by a closed form on one core
+
+WHEN = {
+    "short": "orders of magnitude, by hand",
+    "beam": "to see what beams alone explain",
+    "section": "notches with r/t far above 1",
+    "plane": "thin sheet; to compare with plane models",
+    "solid": "design: the default",
+    "fem-plane": "a contour of your own, in plane stress",
+    "fem-solid": "the reference",
+}
+
+
+def measure(plan: Plan) -> dict:
+    logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
+    held_out, fine = fit_samples.shipped()["held out"], truth.of_run(plan)
+    rows = [_closed_form(rung, held_out, fine) for rung in ladder.CLOSED_FORMS]
+    rows += [
+        _elements("fem-plane", fine, plan, plan.of(1, 20, 120)),
+        _elements("fem-solid", fine, plan, plan.of(1, 4, 40)),
+    ]
+    seconds = _times(plan)
+    for row in rows:
+        row |= seconds[row["rung"]] | {"when": WHEN[row["rung"]]}
+        row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
+    columns = [
+        ("rung", "rung", tables.PLAIN),
+        ("solid mean", "solid: mean error", tables.PER_CENT),
+        ("solid worst", "worst", tables.PER_CENT),
+        ("solid designs", "designs", tables.PLAIN),
+        ("plane mean", "plane stress: mean error", tables.PER_CENT),
+        ("plane worst", "worst", tables.PER_CENT),
+        ("plane designs", "designs", tables.PLAIN),
+        ("seconds", "time per element", tables.MICRO),
+        ("median", "median", tables.MICRO),
+        ("alone", "one element alone", tables.MICRO),
+        ("time ratio", "time over solid's", tables.PLAIN),
+    ]
+    worst = max(float(np.nanmax(fine["plane_error"])), float(np.nanmax(fine["width_error"])))
+    note = (
+        f"Errors of stiffness against converged elements, in three dimensions and in plane stress. These are themselves "
+        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), within 1e-4 on the held-out ones; "
+        "no error of finite elements smaller than that estimate is claimed."
+    )
+    return {
+        "tables": {"rungs": tables.table(TITLE, columns, rows, note)},
+        "findings": findings(rows),
+        "missing": [],
+    }
+
+
+def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
+    """Mean and worst size of the relative error, over the designs that have a result; none smaller than the `own`
+    estimated error of what it is measured against."""
+    error = np.maximum(np.abs(stiffness / exact - 1.0), own)
+    error = error[np.isfinite(error)]
+    if not len(error):
+        return {f"{label} mean": None, f"{label} worst": None, f"{label} designs": 0}
+    return {
+        f"{label} mean": float(error.mean()),
+        f"{label} worst": float(error.max()),
+        f"{label} designs": len(error),
+    }
+
+
+def _closed_form(rung: str, *samples: Columns) -> dict:
+    K = np.concatenate([ladder.evaluate(section(c), rung).stiffness for c in samples])
+    solid = np.concatenate([truth.solid_stiffness(c) for c in samples])
+    row = {"rung": rung} | errors(K, solid, "solid")
+    if rung == "solid":  # it answers another question than plane stress
+        return row
+    return row | errors(K, np.concatenate([c["plane_stiffness"] * c["width"] for c in samples]), "plane")
+
+
+def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
+    from tactcad.fem.ladder import stiffness
+
+    found = np.full(len(fine["width"]), np.nan)
+    for i, one in enumerate(truth.sections(fine)[:count]):
+        plan.say(f"{rung}, design {i + 1} of {count}")
+        found[i] = stiffness(one, rung)
+    flat = fine["plane_error"]
+    row = {"rung": rung} | errors(found, truth.solid_stiffness(fine), "solid", flat + fine["width_error"])
+    return row | (
+        errors(found, fine["plane_stiffness"] * fine["width"], "plane", flat) if rung == "fem-plane" else {}
+    )
+
+
+def _times(plan: Plan) -> dict[str, dict]:
+    """Seconds per element: closed forms among many, element rungs one after the other."""
+    from tactcad.fem.ladder import stiffness
+
+    many = section(draw_box(plan.of(1_000, 20_000, 200_000), plan.seed))
+    count = many.shape[0]
+    few = [many.rows(i) for i in range(plan.of(1, 3, 10))]
+    plan.say("times, in turns")
+    batch = {r: lambda r=r: ladder.stiffness(many, r) for r in ladder.CLOSED_FORMS}
+    alone = {("alone", r): lambda r=r: ladder.stiffness(few[0], r) for r in ladder.CLOSED_FORMS}
+    elements = {r: lambda r=r: [stiffness(one, r) for one in few] for r in ladder.FINITE_ELEMENTS}
+    per = dict.fromkeys(batch, count) | dict.fromkeys(elements, len(few))
+    timed = interleaved(batch | alone, plan.of(1, 5, 9)) | interleaved(elements, plan.of(1, 2, 3))
+    return {
+        r: {
+            "seconds": timed[r].least / n,
+            "median": timed[r].median / n,
+            "runs": timed[r].runs,
+            "alone": timed["alone", r].least if ("alone", r) in timed else timed[r].least / n,
+        }
+        for r, n in per.items()
+    }
+
+
+def findings(rows: list[dict]) -> list[str]:
+    by = {row["rung"]: row for row in rows}
+    slowest = max(by[r]["seconds"] for r in ladder.CLOSED_FORMS) * 1e6
+    default, plane, solid = by["solid"], by["fem-plane"], by["fem-solid"]
+    return [
+        "Against solid elements: "
+        + told([r["rung"] for r in rows], [(r["seconds"], r["solid worst"]) for r in rows]),
+        f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in {slowest:.2f} s (goal {GOAL_MILLION} s).",
+        f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by {100 * plane['solid worst']:.0f} % at "
+        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements are dominated by a closed form.",
+        f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at {sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
+    ]

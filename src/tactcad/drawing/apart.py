@@ -1,0 +1,188 @@
+"""Exploded views by calculation: how far each piece of a sub-assembly moves so that all stand clear of each other.
+
+Along each axis the pieces' shifts u solve a linear program. A joint asks u[upper] - u[lower] >= length of the way out + gap; across
+its axis its pieces want to stay together. Minimised is the sum of what joints have too much, and, far more dearly, of
+what tears pieces apart sideways. Pieces whose boxes overlap thereafter get a joint of their own, and it is solved again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+
+from tactcad.scenes.scene import Placement, Scene
+
+from .joints import TOUCH, Box, Joint, axis_of, box_of, joints_of, way_off
+
+ROUNDS = 40  # of finding overlaps and solving again
+SLACK, TORN, BROKEN = (
+    1.0,
+    30.0,
+    1e4,
+)  # cost of a millimetre: too much in a joint, torn sideways, too little in a joint
+
+
+@dataclass(frozen=True)
+class Piece:
+    """What stays together in a view: a part, equal parts that lie on each other, or a sub-assembly under the letter of
+    its own view."""
+
+    placements: tuple[Placement, ...]
+    letter: str = ""
+
+    def shifted(self, by: Sequence[float]) -> Piece:
+        """Moved by a vector, mm."""
+        return replace(self, placements=tuple(_moved(p, by) for p in self.placements))
+
+
+@dataclass(frozen=True)
+class _Limit:
+    """u[upper] - u[lower] >= least (mm) along an axis."""
+
+    lower: int
+    upper: int
+    axis: int
+    least: float
+
+
+def pieces_of(scene: Scene, placements: Sequence[Placement]) -> list[Piece]:
+    """A piece for each part, equal parts that meet in one."""
+    pieces: dict[str, list[Placement]] = {p.designator: [p] for p in placements}
+    for c in scene.contacts:
+        a, b = pieces.get(c.first), pieces.get(c.second)
+        if a and b and a is not b and a[0].part.part_no == b[0].part.part_no:
+            a += b
+            pieces.update({p.designator: a for p in b})
+    return [Piece(tuple(some)) for d, some in pieces.items() if some[0].designator == d]
+
+
+def pulled_apart(scene: Scene, pieces: Sequence[Piece], gap: float, more: Mapping[int, float]) -> list[Piece]:
+    """The pieces of a scene moved apart by `gap` mm at least along their joints; by `more` (by a piece's index) in its own."""
+    owner = {p.designator: n for n, piece in enumerate(pieces) for p in piece.placements}
+    boxes = {p.designator: box_of(p) for p in scene.placements}
+    joints = joints_of(scene.placements, scene.contacts)
+    own = [j for j in joints if j.lower in owner and j.upper in owner and owner[j.lower] != owner[j.upper]]
+    kept = _kept_together(scene, pieces, owner, joints)
+
+    def limit(lower: str, upper: str, axis: int) -> _Limit:
+        i, k = owner[lower], owner[upper]
+        extra = max(gap, more.get(i, 0.0), more.get(k, 0.0))
+        return _Limit(i, k, axis, float(boxes[lower][1, axis] - boxes[upper][0, axis]) + extra)
+
+    limits = [limit(j.lower, j.upper, j.axis) for j in own]
+    count = len(pieces)
+    for _ in range(ROUNDS):
+        shifts = np.stack([_solved(count, axis, limits, kept) for axis in range(3)], axis=1)
+        known = set(limits)
+        fresh = []
+        for a, b in _overlapping(pieces, boxes, shifts):
+            lower, upper, axis = _sorted_out(a, b, boxes, own, owner)
+            fresh.append(limit(lower.designator, upper.designator, axis))
+        fresh = [p for p in fresh if p not in known]
+        if not fresh:
+            break
+        limits += fresh
+    return [piece.shifted(shift) for piece, shift in zip(pieces, shifts)]
+
+
+def _kept_together(
+    scene: Scene, pieces: Sequence[Piece], owner: Mapping[str, int], joints: Sequence[Joint]
+) -> list[tuple[int, int, int]]:
+    """Pieces that move alike along an axis: equal parts of a step that leave alike."""
+    at = {p.designator: p for p in scene.placements}
+    found = []
+    step = {d: n for n, s in enumerate(scene.steps) for d in s.designators}
+    alike: dict[tuple, int] = {}
+    for j in joints:
+        for name, up in ((j.lower, False), (j.upper, True)):
+            if name in owner and len(pieces[owner[name]].placements) == 1:
+                key = (at[name].part.part_no, step.get(name), j.axis, up)
+                first = alike.setdefault(key, owner[name])
+                if first != owner[name]:
+                    found.append((first, owner[name], j.axis))
+    return found
+
+
+def _solved(
+    count: int, axis: int, limits: Sequence[_Limit], kept: Sequence[tuple[int, int, int]]
+) -> np.ndarray:
+    """Shifts along one axis, the first piece's zero."""
+    from scipy.optimize import linprog
+
+    along = {}
+    for p in limits:
+        if p.axis == axis:
+            key = (p.lower, p.upper)
+            along[key] = max(along.get(key, p.least), p.least)
+    ties = {(p.lower, p.upper) for p in limits if p.axis != axis} - set(along) | {
+        (i, k) for i, k, a in kept if a == axis
+    }
+    ties = sorted({(min(t), max(t)) for t in ties})
+    # unknowns: the shifts; each joint's deficit; each tie's two-sided tear
+    n, m, q = count, len(along), len(ties)
+    cost = np.zeros(n + m + q)
+    rows = np.zeros((m + 2 * q, n + m + q))
+    most = np.zeros(m + 2 * q)
+    for r, ((i, k), least) in enumerate(along.items()):
+        cost[[i, k]] += -SLACK, SLACK
+        cost[n + r] = BROKEN
+        rows[r, [i, k, n + r]] = 1.0, -1.0, -1.0
+        most[r] = -least
+    for t, (i, k) in enumerate(ties):
+        cost[n + m + t] = TORN
+        for sign, r in ((1.0, m + 2 * t), (-1.0, m + 2 * t + 1)):
+            rows[r, [i, k, n + m + t]] = sign, -sign, -1.0
+    free = [(0.0, 0.0)] + [(-1e4, 1e4)] * (n - 1) + [(0.0, None)] * (m + q)
+    found = linprog(
+        cost, A_ub=rows if len(rows) else None, b_ub=most if len(rows) else None, bounds=free, method="highs"
+    )
+    return np.round(found.x[:n], 6)
+
+
+def _overlapping(
+    pieces: Sequence[Piece], boxes: Mapping[str, Box], shifts: np.ndarray
+) -> list[tuple[Placement, Placement]]:
+    """A pair of parts for each two pieces of which boxes overlap where they stand now, the earlier part first."""
+    found = []
+    for i, k in combinations(range(len(pieces)), 2):
+        for a in pieces[i].placements:
+            for b in pieces[k].placements:
+                p, q = boxes[a.designator] + shifts[i], boxes[b.designator] + shifts[k]
+                if (
+                    np.minimum(p[1], q[1]) - np.maximum(p[0], q[0]) > TOUCH
+                ).all() and a.part.part_no != b.part.part_no:
+                    found.append((a, b))
+                    break
+            else:
+                continue
+            break
+    return found
+
+
+def _sorted_out(
+    a: Placement, b: Placement, boxes: Mapping[str, Box], joints: Sequence[Joint], owner: Mapping[str, int]
+) -> tuple[Placement, Placement, int]:
+    """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as they are assembled,
+    where one lies beyond the other; else the later one goes on along its own axis, the way that it came off."""
+    ends = owner[a.designator], owner[b.designator]
+    for j in joints:
+        if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):
+            return (a, b, j.axis) if owner[j.lower] == ends[0] else (b, a, j.axis)
+    p, q = boxes[a.designator], boxes[b.designator]
+    beyond = np.maximum(q[0] - p[1], p[0] - q[1])
+    if beyond.max() >= -TOUCH:
+        axis = int(beyond.argmax())
+        return (a, b, axis) if p[:, axis].sum() < q[:, axis].sum() else (b, a, axis)
+    axis, sign = way_off(a, b, boxes)
+    axis = axis if (turned := axis_of(b)) is None else turned
+    mine = [j for j in joints if owner[b.designator] in (owner[j.lower], owner[j.upper]) and j.axis == axis]
+    if mine:
+        sign = 1 if owner[mine[0].upper] == owner[b.designator] else -1
+    return (a, b, axis) if sign > 0 else (b, a, axis)
+
+
+def _moved(p: Placement, by: Sequence[float]) -> Placement:
+    return replace(p, origin=tuple(round(o + float(s), 6) for o, s in zip(p.origin, by)))

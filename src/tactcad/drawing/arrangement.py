@@ -1,0 +1,114 @@
+"""General arrangement of a scene: three views in first angle, overall dimensions, notes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.drawing.extent import projected_box
+from tactcad.scenes.scene import Scene
+
+from .assembly_notes import notes_of
+from .dimension_lines import stacked
+from .ink import Item, moved
+from .measure import Span, level
+from .page import MARGIN, Page, edges, fewer
+from .paper import A3, A3_UPRIGHT, Paper
+from .plan import Dimension, Linear
+from .scale import ASSEMBLIES, factor, largest_fitting, shown
+from .title import HEIGHT, WIDTH, TitleBlock, notes
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+APART = 14.0  # between views
+AROUND = 20.0  # left of and over the views, for overall dimensions
+
+Box = tuple[float, float, float, float]
+
+
+def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
+    """Front, plan below it, view from the left to its right, at the largest scale that lying or upright A3 allows."""
+    from tactcad.drawing.picture import EXACT_UP_TO, View, drawing
+    from tactcad.solids.place import placed_shape
+
+    views = {
+        "front": View("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+        "plan": View("plan", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+        "left": View("left", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    }
+    boxes = {name: projected_box(scene.placements, v.right, v.eye) for name, v in views.items()}
+    size = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}
+    wide, high = size["front"][0] + size["left"][0], size["front"][1] + size["plan"][1]
+    spare = APART + AROUND
+    choices = [_with_notes(paper, notes_of(design, scene), block) for paper in (A3, A3_UPRIGHT)]
+    fitting = [
+        (scale, choice)
+        for choice in choices
+        for _, _, (x0, y0, x1, y1) in [choice]
+        if (scale := largest_fitting(wide, high, (x1 - x0 - spare, y1 - y0 - spare)))
+    ]
+    if not fitting:
+        raise CheckFailure(
+            f"drawings: {block.number}: three views of {wide:.0f} x {high:.0f} mm in all do not fit A3 at "
+            f"{shown(ASSEMBLIES[-1])}; no drawing was written"
+        )
+    scale, (paper, items, (x0, y0, x1, y1)) = max(fitting, key=lambda pair: factor(pair[0]))
+    f = factor(scale)
+    west, south = (x0 + x1 - f * wide - spare) / 2 + AROUND, (y0 + y1 - f * high - spare) / 2
+    north = south + f * size["plan"][1] + APART
+    places = {
+        "plan": (west, south),
+        "front": (west, north),
+        "left": (west + f * size["front"][0] + APART, north),
+    }
+    for name, view in views.items():
+        # from the front and from above the outermost parts hide the long rows behind them
+        some = (
+            scene.placements
+            if name == "left" or len(scene.placements) <= EXACT_UP_TO
+            else fewer(scene.placements)
+        )
+        placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in some]
+        (bx, by), (px, py) = boxes[name][:2], places[name]
+        items += edges(drawing(placed, view).sharp, f, (px - f * bx, py - f * by))
+    # on three sides that face nothing: texts of short dimensions stand beside them
+    for name, sides in (("front", ("top", "left")), ("plan", ("right",))):
+        items += [moved(i, *places[name]) for i in _overall(size[name], f, sides)]
+    return Page(paper, shown(scale), tuple(items), "Assembly drawing")
+
+
+def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[Paper, list[Item], Box]:
+    """The notes, on a lying sheet over the title block, on an upright one over its whole width; and where views may stand."""
+    x0, y0, x1, y1 = paper.area
+    lying = paper.width > paper.height
+    room = (WIDTH if lying else x1 - x0) - 2 * MARGIN
+    texts, high = notes((0.0, 0.0), lines, room)
+    if high > y1 - y0 - HEIGHT - 2 * MARGIN:
+        raise CheckFailure(
+            f"drawings: {block.number}: the notes are higher than the sheet; no drawing was written"
+        )
+    at = (x1 - WIDTH + MARGIN, y1 - MARGIN) if lying else (x0 + MARGIN, y0 + HEIGHT + MARGIN + high)
+    left = (x0, y0, x1 - WIDTH, y1) if lying else (x0, at[1], x1, y1)
+    return (
+        paper,
+        [moved(t, *at) for t in texts],
+        tuple(v + m for v, m in zip(left, (MARGIN, MARGIN, -MARGIN, -MARGIN))),
+    )
+
+
+def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
+    """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in parentheses."""
+    w, h = size
+    values = {"w": round(w, 1), "h": round(h, 1)}
+    items: list[Item] = []
+    for side in sides:
+        x = w if side == "right" else 0.0
+        name, p, q = ("w", (0.0, h), (w, h)) if side == "top" else ("h", (x, 0.0), (x, h))
+        dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), sign="(", unit=")")
+        items += stacked(
+            [Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, {**values, "zero": 0.0}, 10.0
+        )
+    return items

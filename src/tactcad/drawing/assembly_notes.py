@@ -1,0 +1,60 @@
+"""What an assembly sheet says in words."""
+
+from __future__ import annotations
+
+from tactcad.design.tree import Design
+from tactcad.drawing.guide import page_path, torque
+from tactcad.parts.layout import Layout
+from tactcad.scenes.scene import Scene
+
+LONGEST_ROW = 8  # elements named on the sheet
+COPLANAR = "Coplanar pads"  # the step that decides whether the array measures what it should
+
+
+def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
+    """Numbered notes: order, torques, the pads' coplanarity, what the numbers mean."""
+    lines = []
+    if scene.steps:
+        lines.append(
+            f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} (tactcad export --guide)"
+        )
+    lines += _rows(design, scene)
+    if torques := _torques(scene, "ISO4762-"):
+        lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
+    if torques := _torques(scene, "ISO4026-"):
+        lines.append(f"Turn set screws in to {torques}, locked with thread lacquer")
+    for step in scene.steps:
+        if step.title == COPLANAR:
+            within = f"{design.tolerance.pad_height:g} mm"
+            lines.append(
+                f"All pads in one plane within {within}, by a gauge block and a surface plate. {step.text}"
+            )
+    lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
+    lines.append(
+        "Dimensions in parentheses are for information; in the front view x points to the right, y away from the viewer"
+    )
+    return tuple(lines)
+
+
+def _rows(design: Design, scene: Scene) -> list[str]:
+    """Which element stands where; left to the bill's designators where the rows are long."""
+    layout = Layout(design)
+    placed = {p.designator for p in scene.placements}
+    lines = []
+    for row, side in ((1, "+"), (2, "-")):
+        own = [p for p in layout.elements if p.row == row and p.designator in placed]
+        if 0 < len(own) <= LONGEST_ROW:
+            order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
+            lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
+    return lines
+
+
+def _torques(scene: Scene, standard: str) -> str:
+    """ "M3 0.55 N·m, M4 1.2 N·m" of the screws of that standard placed."""
+    found = {}
+    for part in scene.parts:
+        if part.part_no.startswith(standard) and (tight := torque(part)):
+            found[part.part_no.split("-")[1].split("x")[0]] = tight
+    return ", ".join(
+        f"{thread} {value:g} N·m" for thread, value in sorted(found.items(), key=lambda pair: pair[1])
+    )

@@ -1,0 +1,270 @@
+"""A sheet while it is composed: what stands on it, and where a text with its leader still finds a place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import cos, hypot, radians, sin
+
+import numpy as np
+
+from .dimension_lines import ARROW, HEIGHT, PAD, boxed, boxed_width, datum, datum_letter
+from .ink import THIN, Fill, Item, Point, Text, arrow, polar, segment
+from .layout import BESIDE_LINE, Quad, bounds, chord_meets, quads_meet
+from .plan import Box, Callout, Datum
+
+STEP = 1.7 * HEIGHT  # between lines of a callout
+SHELF = 3.0  # of the leader beside the text
+REACHES = (
+    7.0,
+    9.0,
+    11.0,
+    14.0,
+    17.0,
+    20.0,
+    24.0,
+    28.0,
+    33.0,
+    38.0,
+    44.0,
+    50.0,
+    58.0,
+    66.0,
+    75.0,
+    85.0,
+    95.0,
+)  # of leaders
+MOST_TARGETS = 12  # of equal features tried for the leader
+# What a leader pays for crossing: it may pass extension and centre lines, hardly the part, no dimension line.
+CROSSING = {
+    "outline": 12.0,
+    "hidden": 4.0,
+    "dimension": 80.0,
+    "leader": 80.0,
+    "symbol": 80.0,
+    "cutting": 80.0,
+    "extension": 6.0,
+    "table": 500.0,
+}
+ALONG = 40.0  # what a leader pays for running along another line, where one is read for the other
+AT_END = 12.0  # what a leader pays at an arc's very end
+NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
+FORBIDDEN = 80.0  # of the costs above: what a datum's stem never crosses
+AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
+
+
+class Board:
+    """Items on paper, areas that nothing may enter, and the search for free places."""
+
+    def __init__(self, area: Box) -> None:
+        self.area = area
+        self.items: list[Item] = []
+        self.kept: list[Box] = []  # no callout goes there
+        self.taken: list[Box] = []  # no view goes there
+        self._chords: list[tuple[float, float, float, float]] = []
+        self._roles: list[str] = []
+        self._boxes: list[Quad] = []  # around texts and letters in frames, and what bounds each
+        self._bounds: list[Box] = []
+        self._array: np.ndarray | None = None
+
+    def add(self, items: Iterable[Item]) -> None:
+        for item in items:
+            self.items.append(item)
+            if isinstance(item, Text):
+                if item.text.strip():
+                    self._keep_clear(item.corners(BESIDE_LINE + 0.2))
+                continue
+            for (ax, ay), (bx, by) in item.chords():
+                self._chords.append((ax, ay, bx, by))
+                self._roles.append(item.role if not isinstance(item, Fill) else "arrow")
+        self._array = None
+
+    def keep_out(self, box: Box) -> None:
+        """No callout's text goes there."""
+        self.kept.append(box)
+
+    def _keep_clear(self, quad: Quad) -> None:
+        self._boxes.append(quad)
+        self._bounds.append(bounds(quad))
+
+    def _near(self, box: Box) -> list[Quad]:
+        """Of the texts and framed letters, those whose bounds meet the box."""
+        b = np.array(self._bounds).reshape(-1, 4)
+        x0, y0, x1, y1 = box
+        return [
+            self._boxes[i]
+            for i in np.flatnonzero((b[:, 2] >= x0) & (b[:, 0] <= x1) & (b[:, 3] >= y0) & (b[:, 1] <= y1))
+        ]
+
+    def callout(self, c: Callout, scale: float, origin: Point) -> bool:
+        """Place a callout of a view at the cheapest free place, its leader at whichever of the targets; False where there is none."""
+        best: tuple[float, list[Item]] | None = None
+        ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
+        for reach in REACHES:
+            if best and reach >= best[0]:
+                break
+            for tip, angle, extra in ways:
+                if best and reach + extra >= best[0]:
+                    continue
+                items, cost = self._tried(c, tip, angle, reach)
+                cost += extra
+                if items and (best is None or cost < best[0] - 1e-9):
+                    best = (cost, items)
+        if best is None:
+            return False
+        self.add(best[1])
+        return True
+
+    def datum(self, d: Datum, scale: float, origin: Point) -> bool:
+        """Place a datum's triangle on its edge, the letter outside, where both are free."""
+        ux, uy = d.away
+        for reach in (8.0, 9.5, 11.0, 12.5, 14.0, 16.0, 18.0, 20.0, 22.0, 25.0, 28.0, 32.0, 36.0, 40.0):
+            for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.05, 0.95):
+                x = origin[0] + scale * (d.start[0] + share * (d.end[0] - d.start[0]))
+                y = origin[1] + scale * (d.start[1] + share * (d.end[1] - d.start[1]))
+                items = datum((x, y), d.away, reach, d.letter)
+                outside = (x + 0.6 * ux, y + 0.6 * uy)
+                middle = (x + reach * ux, y + reach * uy)
+                m = 3.2
+                square = (
+                    (middle[0] - m, middle[1] - m),
+                    (middle[0] + m, middle[1] - m),
+                    (middle[0] + m, middle[1] + m),
+                    (middle[0] - m, middle[1] + m),
+                )
+                foot = [
+                    (x + a * uy + b * ux, y - a * ux + b * uy)
+                    for a, b in ((-1.9, 0.6), (1.9, 0.6), (1.9, 3.4), (-1.9, 3.4))
+                ]
+                blocked = any(
+                    x1 > square[0][0] and x0 < square[1][0] and y1 > square[0][1] and y0 < square[2][1]
+                    for x0, y0, x1, y1 in self.kept
+                )
+                stem = (outside, middle)
+                passed = self.passed(stem)
+                legs_free = passed is not None and passed < FORBIDDEN
+                if not blocked and legs_free and not self.hit([square, foot], bounds([*square, *foot])):
+                    self.add(items)
+                    self._keep_clear(square)
+                    return True
+        return False
+
+    def _tried(self, c: Callout, tip: Point, angle: float, reach: float) -> tuple[list[Item], float]:
+        """The callout's items with a leader in this direction and of this length, and their cost; none where they do not fit."""
+        elbow = polar(tip, reach, angle)
+        towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
+        start = (elbow[0] + towards * SHELF, elbow[1])
+        texts, extras = _block(c, start, towards)
+        quads = [t.corners(AROUND) for t in texts] + [_corners(x) for x in extras if not isinstance(x, Text)]
+        if not self.free(quads):
+            return [], 0.0
+        passed = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
+        if None in passed:
+            return [], 0.0
+        cost = reach + sum(passed) + (4.0 if abs(sin(radians(angle))) > 0.97 else 0.0)
+        head = [] if c.dot else [arrow(tip, elbow, ARROW, "leader")]
+        lines = [segment(tip, elbow, THIN, "leader"), segment(elbow, start, THIN, "leader")]
+        return [*lines, *head, *texts, *extras], cost
+
+    def free(self, quads: Sequence[Quad]) -> bool:
+        """Whether texts may stand there: inside the area, on no view, over nothing."""
+        x0, y0, x1, y1 = box = bounds([p for quad in quads for p in quad])
+        ax0, ay0, ax1, ay1 = self.area
+        if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
+            return False
+        if any(x1 > kx0 and x0 < kx1 and y1 > ky0 and y0 < ky1 for kx0, ky0, kx1, ky1 in self.kept):
+            return False
+        return not self.hit(quads, box)
+
+    def passed(self, leg: tuple[Point, Point]) -> float | None:
+        """What a line pays for what it crosses; None where it would run through a text."""
+        return (
+            None if any(chord_meets(leg, quad) for quad in self._near(bounds(leg))) else self._crossings(leg)
+        )
+
+    def hit(self, quads: Sequence, box: Box) -> bool:
+        """Whether a text or frame would lie over anything that is there."""
+        if any(quads_meet(q, b) for b in self._near(box) for q in quads):
+            return True
+        if self._array is None:
+            self._array = np.array(self._chords).reshape(-1, 4)
+        a, (x0, y0, x1, y1), m = self._array, box, BESIDE_LINE + 0.5
+        near = np.flatnonzero(
+            (np.maximum(a[:, 0], a[:, 2]) > x0 - m)
+            & (np.minimum(a[:, 0], a[:, 2]) < x1 + m)
+            & (np.maximum(a[:, 1], a[:, 3]) > y0 - m)
+            & (np.minimum(a[:, 1], a[:, 3]) < y1 + m)
+        )
+        return any(chord_meets(((a[i, 0], a[i, 1]), (a[i, 2], a[i, 3])), q) for i in near for q in quads)
+
+    def _crossings(self, leg: tuple[Point, Point]) -> float:
+        if self._array is None:
+            self._array = np.array(self._chords).reshape(-1, 4)
+        (px, py), (qx, qy) = leg
+        ux, uy = qx - px, qy - py
+        length = hypot(ux, uy)
+        if length < 1e-9 or not len(self._array):
+            return 0.0
+        rx, ry, sx, sy = self._array.T
+        vx, vy = sx - rx, sy - ry
+        det = ux * vy - uy * vx
+        safe = np.where(np.abs(det) < 1e-12, 1.0, det)
+        t = ((rx - px) * vy - (ry - py) * vx) / safe
+        s = ((rx - px) * uy - (ry - py) * ux) / safe
+        met = (np.abs(det) > 1e-12) & (t * length > 0.4) & (t < 1 - 1e-9) & (s > -1e-9) & (s < 1 + 1e-9)
+        crossed = sum(
+            CROSSING.get(self._roles[i], 20.0 if self._roles[i] == "arrow" else 2.0)
+            for i in np.flatnonzero(met)
+        )
+        along_r, along_s = (((x - px) * ux + (y - py) * uy) / length for x, y in ((rx, ry), (sx, sy)))
+        off = np.abs((rx - px) * uy - (ry - py) * ux) / length
+        shared = np.minimum(np.maximum(along_r, along_s), length) - np.maximum(
+            np.minimum(along_r, along_s), 0.0
+        )
+        beside = (np.abs(det) < PARALLEL * length * np.hypot(vx, vy)) & (off < NEAR) & (shared > 1.0)
+        return crossed + ALONG * bool(beside.any())
+
+
+def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, float, float]]:
+    """Points of the n-th target that a leader may end at, the directions (degrees) in which it leaves them, and what they cost."""
+    (x, y), radius = c.targets[n]
+    centre = (origin[0] + x * scale, origin[1] + y * scale)
+    if not c.spans:
+        return [(polar(centre, radius * scale, 15.0 * i), 15.0 * i, 0.0) for i in range(24)]
+    start, end = c.spans[n]
+    sweep = (end - start) % 360.0 or 360.0
+    # in line with the arc's centre, from within or from outside; near its ends it reads as the edge that joins it
+    normals = [
+        (start + sweep * share, AT_END * abs(2 * share - 1))
+        for share in (0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.04, 0.96)
+    ]
+    return [
+        (polar(centre, radius * scale, a), a + turn, cost) for a, cost in normals for turn in (180.0, 0.0)
+    ]
+
+
+def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:
+    """Texts beside the shelf's end, the first line level with it; frames around what is a key or a datum."""
+    x, y = start
+    key = int(c.boxed) if c.boxed else 0
+    wide = max(boxed_width(line, key if i == 0 else 0) for i, line in enumerate(c.lines))
+    gap = 0.0 if key else 1.0
+    left = x + gap if towards > 0 else x - gap - wide
+    base = y - HEIGHT / 2
+    texts = [Text((left, base - STEP * i), line, HEIGHT) for i, line in enumerate(c.lines)]
+    extras: list[Item] = []
+    if key:
+        framed = boxed(texts[0], key)
+        texts = [t for t in framed if isinstance(t, Text)] + texts[1:]
+        extras += [item for item in framed if not isinstance(item, Text)]
+    if c.datum:
+        drop = y - STEP * len(c.lines) - 1.9
+        extras += datum_letter(c.datum, (left + 2.5, drop))
+        texts += [t for t in extras if isinstance(t, Text)]
+        extras = [item for item in extras if not isinstance(item, Text)]
+    return texts, extras
+
+
+def _corners(item: Item) -> tuple[Point, Point, Point, Point]:
+    x0, y0, x1, y1 = bounds([p for chord in item.chords() for p in chord])
+    m = PAD / 2
+    return ((x0 - m, y0 - m), (x1 + m, y0 - m), (x1 + m, y1 + m), (x0 - m, y1 + m))

@@ -1,0 +1,148 @@
+"""Callouts of a plan: holes, pockets and grooves, radii, and a disc's outside, each with where its leader may point."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, degrees
+
+from tactcad.contour import Arc, Contour, Line
+from tactcad.parts.description import Hole, Part, Pocket
+
+from .contours import contours
+from .holes import Group
+from .ink import Point
+from .measure import Difference, Offset, Radius, Slope, Span, Width, halfway, in_part, level, size
+from .plan import Callout, Dimension, View, seen
+from .sketch import ALIKE, Sketch, edge_level
+
+
+def round_outline(sketch: Sketch, part: Part) -> Callout:
+    """Outside diameter of a disc; its openings about the same axis are in line with it."""
+    centre, r = part.body.outer.as_circle()
+    d = sketch.must(Dimension("outside", (size("outer.d"),), "⌀"))
+    return Callout((d.text(sketch.values),), ((centre, r),), (d,))
+
+
+def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
+    for d in g.dimensions:
+        sketch.must(d)
+    targets = [(seen(view, r.at), widest(r.hole) / 2) for r in g.holes]
+    return Callout(g.lines, tuple(sorted(targets, key=lambda t: _to_outside(view, t[0]))), g.dimensions)
+
+
+def _to_outside(view: View, p: Point) -> float:
+    """Way from a point of the view to the nearest side of its box, mm: leaders are shortest from where it is small."""
+    u0, v0, u1, v1 = view.box
+    return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
+
+
+def widest(h: Hole) -> float:
+    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0)
+
+
+def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
+    """Depth of every pocket, with the diameters of what is round, at its edge."""
+    callouts = []
+    for k, f in enumerate(part.features):
+        if not isinstance(f, Pocket):
+            continue
+        lines, used = [], []
+        if flats := _regular(sketch, part, k, in_part(f, f.contour)):
+            used.append(sketch.must(flats))
+            lines.append(
+                f"{sum(isinstance(s, Line) for s in f.contour)} sides, {flats.text(sketch.values)} across flats"
+            )
+
+        def say(d: Dimension, used: list = used) -> str:
+            used.append(sketch.must(d))
+            return d.text(sketch.values)
+
+        for name, c in ((f"pocket{k}", f.contour), *((f"island{k}.{i}", c) for i, c in enumerate(f.island))):
+            if c.as_circle() and not (name.startswith("pocket") and _is_outline(part, f)):
+                lines.append(say(Dimension(f"{f.name} diameter", (size(f"{name}.d"),), "⌀")))
+            elif c.as_circle():
+                sketch.convention(Span(level("outer.d"), level(f"{name}.d")))
+        depth = say(Dimension(f"{f.name} depth", (size(f"pocket{k}.depth"),), "↧"))
+        text = " / ".join(lines)
+        label = f.name.replace("_", " ")
+        if f.island:
+            label = f"{label} groove" if f.island[0].as_circle() else f"faced off {label}"
+        spots = _edge_targets(view, in_part(f, f.contour))
+        callouts.append(Callout((f"{label} {text} {depth}".replace("  ", " "),), spots, tuple(used)))
+    return callouts
+
+
+def _edge_targets(view: View, contour: Contour) -> tuple[tuple[Point, float], ...]:
+    """Where a leader may touch a contour: anywhere on a circle, else the middles of its segments."""
+    if circle := contour.as_circle():
+        return ((seen(view, (*circle[0], 0.0)), circle[1]),)
+    middles = [seen(view, (*s.at(0.5), 0.0)) for s in contour]
+    return tuple((p, 0.0) for p in sorted(middles, key=lambda p: _to_outside(view, p)))
+
+
+def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension | None:
+    """Width across flats of a regular polygon in the middle of the outline; None where the contour is none.
+
+    Drawn as regular: equal distances of all sides from the outline's middle, and equal angles between them.
+    """
+    sides = [i for i, s in enumerate(contour) if isinstance(s, Line)]
+    if len(sides) < 6 or len(sides) % 2:
+        return None
+    name, n = f"pocket{k}", len(contour)
+    x, y = (
+        halfway(*(edge_level(sketch, "outer", a, v) for v in part.body.outer.box[i::2]))
+        for i, a in enumerate("xy")
+    )
+    offsets = [Offset(f"{name}.{i}", f"{name}.{(i + 1) % n}", x, y) for i in sides]
+    measured = [abs(o.of(sketch.values)) for o in offsets]
+    if max(measured) - min(measured) > ALIKE:
+        return None
+    for i, offset in zip(sides, offsets):
+        if min(abs(a - b) for a, b in zip(contour.segments[i].start, contour.segments[i].end)) > ALIKE:
+            sketch.convention(Slope(f"{name}.{i}", f"{name}.{(i + 1) % n}"))
+        if offset is not offsets[0]:
+            sketch.convention(Difference(offset, offsets[0]))
+    half = len(sides) // 2
+    return Dimension(f"{part.features[k].name} across flats", (Width(offsets[0], offsets[half]),))
+
+
+def _is_outline(part: Part, f: Pocket) -> bool:
+    return in_part(f, f.contour).as_circle() == part.body.outer.as_circle()
+
+
+def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
+    """Radii that are not determined yet, equal ones of a contour together."""
+    callouts = []
+    for name, contour in contours(part):
+        if contour.as_circle():
+            continue
+        kinds: dict[float, list[int]] = {}
+        for i, s in enumerate(contour):
+            if isinstance(s, Arc):
+                kinds.setdefault(round(s.radius, 6), []).append(i)
+        for indices in kinds.values():
+            rows = [Radius(name, i) for i in indices]
+            new = [i for i, row in zip(indices, rows) if sketch.account.takes(row)]
+            if new:
+                d = Dimension(f"{name} radius", tuple(Radius(name, i) for i in new), "R")
+                callouts.append(radius_callout(sketch, view, d, [contour.segments[i] for i in new]))
+    return callouts
+
+
+def radius_callout(sketch: Sketch, view: View, d: Dimension, arcs: Sequence[Arc]) -> Callout:
+    targets, spans = [], []
+    for arc in arcs:
+        centre = seen(view, (*arc.centre, 0.0))
+        angles = []
+        for p in (arc.start, arc.end) if arc.ccw else (arc.end, arc.start):
+            u, v = seen(view, (*p, 0.0))
+            angles.append(_direction(u - centre[0], v - centre[1]))
+        if view.right[0] < 0:
+            angles.reverse()
+        targets.append((centre, arc.radius))
+        spans.append(tuple(angles))
+    return Callout((d.text(sketch.values),), tuple(targets), (d,), tuple(spans))
+
+
+def _direction(u: float, v: float) -> float:
+    return degrees(atan2(v, u))

@@ -1,0 +1,89 @@
+"""A part's solid cut by the plane of a section: what is left of it, and the face that the plane has cut."""
+
+from __future__ import annotations
+
+from OCP.Bnd import Bnd_Box
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+from OCP.BRepTools import BRepTools_WireExplorer
+from OCP.GeomAbs import GeomAbs_Plane
+from OCP.gp import gp_Pnt
+from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
+
+from tactcad.design.messages import CheckFailure
+from tactcad.drawing.picture import on_curve
+
+from .hidden_lines import CHORD
+from .ink import Hatch, Point
+from .plan import View, seen
+
+AROUND = 1.0  # mm: the box that is kept stands out of the part
+SAME = 1e-7  # mm: the kernel's own tolerance
+
+
+def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
+    """What lies behind the plane of the view's section, and its cut face in the view's plane (mm of the part).
+
+    Raises CheckFailure where the plane misses the part.
+    """
+    box = Bnd_Box()
+    BRepBndLib.Add_s(shape, box)
+    low, high = ([p.X(), p.Y(), p.Z()] for p in (box.CornerMin(), box.CornerMax()))
+    low, high = [v - AROUND for v in low], [v + AROUND for v in high]
+    k, at = view.section.axis, view.section.at
+    (low if view.eye[k] < 0 else high)[k] = at
+    kept = BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
+    half = BRepAlgoAPI_Common(shape, kept).Shape()
+    loops = [_loop(wire, view) for face in _faces(half, k, at) for wire in _wires(face)]
+    if not loops:
+        raise CheckFailure(
+            f"drawings: the section at {'xy'[k]} = {at:g} mm cuts nothing; no drawing was written"
+        )
+    return half, Hatch(tuple(sorted(loops)))
+
+
+def _faces(shape: TopoDS_Shape, k: int, at: float) -> list[TopoDS_Face]:
+    """Faces in the plane across axis k."""
+    found = []
+    explorer = TopExp_Explorer(shape, TopAbs_FACE)
+    while explorer.More():
+        face = TopoDS.Face_s(explorer.Current())
+        surface = BRepAdaptor_Surface(face)
+        if surface.GetType() == GeomAbs_Plane:
+            plane = surface.Plane()
+            # OCC counts coordinates from 1
+            if (
+                abs(abs(plane.Axis().Direction().Coord(k + 1)) - 1.0) < SAME
+                and abs(plane.Location().Coord(k + 1) - at) < SAME
+            ):
+                found.append(face)
+        explorer.Next()
+    return found
+
+
+def _wires(face: TopoDS_Face) -> list[TopoDS_Wire]:
+    found = []
+    explorer = TopExp_Explorer(face, TopAbs_WIRE)
+    while explorer.More():
+        found.append(TopoDS.Wire_s(explorer.Current()))
+        explorer.Next()
+    return found
+
+
+def _loop(wire: TopoDS_Wire, view: View) -> tuple[Point, ...]:
+    """The wire as a polygon in the view; curved edges as chords."""
+    points: list[Point] = []
+    explorer = BRepTools_WireExplorer(wire)
+    while explorer.More():
+        edge = explorer.Current()
+        run = on_curve(BRepAdaptor_Curve(edge), CHORD)
+        if edge.Orientation() == TopAbs_REVERSED:
+            run.reverse()
+        points += [tuple(round(v, 6) + 0.0 for v in seen(view, (p.X(), p.Y(), p.Z()))) for p in run[:-1]]
+        explorer.Next()
+    start = points.index(min(points))
+    return tuple(points[start:] + points[:start])

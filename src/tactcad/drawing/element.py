@@ -1,0 +1,356 @@
+"""The plan of a sensing element: the whole side view, the arm enlarged (X), the hinge enlarged (Z), and the edge.
+
+Heights count from the flat face (datum A) and, for the clamp, from the dowel hole (datum B), which is also where lengths of
+the rear body count from; lengths of the arm count from its tip, as the arm length itself does.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from tactcad.contour import Arc, Contour, Line
+from tactcad.design.tree import Design
+from tactcad.parts.description import Characteristic, Part
+
+from .callouts import hole_callout, radius_callout
+from .holes import groups, rounds
+from .ink import Point
+from .measure import Level, Slope, Span, conventions, halfway, level
+from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View, characteristic
+from .prism import FRONT, key_number, side_view
+from .sketch import ALIKE, Sketch, closed, view_box
+
+HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
+HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
+MOST_LEAF = 5.0  # mm of a tall element's hinge shown either way from its middle
+WIDE_ROOM = (110.0, 100.0)
+ARM_ROOM = (190.0, 75.0)
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A sharp corner of the outline: its levels, and where it is."""
+
+    x: Level
+    y: Level
+    at: Point
+
+
+class Outline:
+    """The outline's segments by name, and the levels that they stand on."""
+
+    def __init__(self, contour: Contour) -> None:
+        self.contour = contour
+        self.index = {s.name: i for i, s in enumerate(contour) if s.name}
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.index
+
+    def segment(self, name: str) -> Line | Arc:
+        return self.contour.segments[self.index[name]]
+
+    def x(self, name: str) -> Level:
+        return level(f"outer.{self.index[name]}.x")
+
+    def y(self, name: str) -> Level:
+        return level(f"outer.{self.index[name]}.y")
+
+    def start(self, name: str) -> Point:
+        return self.segment(name).start
+
+    def end(self, name: str) -> Point:
+        return self.segment(name).end
+
+    def point(self, name: str, end: bool) -> str:
+        """Name of a segment's start or end among the variables."""
+        return f"outer.{(self.index[name] + end) % len(self.contour)}"
+
+    def corner(self, before: str, after: str) -> Corner:
+        """The corner between two edges, of which fillets may have used up one."""
+        name = self.point(before, True) if before in self else self.point(after, False)
+        at = self.end(before) if before in self else self.start(after)
+        return Corner(level(f"{name}.x"), level(f"{name}.y"), at)
+
+    def arcs(self, names: Sequence[str]) -> list[str]:
+        return [n for n in names if n in self and isinstance(self.segment(n), Arc)]
+
+
+def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> Plan:
+    """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand with the arm.
+
+    Raises CheckFailure where a dimension is missing or given twice.
+    """
+    o = Outline(part.body.outer)
+    sketch = Sketch(part)
+    for row in conventions("outer", o.contour):
+        sketch.convention(row)
+    called = groups(rounds(part, design), sketch.values, {2: FRONT[0]})
+    holes = [r for g in called for r in g.holes]
+    dowel = next(r for r in holes if r.label == "dowel hole")
+    for r in holes:
+        if r is not dowel:
+            sketch.convention(Span(level(f"{dowel.name}.y"), level(f"{r.name}.y")))
+    limits = {c.name: c for c in part.characteristics}
+    hinge, left = _hinge_view(sketch, part, design, o, limits, tall)
+    arm = _arm_view(sketch, part, design, o, limits, *left)
+    front = _front_view(sketch, part, o, called, dowel, limits)
+    thickness = Characteristic(
+        "thickness",
+        part.body.thickness,
+        part.body.thickness + design.tolerance.sheet_thickness,
+        part.body.thickness - design.tolerance.sheet_thickness,
+    )
+    edge = replace(
+        side_view(sketch, part, front, [], {"thickness": thickness}, True), hidden=False, datums=()
+    )
+    if limits:
+        raise ValueError(f"{part.part_no}: no dimension states {', '.join(limits)}")
+    closed(sketch)
+    return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
+
+
+def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
+    """A dimension with the tolerance that the uncertainty budget counts on."""
+    return Dimension(name, rows, limits=(tolerance, -tolerance))
+
+
+def _key(sketch: Sketch, part: Part, limits: dict[str, Characteristic], name: str, row: Span) -> Dimension:
+    c = limits.pop(name)
+    return sketch.must(characteristic(c, (row,), key_number(part, c)))
+
+
+def _front_view(
+    sketch: Sketch, part: Part, o: Outline, called: Sequence, dowel, limits: dict[str, Characteristic]
+) -> View:
+    view = View("front", *FRONT, (0, 0, 0, 0))
+    view = replace(view, box=view_box(view, part))
+    x, at = level(f"{dowel.name}.x"), dowel.at[:2]
+    top = o.start("clamp_edge")  # upper corner of the rear body, at the clamp edge
+    linears = []
+    for r in sorted((r for g in called for r in g.holes if r is not dowel), key=lambda r: r.at[0]):
+        ends = (x, level(f"{r.name}.x"))
+        row = Span(*ends) if r.at[0] > at[0] else Span(*reversed(ends))
+        linears.append(
+            Linear(sketch.must(Dimension(f"{r.label} from dowel hole", (row,))), "top", at, r.at[:2])
+        )
+    for name, row, q in (
+        ("clamp edge from dowel hole", Span(o.x("clamp_edge"), x), top),
+        ("rear end from dowel hole", Span(x, o.x("rear_end")), o.end("rear_end")),
+        ("tip from dowel hole", Span(o.x("tip"), x), o.start("tip")),
+    ):
+        linears.append(Linear(sketch.must(Dimension(name, (row,))), "top", at, q))
+    face = "body_face" if "body_face" in o else "flat_face"
+    step = o.corner(face, "recess_wall")
+    recess = sketch.must(Dimension("length of the recess", (Span(step.x, o.x("rear_end")),)))
+    linears.append(Linear(recess, "bottom", step.at, o.start("rear_end")))
+    for name, other, q in (
+        ("depth of the recess", "recess_face", o.start("rear_end")),
+        ("height of the rear body", "rear_top", o.end("rear_end")),
+    ):
+        row = Span(o.y(face), o.y(other))
+        linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", step.at, q))
+    pad = _key(
+        sketch,
+        part,
+        limits,
+        "pad height over the dowel hole's centre",
+        Span(o.y("pad_face"), level(f"{dowel.name}.y")),
+    )
+    linears.append(Linear(pad, "left", o.start("pad_face"), at))
+    callouts = [replace(hole_callout(sketch, view, g), datum="B" if dowel in g.holes else "") for g in called]
+    callouts += _radii(sketch, view, o, ("ledge_root", "recess_root"))
+    flat = o.segment(face)
+    return replace(
+        view,
+        linears=tuple(linears),
+        callouts=tuple(callouts),
+        datums=(Datum("A", flat.start, flat.end, (0.0, -1.0)),),
+        centres=tuple((r.at[:2], r.hole.diameter) for g in called for r in g.holes),
+    )
+
+
+def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list[Callout]:
+    """Fillets by name, equal ones together; none for a full round, whose width says it."""
+    from .measure import Radius
+
+    kinds: dict[float, list[str]] = {}
+    for n in o.arcs(names):
+        kinds.setdefault(round(o.segment(n).radius, 6), []).append(n)
+    callouts = []
+    for some in kinds.values():
+        new = [n for n in some if sketch.account.takes(Radius("outer", o.index[n]))]
+        if new:
+            d = Dimension(
+                " and ".join(n.replace("_", " ") for n in new),
+                tuple(Radius("outer", o.index[n]) for n in new),
+                "R",
+            )
+            callouts.append(radius_callout(sketch, view, d, [o.segment(n) for n in new]))
+    return callouts
+
+
+def _slot(o: Outline) -> tuple[Corner, Corner]:
+    """The slot's upper corners, arm side and body side."""
+    return o.corner("slot_arm_wall", "arm_back"), o.corner("ledge", "slot_body_wall")
+
+
+def _hinge_view(
+    sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic], tall: bool
+) -> tuple[View, tuple[list[Linear], list[Callout]]]:
+    """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the thickness alone, and
+    leaves the other dimensions and callouts, which are returned, to the arm's view."""
+    arm, body = _slot(o)
+    (xa, back), (xb, ledge) = arm.at, body.at
+    t = design.tolerance
+    one = "body_face" not in o
+    flat = o.start("flat_face")[1]
+    face = flat if one else o.start("body_face")[1]
+    side = max(0.55 * (xb - xa), 0.35 * back)
+    window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
+    if tall:
+        window = _around_web(o, xa, xb, flat if one else None)
+    view = View(
+        "hinge",
+        *FRONT,
+        part_box(part),
+        label="Z",
+        window=window,
+        room=WIDE_ROOM if tall else HINGE_ROOM,
+        least=HINGE_LEAST,
+    )
+    middle = (xa + xb) / 2
+    linears, across, callouts = [], [], []
+    near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
+    floor, floor_y = _floor(o, "slot_floor", "slot_")
+    web = _key(sketch, part, limits, "hinge thickness", Span(near, floor))
+    across.append(Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1])))
+    length = sketch.must(_within((Span(arm.x, body.x),), "slot length", t.hinge_length))
+    along = Linear(length, "top", (xa, back), (xb, ledge))
+    heights = _heights(sketch, t.arm_height, o, arm, body, near)
+    if not tall:
+        linears.append(along)
+        linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
+    fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
+    called = _radii(sketch, view, o, fillets)
+    if "slot_floor" not in o:
+        arc = o.segment(next(n for n in fillets if n in o))
+        ends = "full round" if one else "full round, both slots"
+        called.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
+    callouts += [] if tall else called
+    if rough := re.search(r"Ra [\d.]+", part.finish):
+        callouts.append(
+            Callout(
+                (f"{rough[0]}, both hinge faces",), (((middle - 0.2 * min(xb - xa, MOST_LEAF), low), 0.0),)
+            )
+        )
+    shown = face > window[1]
+    lettered = (
+        (Datum("A", (window[0] if one else xb, face), (window[2], face), (0.0, -1.0)),) if shown else ()
+    )
+    view = replace(
+        view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=lettered
+    )
+    return view, ([*heights, along], called) if tall else ([], [])
+
+
+def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> tuple[float, float, float, float]:
+    """The window of a hinge alone: its leaf, of a long one its middle; `flat` is None for two slots."""
+    floor = _floor(o, "slot_floor", "slot_")[1]
+    low = _floor(o, "hinge_face", "front_slot_")[1] if flat is None else flat
+    over = min(max(2.0 * (floor - low), 1.0), 3.0)
+    half = min((xb - xa) / 2 + over, MOST_LEAF)
+    middle = (xa + xb) / 2
+    return (middle - half, low - (over if flat is None else 0.5 * over), middle + half, floor + over)
+
+
+def _heights(
+    sketch: Sketch, tolerance: float, o: Outline, arm: Corner, body: Corner, near: Level
+) -> list[Linear]:
+    """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the right."""
+    flat = o.start("flat_face")
+    height = sketch.must(_within((Span(o.y("flat_face"), arm.y),), "arm height", tolerance))
+    one = "body_face" not in o
+    foot = flat if one else o.corner("front_slot_body_wall", "body_face").at
+    high = sketch.must(
+        Dimension("body height", (Span(o.y("flat_face") if one else o.y("body_face"), body.y),))
+    )
+    heights = [Linear(height, "left", flat, arm.at), Linear(high, "right", foot, body.at)]
+    if one:
+        return heights
+    sketch.convention(Span(o.corner("flat_face", "front_slot_arm_wall").x, arm.x))
+    sketch.convention(Span(o.corner("front_slot_body_wall", "body_face").x, body.x))
+    depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
+    web = _floor(o, "hinge_face", "front_slot_")[1]
+    heights.append(Linear(depth, "left", flat, (arm.at[0], web)))
+    if abs(foot[1] - flat[1]) < ALIKE:
+        sketch.convention(Span(o.y("flat_face"), o.y("body_face")))
+    else:
+        step = sketch.must(Dimension("body below the arm", (Span(o.y("body_face"), o.y("flat_face")),)))
+        heights.append(Linear(step, "left", flat, foot))
+    return heights
+
+
+def part_box(part: Part) -> tuple[float, float, float, float]:
+    return part.body.outer.box
+
+
+def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
+    """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's side."""
+    if face in o:
+        return o.y(face), o.start(face)[1]
+    arc = next(n for n in (f"{slot}body_fillet", f"{slot}arm_fillet") if n in o)
+    i, s = o.index[arc], o.segment(arc)
+    half = 0.5 if (s.end[0] > s.start[0]) == slot.startswith("front") else -0.5
+    up = slot.startswith("front")
+    ends = ((f"outer.{i}.x", -half), (f"{o.point(arc, True)}.x", half))
+    return Level(((f"outer.{i}.cy", 1.0), *ends)), s.centre[1] + (s.radius if up else -s.radius)
+
+
+def _arm_view(
+    sketch: Sketch,
+    part: Part,
+    design: Design,
+    o: Outline,
+    limits: dict[str, Characteristic],
+    more: Sequence[Linear],
+    called: Sequence[Callout],
+) -> View:
+    """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view has left to it."""
+    slot, body = _slot(o)
+    (xa, back), (xb, ledge) = slot.at, body.at
+    t = design.tolerance
+    tip, pad = o.start("tip"), o.start("pad_face")
+    land, flat = o.segment("stop_land"), o.start("flat_face")[1]
+    margin = 0.2 * back
+    window = (tip[0] - margin, pad[1] - margin, xb + 0.5 * back, max(ledge, back) + margin)
+    view = View("arm", *FRONT, part_box(part), label="X", window=window, room=ARM_ROOM)
+    tip_x = o.x("tip")
+    middle = (xa + xb) / 2
+    arm = sketch.must(_within((Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
+    length = sketch.must(Dimension("pad length", (Span(tip_x, level(f"{o.point('pad_face', True)}.x")),)))
+    height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
+    lands = sketch.must(Dimension("stop land", (Span(tip_x, level(f"{o.point('stop_land', False)}.x")),)))
+    gap = _key(sketch, part, limits, "stop gap", Span(o.y("stop_land"), body.y))
+    linears = (
+        Linear(lands, "top", land.end, land.start),
+        Linear(arm, "top", land.end, (middle, max(ledge, back) + margin / 2)),
+        Linear(length, "bottom", o.start("pad_face"), o.end("pad_face")),
+        Linear(height, "right", o.end("pad_face"), (window[2], o.start("flat_face")[1])),
+        Linear(gap, "left", land.end, (xb, ledge)),
+    )
+    ramp = Dimension(
+        "ramp of the stop land", (Slope(o.point("land_ramp", True), o.point("land_ramp", False)),), unit="°"
+    )
+    callouts = _radii(sketch, view, o, ("pad_root", "land_root"))
+    spot = o.segment("land_ramp").at(0.5)
+    sketch.must(ramp)
+    angle = ramp.text(sketch.values).removeprefix("-")
+    callouts.append(Callout((f"ramp {angle}",), ((spot, 0.0),), (ramp,)))
+    centre_line = ((middle, flat - 0.1 * back), (middle, max(ledge, back) + margin / 2))
+    low = o.corner("front_slot_body_wall", "body_face").at if "body_face" in o else o.start("flat_face")
+    face = Datum("A", low, (window[2] if "body_face" in o else xa, low[1]), (0.0, -1.0))
+    return replace(
+        view, linears=(*linears, *more), callouts=(*callouts, *called), axes=(centre_line,), datums=(face,)
+    )

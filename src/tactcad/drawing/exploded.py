@@ -1,0 +1,173 @@
+"""One exploded view: what is seen of its pieces, and its page with balloons."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Mapping, Sequence
+from dataclasses import dataclass
+from math import dist
+from typing import TYPE_CHECKING
+
+from tactcad.drawing.windows import Polyline
+
+from . import balloons, parts_list
+from .apart import Piece
+from .fonts import width
+from .ink import Item, Text
+from .page import MARGIN, Page, edges
+from .paper import A3, A3_UPRIGHT, A4, A4_LYING, Paper
+from .scale import SERIES, factor, shown
+from .title import HEIGHT, WIDTH
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+    from tactcad.drawing.picture import View
+
+RIM = 2 * balloons.RADIUS + 8.0  # around an exploded view, for its balloons
+MOST_NUMBERED = 45  # items in one view; more would not find places around it
+LINE = 5.0  # from line to line of a view's heading, mm
+
+Box = tuple[float, float, float, float]
+Label = int | str  # item number, or letter of a sub-assembly's own view
+
+
+@dataclass(frozen=True)
+class Exploded:
+    """Visible lines (mm, picture plane) of everything drawn, and of what is labelled, by label."""
+
+    own: dict[Label, list[Polyline]]
+    lines: tuple[Polyline, ...]
+
+    @property
+    def box(self) -> Box:
+        xs, ys = zip(*(p for line in self.lines for p in line))
+        return (min(xs), min(ys), max(xs), max(ys))
+
+    def labelled(self, which: Callable[[Label], bool]) -> Exploded:
+        """The same lines with the labels asked for, no more than MOST_NUMBERED."""
+        chosen = [(label, lines) for label, lines in self.own.items() if which(label)]
+        return Exploded(dict(chosen[:MOST_NUMBERED]), self.lines)
+
+
+def seen_of_pieces(
+    pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: View
+) -> list[list[Polyline]]:
+    """Visible lines of each piece (mm, picture plane) as the pieces stand."""
+    from .assembly_lines import seen_of_each
+
+    return seen_of_each([_solid(piece, shapes) for piece in pieces], eye)
+
+
+def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: View) -> list[float]:
+    """What is seen of each piece where nothing stands before it: length of its lines, mm."""
+    from .assembly_lines import seen_of_each
+
+    known: dict[tuple, float] = {}
+    for piece in pieces:
+        if alike(piece) not in known:
+            known[alike(piece)] = length(seen_of_each([_solid(piece, shapes)], eye)[0])
+    return [known[alike(piece)] for piece in pieces]
+
+
+def alike(piece: Piece) -> tuple:
+    """Equal for pieces that look alike from one eye, wherever they stand."""
+    first = piece.placements[0]
+    return first.part.part_no, first.rotation, len(piece.placements), piece.letter
+
+
+def _solid(piece: Piece, shapes: Mapping[str, TopoDS_Shape]) -> TopoDS_Shape:
+    from tactcad.drawing.picture import compound
+    from tactcad.solids.place import placed_shape
+
+    some = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in piece.placements]
+    return some[0] if len(some) == 1 else compound(some)
+
+
+def exploded_view(
+    pieces: Sequence[Piece],
+    seen: Sequence[Sequence[Polyline]],
+    item: Mapping[str, int],
+    well: Container[int] | None = None,
+) -> Exploded:
+    """All that is seen, labelled: sub-assemblies by letter first, then items by number. Leaders go to all pieces, or to
+    those (by index) that are seen `well`."""
+    own: dict[Label, list[Polyline]] = {}
+    for n, (piece, some) in enumerate(zip(pieces, seen)):
+        if some and (well is None or n in well):
+            own.setdefault(piece.letter or item[piece.placements[0].part.part_no], []).extend(some)
+    in_order = dict(sorted(own.items(), key=lambda pair: (isinstance(pair[0], int), pair[0])))
+    return Exploded(in_order, tuple(sorted({line for some in seen for line in some})))
+
+
+def length(lines: Sequence[Polyline]) -> float:
+    return sum(dist(a, b) for line in lines for a, b in zip(line, line[1:]))
+
+
+def exploded_page(
+    view: Exploded, heading: Sequence[str], list_: parts_list.Laid | None, small: bool = False
+) -> tuple[Page, bool] | None:
+    """The view at the largest scale at which its balloons find places, and whether the parts list stands beside it, which
+    it does where that costs no scale. Where A4 is allowed (`small`) it is taken if that costs none either. None where the
+    balloons find no place."""
+    bx0, by0, bx1, by1 = view.box
+    choices = [
+        *([(A3, True)] if list_ else []),
+        *([(A4, False), (A4_LYING, False)] if small else []),
+        (A3, False),
+        (A3_UPRIGHT, False),
+    ]
+    for scale in SERIES:
+        f = factor(scale)
+        for paper, with_list in choices:
+            area = room(paper, with_list)
+            if (bx1 - bx0) * f + 2 * RIM > area[2] - area[0] or (by1 - by0) * f + 2 * RIM > area[3] - area[1]:
+                continue
+            shift = ((area[0] + area[2] - (bx0 + bx1) * f) / 2, (area[1] + area[3] - (by0 + by1) * f) / 2)
+            drawn = edges(view.lines, f, shift)
+            own = {n: [e.points for e in edges(lines, f, shift)] for n, lines in view.own.items()}
+            texts, taken = _heading(heading, area)
+            if any(_reaches(e.points, taken) for e in drawn):
+                continue
+            found = balloons.place(own, [*(e.points for e in drawn), _outline(taken)], area)
+            if not found:
+                continue
+            items: list[Item] = [*drawn, *balloons.drawn(found), *texts]
+            if with_list:
+                items += parts_list.drawn(
+                    list_, range(len(list_.cells)), (paper.area[2] - WIDTH, paper.area[3])
+                )[0]
+            kind = "Assembly drawing, parts list" if with_list else "Assembly drawing"
+            return Page(paper, shown(scale), tuple(items), kind), with_list
+    return None
+
+
+def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
+    """The view's title, and smaller below it what is to be known, in the upper left corner; and the room that they take."""
+    x, y = area[0] + MARGIN, area[3] - MARGIN - 3.5
+    sizes = [3.5] + [2.5] * (len(lines) - 1)
+    texts: list[Item] = [
+        Text((x, y - LINE * n), line, size) for n, (line, size) in enumerate(zip(lines, sizes))
+    ]
+    wide = max(width(line, size) for line, size in zip(lines, sizes))
+    return texts, (x, y - LINE * (len(lines) - 1) - 1.0, x + wide, y + 3.5)
+
+
+def _outline(b: Box) -> Polyline:
+    return ((b[0], b[1]), (b[2], b[1]), (b[2], b[3]), (b[0], b[3]), (b[0], b[1]))
+
+
+def _reaches(line: Polyline, b: Box) -> bool:
+    """Whether the box of a line meets another."""
+    xs, ys = zip(*line)
+    return min(xs) < b[2] and max(xs) > b[0] and min(ys) < b[3] and max(ys) > b[1]
+
+
+def room(paper: Paper, with_list: bool) -> Box:
+    """Where an exploded view may stand: left of the list, else left of or over the title block, whichever is larger."""
+    x0, y0, x1, y1 = paper.area
+    beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
+    if with_list or (beside[2] - beside[0]) * (beside[3] - beside[1]) > (over[2] - over[0]) * (
+        over[3] - over[1]
+    ):
+        return beside
+    return over

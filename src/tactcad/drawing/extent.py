@@ -1,0 +1,106 @@
+"""Extents of parts and placed parts from their descriptions, without a kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import product
+from math import cos, pi, sin
+
+from tactcad.contour import Arc, Contour, Point
+from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector
+from tactcad.scenes.scene import Placement
+
+_STEPS = 96  # points on a full turn: within 0.6 permille of the radius
+
+
+def projected_box(
+    placements: Iterable[Placement], right: Vector, eye: Vector
+) -> tuple[float, float, float, float]:
+    """x_min, y_min, x_max, y_max (mm) of the placed parts as seen from `eye`, with `right` to the right.
+
+    A model file counts with its box, which may be seen larger than the model.
+    """
+    up = _unit(_cross(eye, right))
+    spans: dict[
+        tuple, tuple[float, float, float, float]
+    ] = {}  # equal parts turned alike differ by their place alone
+    corners = []
+    for p in placements:
+        key = (p.part.part_no, p.rotation)
+        if key not in spans:
+            spans[key] = _span(
+                [placed(replace(p, origin=(0.0, 0.0, 0.0)), v) for v in _surface_points(p.part)], right, up
+            )
+        x, y = _dot(p.origin, right), _dot(p.origin, up)
+        x0, y0, x1, y1 = spans[key]
+        corners += [(x + x0, y + y0), (x + x1, y + y1)]
+    xs, ys = zip(*corners)
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def _span(points: Iterable[Vector], right: Vector, up: Vector) -> tuple[float, float, float, float]:
+    xs, ys = zip(*((_dot(q, right), _dot(q, up)) for q in points))
+    return (min(xs), min(ys), max(xs), max(ys))
+
+
+def placed(p: Placement, point: Vector) -> Vector:
+    """A point of the part's own frame, in the scene (mm)."""
+    return tuple(_dot(row, point) + o for row, o in zip(p.rotation, p.origin))
+
+
+def _surface_points(part: Part) -> Iterator[Vector]:
+    body = part.body
+    if isinstance(body, Extrusion):
+        foot = _turned_down(part, body)
+        for x, y in _curve_points(body.outer):
+            yield (x, y, foot.depth if foot else 0.0)
+            yield (x, y, body.thickness)
+        for island in foot.island if foot else ():
+            yield from ((x, y, 0.0) for x, y in _curve_points(island))
+    elif isinstance(body, ModelFile):
+        yield from product(*zip(*body.box))
+    elif isinstance(body, Revolution):
+        for r, z in _curve_points(body.profile):
+            for k in range(_STEPS):
+                yield (r * cos(2 * pi * k / _STEPS), r * sin(2 * pi * k / _STEPS), z)
+
+
+def _turned_down(part: Part, body: Extrusion) -> Pocket | None:
+    """The pocket that takes the whole section off the foot (z = 0) but for its islands: a land or a shaft."""
+    for feature in part.features:
+        if isinstance(feature, Pocket) and feature.contour == body.outer and feature.at == (0, 0, 0):
+            return feature
+    return None
+
+
+def _curve_points(contour: Contour) -> Iterator[Point]:
+    for s in contour:
+        steps = max(1, round(abs(s.sweep) / (2 * pi) * _STEPS)) if isinstance(s, Arc) else 1
+        for k in range(steps):
+            yield s.at(k / steps)
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _unit(a: Vector) -> Vector:
+    size = _dot(a, a) ** 0.5
+    return (a[0] / size, a[1] / size, a[2] / size)
+
+
+def part_box(part: Part) -> tuple[Vector, Vector]:
+    """Least and largest corner of a part in its own frame, mm, exact."""
+    body = part.body
+    if isinstance(body, ModelFile):
+        return body.box
+    if isinstance(body, Extrusion):
+        x0, y0, x1, y1 = body.outer.box
+        return (x0, y0, 0.0), (x1, y1, body.thickness)
+    _, z0, r, z1 = body.profile.box
+    return (-r, -r, z0), (r, r, z1)

@@ -1,0 +1,77 @@
+"""The check of a written drawing: its PDF is read with another library and compared with the part."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+
+from tactcad.parts.description import Characteristic, Part
+
+from .ink import Sheet
+from .layout import layout_faults
+
+SAME = 1e-9  # mm
+_VALUE = re.compile(
+    r"^[⌀R]?(?P<nominal>\d+(?:\.\d+)?) (?:±(?P<both>[\d.]+)|(?P<upper>[+-]?[\d.]+)/(?P<lower>[+-]?[\d.]+))$"
+)
+
+
+def pdf_runs(data: bytes) -> list[list[str]]:
+    """Texts of every page in the order in which they were drawn, as pypdf reads them."""
+    from pypdf import PdfReader
+
+    pages = []
+    for page in PdfReader(io.BytesIO(data)).pages:
+        runs: list[str] = []
+        page.extract_text(visitor_text=lambda text, *_, runs=runs: runs.extend(text.splitlines()))
+        pages.append([run.strip() for run in runs if run.strip()])
+    return pages
+
+
+def drawing_faults(data: bytes, sheet: Sheet, part: Part, revision: str) -> list[str]:
+    """What is wrong with a part's PDF: pages, number and revision, layout, or a key characteristic."""
+    pages = pdf_runs(data)
+    if len(pages) != 1:
+        return [f"{len(pages)} pages instead of 1"]
+    runs = pages[0]
+    wrong = [f"{text!r} is missing" for text in (revision, "1/1") if text not in runs]
+    if part.part_no not in "".join(runs):  # a long one is broken
+        wrong.append(f"{part.part_no!r} is missing")
+    texts = [t.text for t in sheet.texts if t.role != "watermark"]
+    lost = [t for t in set(texts) if runs.count(t) < texts.count(t)]
+    wrong += [f"{t!r} is not found again" for t in sorted(lost)]
+    return wrong + key_faults(runs, [c for c in part.characteristics if c.key]) + layout_faults(sheet)
+
+
+def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:
+    """Key characteristics that do not stand exactly once, framed with their number, or not with the model's value."""
+    wrong, shown = [], []
+    for n, c in enumerate(keys, start=1):
+        at = [i for i, run in enumerate(runs) if run == f"K{n}"]
+        if len(at) != 1 or at[0] + 1 >= len(runs):
+            wrong.append(f"key characteristic K{n} ({c.name}) stands {len(at)} times")
+            continue
+        text = runs[at[0] + 1]
+        shown.append(text)
+        match = _VALUE.match(text)
+        if not match:
+            wrong.append(f"K{n}: {text!r} is no value with limits")
+            continue
+        nominal = float(match["nominal"])
+        upper, lower = (
+            (float(match["both"]), -float(match["both"]))
+            if match["both"]
+            else (float(match["upper"]), float(match["lower"]))
+        )
+        read, meant = (nominal, nominal + upper, nominal + lower), (c.nominal, c.upper, c.lower)
+        if max(abs(a - b) for a, b in zip(read, meant)) > SAME:
+            wrong.append(
+                f"K{n} ({c.name}) says {text}, the model has {c.nominal:g} in {c.lower:g} to {c.upper:g}"
+            )
+    wrong += [
+        f"{text!r} stands {runs.count(text)} times, for {shown.count(text)} key characteristics"
+        for text in sorted(set(shown))
+        if runs.count(text) != shown.count(text)
+    ]
+    return wrong

@@ -1,0 +1,120 @@
+"""Assembly guide of a scene: an exploded view, the steps with their parts and torques. All of it read off the scene."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html import escape
+
+from tactcad.design.tree import Design
+from tactcad.parts.description import Part, Vector
+from tactcad.parts.library.screws import METRIC, seating_torque
+from tactcad.scenes.scene import Placement, Scene, Step
+
+_SCREW = re.compile(r"ISO(4762|4026)-(M[\d.]+)x")
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.2rem; margin: 2.5rem 0 .3rem; }
+img { max-width: 100%; max-height: 34rem; display: block; margin: 1rem auto; }
+table { border-collapse: collapse; width: 100%; font-size: .9rem; }
+th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid #d5dae0; vertical-align: top; }
+td.n { text-align: right; } .note { color: #556; font-size: .9rem; } .new { color: #0b62c4; }
+@media print { section { break-inside: avoid; } }
+"""
+
+
+def page_path(scene: Scene) -> str:
+    return f"guide/{scene.name}.html"
+
+
+def picture_path(scene: Scene, label: str) -> str:
+    return f"guide/{scene.name}-{label}.svg"
+
+
+def exploded(scene: Scene) -> tuple[Placement, ...]:
+    """Every part moved out by its step."""
+    moved = {p.designator: p for step in scene.steps for p in _coming(scene, step)}
+    return tuple(moved[p.designator] for p in scene.placements)
+
+
+def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
+    """What stands already before step `number` (from 1), and what comes, still out of its place."""
+    earlier = {d for step in scene.steps[: number - 1] for d in step.designators}
+    standing = tuple(p for p in scene.placements if p.designator in earlier)
+    return standing, _coming(scene, scene.steps[number - 1])
+
+
+def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
+    placed = {p.designator: p for p in scene.placements}
+    count = len(step.designators)
+    return tuple(
+        _moved(placed[d], step.explode, 0.5 + (n + 1) / count / 2 if step.fan else 1.0)
+        for n, d in enumerate(step.designators)
+    )
+
+
+def _moved(p: Placement, way: Vector, share: float) -> Placement:
+    return replace(p, origin=tuple(round(o + share * w, 9) for o, w in zip(p.origin, way)))
+
+
+def torque(part: Part) -> float | None:
+    """Tightening torque of a cap or set screw, N m; None for other parts."""
+    match = _SCREW.match(part.part_no)
+    if not match:
+        return None
+    return METRIC[match[2]].torque if match[1] == "4762" else seating_torque(match[2])
+
+
+def page(design: Design, scene: Scene) -> bytes:
+    """The guide as one HTML page; its pictures lie beside it."""
+    d = design.design
+    title = f"{d.title}: {scene.name}"
+    body = [
+        f"<h1>{escape(title)}</h1>",
+        f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}, {escape(d.organisation)}. '
+        "Made from the scene; parts as in its bill of materials.</p>",
+        f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
+    ]
+    body += [_section(scene, n, step) for n, step in enumerate(scene.steps, start=1)]
+    if scene.supplies:
+        lines = "".join(
+            f"<tr><td>{escape(s.description)}</td><td class=n>{s.qty:g} {escape(s.unit)}</td></tr>"
+            for s in scene.supplies
+        )
+        body.append(f"<section><h2>Supplies</h2><table>{lines}</table></section>")
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
+        + "\n".join(body)
+        + "\n</body>\n</html>\n"
+    ).encode()
+
+
+def _section(scene: Scene, number: int, step: Step) -> str:
+    lines = [f"<section><h2>{number}. {escape(step.title)}</h2>", f"<p>{escape(step.text)}</p>"]
+    if step.designators:
+        lines += [
+            _table(scene, step),
+            f'<img src="{_name(scene, f"{number:02d}")}" alt="step {number}; blue: the parts of this step">',
+        ]
+    return "\n".join([*lines, "</section>"])
+
+
+def _table(scene: Scene, step: Step) -> str:
+    rows: dict[str, tuple[Part, list[str]]] = {}
+    for p in scene.placements:
+        if p.designator in step.designators:
+            rows.setdefault(p.part.part_no, (p.part, []))[1].append(p.designator)
+    lines = ["<table><tr><th>qty</th><th>part</th><th>name</th><th>designators</th><th>torque</th></tr>"]
+    for number, (part, names) in rows.items():
+        tight = torque(part)
+        lines.append(
+            f"<tr><td class=n>{len(names)}</td><td>{escape(number)}</td><td>{escape(part.name)}</td>"
+            f"<td>{escape(' '.join(names))}</td><td>{f'{tight:g} N m' if tight else ''}</td></tr>"
+        )
+    return "".join([*lines, "</table>"])
+
+
+def _name(scene: Scene, label: str) -> str:
+    return picture_path(scene, label).removeprefix("guide/")

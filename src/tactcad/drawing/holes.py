@@ -1,0 +1,182 @@
+"""Round holes as a drawing sees them: grouped by what one callout can say, with the dimensions in its text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import isclose
+
+from tactcad.design.tree import Design
+from tactcad.parts.description import Extrusion, Hole, Part, Vector
+
+from .measure import axis_of, size
+from .plan import Dimension, Values
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round hole: its name among the variables, middle on its face, direction, and what is made there."""
+
+    name: str
+    label: str
+    at: Vector
+    axis: Vector
+    hole: Hole
+
+
+def rounds(part: Part, design: Design) -> list[Round]:
+    """Round openings and holes of an extruded part."""
+    body = part.body
+    assert isinstance(body, Extrusion)
+    found = []
+    for i, opening in enumerate(body.openings):
+        if circle := opening.as_circle():
+            (x, y), r = circle
+            label = opening.segments[0].name
+            # the mounting holes' dowel hole is cut at the middle of its limits
+            upper = design.holes.dowel_hole_upper if label == "dowel_hole" else 0.0
+            hole = Hole(
+                label,
+                (x, y, body.thickness),
+                (0, 0, -1),
+                2 * r,
+                body.thickness,
+                True,
+                tolerance=f"+{upper:g}/0" if upper else "",
+            )
+            found.append(Round(f"opening{i}", label.replace("_", " "), hole.at, hole.axis, hole))
+    for k, f in enumerate(part.features):
+        if isinstance(f, Hole):
+            found.append(Round(f"hole{k}", f.name.replace("_", " "), f.at, f.axis, f))
+    return found
+
+
+@dataclass(frozen=True)
+class Group:
+    """Equal holes, the lines of their callout, and the dimensions that stand in the lines."""
+
+    holes: tuple[Round, ...]
+    lines: tuple[str, ...]
+    dimensions: tuple[Dimension, ...]
+
+    @property
+    def axis(self) -> Vector:
+        return self.holes[0].axis
+
+
+def groups(found: Sequence[Round], values: Values, eye_of: dict[int, Vector]) -> list[Group]:
+    """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as circles."""
+    kinds: dict[tuple, list[Round]] = {}
+    for r in found:
+        h = r.hole
+        side = h.axis if not _same_from_both_sides(h) else tuple(abs(a) for a in h.axis)
+        kinds.setdefault((side, _spec(h)), []).append(r)
+    merged = _both_ends(kinds)
+    return [_group(some, both, values, eye_of) for some, both in merged]
+
+
+def _same_from_both_sides(h: Hole) -> bool:
+    return h.through and not h.counterbore and (not h.thread or isclose(h.thread_depth, h.depth))
+
+
+def _spec(h: Hole) -> tuple:
+    return (
+        round(h.diameter, 9),
+        h.through,
+        0.0 if h.through else round(h.depth, 9),
+        h.counterbore,
+        h.thread,
+        round(h.thread_depth, 9),
+        h.drill_point,
+        h.tolerance,
+    )
+
+
+def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]]:
+    """Groups that differ only in the face that they start from, at the same places, become one."""
+    result: list[tuple[list[Round], bool]] = []
+    left = dict(kinds)
+    for (axis, spec), some in kinds.items():
+        if (axis, spec) not in left:
+            continue
+        del left[(axis, spec)]
+        opposite = (tuple(-a + 0.0 for a in axis), spec)
+        other = next(
+            (key for key in left if key[1] == spec and all(a == b for a, b in zip(key[0], opposite[0]))), None
+        )
+        k = next(i for i, a in enumerate(axis) if a)
+
+        def places(rounds_: Sequence[Round]) -> set[tuple]:
+            return {tuple(round(v, 6) for i, v in enumerate(r.at) if i != k) for r in rounds_}
+
+        if other and places(left[other]) == places(some):
+            result.append((some + left.pop(other), True))
+        else:
+            result.append((some, False))
+    return result
+
+
+def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vector]) -> Group:
+    h, label = some[0].hole, some[0].label
+    names = [r.name for r in some]
+
+    def dimension(what: str, sign: str, **more: object) -> Dimension:
+        rows = tuple(size(f"{n}.{what}") for n in names)
+        return Dimension(f"{label} {what}", rows, sign, **more)
+
+    limits, modelled, words = _tolerance(h.tolerance)
+    fit, _, remark = words.partition(", ")
+    if fit:
+        # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
+        modelled = round(h.diameter - round(h.diameter, 1), 9)
+    bore = dimension(
+        "d", "⌀", limits=limits, modelled=modelled, fit=fit, counted=not h.thread and not _entered(h)
+    )
+    used = [bore]
+    depth = None if h.through else dimension("depth", "↧", counted=False)
+    ending = " through" if depth is None else f" {depth.text(values)}"
+    cone = ", point 118°" if h.drill_point else ""
+    used += [depth] if depth else []
+    count = f"{len(some)}× " if len(some) > 1 else ""
+    lines: list[str] = []
+    if h.counterbore:
+        wide, deep = dimension("wide", "⌀", counted=False), dimension("deep", "↧", counted=False)
+        used += [wide, deep]
+        wider = f"{wide.text(values)} {deep.text(values)}"
+    if h.thread:
+        thread = None if h.thread_depth >= h.depth else dimension("thread", "↧", counted=False)
+        used += [thread] if thread else []
+        if h.counterbore:
+            lines += [
+                f"{count}{wider}, below it",
+                f"{h.thread}-6H, full thread {thread.text(values).removeprefix('↧')} long",
+            ]
+        else:
+            lines.append(f"{count}{h.thread}-6H {thread.text(values) if thread else 'through'}")
+        lines.append(f"drill {bore.text(values)}{ending}{cone}")
+    else:
+        lines.append(f"{bore.text(values)}{ending}{cone}")
+        if h.counterbore:
+            lines.append(f"counterbore {wider}")
+    if remark:
+        lines.append(remark)
+    if both:
+        lines.append("from both sides alike")
+    elif not _same_from_both_sides(h) and sum(a * e for a, e in zip(h.axis, eye_of[axis_of(h)])) > 0:
+        lines.append("from the far side")
+    return Group(tuple(some), tuple(lines), tuple(used))
+
+
+def _entered(h: Hole) -> bool:
+    """Whether the count stands at the counterbore instead."""
+    return bool(h.counterbore and h.thread)
+
+
+def _tolerance(text: str) -> tuple[tuple[float, float] | None, float, str]:
+    """Limits, how far the model lies from the number shown (it is made at the middle of them), or a fit in words."""
+    upper, slash, lower = text.partition("/")
+    try:
+        limits = (float(upper), float(lower))
+    except ValueError:
+        return None, 0.0, text
+    return (limits, round(sum(limits) / 2, 9), "") if slash else (None, 0.0, text)

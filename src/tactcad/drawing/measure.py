@@ -1,0 +1,346 @@
+"""A part's coordinates and sizes as named variables, and what dimensions and drawing conventions say about them.
+
+A dimension takes its value from these variables. Together with the conventions (lines drawn level are level, arcs
+drawn tangent are tangent, features on one extension line are in line) the dimensions of a sheet have to determine all
+variables but the part's place on the paper; `Determined` keeps the account.
+
+Names: outer.3.x is the start of the outline's segment 3, outer.3.cx its arc's centre; a contour that is one circle has
+.x .y .d alone; opening0, pocket2, island2.0 likewise; hole4.x .y .d .depth .wide .deep .thread of feature 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import atan2, degrees, hypot
+
+import numpy as np
+
+from tactcad.contour import Arc, Contour, Line
+from tactcad.parts.description import Extrusion, Hole, Part, Pocket
+
+Values = Mapping[str, float]
+
+STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth at this size
+INDEPENDENT = 1e-6  # share of a row's length that must be new
+
+
+@dataclass(frozen=True)
+class Level:
+    """A coordinate along one axis, mm: the sum of coefficient x variable."""
+
+    terms: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(name for name, _ in self.terms)
+
+    def of(self, values: Values) -> float:
+        return sum(c * values[name] for name, c in self.terms)
+
+
+def level(name: str) -> Level:
+    return Level(((name, 1.0),))
+
+
+def halfway(a: Level, b: Level) -> Level:
+    return Level(tuple((name, c / 2) for name, c in a.terms + b.terms))
+
+
+@dataclass(frozen=True)
+class Span:
+    """The way from one level to another, mm, positive where the second is larger. From nothing: a size."""
+
+    a: Level
+    b: Level
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.a.names + self.b.names
+
+    def of(self, values: Values) -> float:
+        return self.b.of(values) - self.a.of(values)
+
+
+def size(name: str) -> Span:
+    """A variable that is a size by itself: a diameter, a depth."""
+    return Span(Level(), level(name))
+
+
+@dataclass(frozen=True)
+class Radius:
+    """Radius of segment i of a contour, from its centre to its start, mm."""
+
+    contour: str
+    i: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        p = f"{self.contour}.{self.i}"
+        return (f"{p}.x", f"{p}.y", f"{p}.cx", f"{p}.cy")
+
+    def of(self, values: Values) -> float:
+        x, y, cx, cy = (values[n] for n in self.names)
+        return hypot(x - cx, y - cy)
+
+
+@dataclass(frozen=True)
+class Slope:
+    """Direction of a line from start to end, degrees from the x axis."""
+
+    start: str  # names without .x and .y
+    end: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (f"{self.start}.x", f"{self.start}.y", f"{self.end}.x", f"{self.end}.y")
+
+    def of(self, values: Values) -> float:
+        x0, y0, x1, y1 = (values[n] for n in self.names)
+        return degrees(atan2(y1 - y0, x1 - x0))
+
+
+@dataclass(frozen=True)
+class Distance:
+    """From one point to another, mm."""
+
+    a: str
+    b: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*_xy(self.a), *_xy(self.b))
+
+    def of(self, values: Values) -> float:
+        x0, y0, x1, y1 = (values[n] for n in self.names)
+        return hypot(x1 - x0, y1 - y0)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Of two measures: 0 where they are drawn as equal."""
+
+    a: Measure
+    b: Measure
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.a.names + self.b.names
+
+    def of(self, values: Values) -> float:
+        return self.a.of(values) - self.b.of(values)
+
+
+@dataclass(frozen=True)
+class Across:
+    """Cross product of two directions, each from point to point: 0 where they are parallel."""
+
+    points: tuple[str, str, str, str]
+    along: bool = False  # the scalar product instead: 0 where they are at right angles
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(n for p in self.points for n in _xy(p))
+
+    def of(self, values: Values) -> float:
+        a, b, c, d = ([values[n] for n in _xy(p)] for p in self.points)
+        ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], d[0] - c[0], d[1] - c[1]
+        return ux * vx + uy * vy if self.along else ux * vy - uy * vx
+
+
+@dataclass(frozen=True)
+class Offset:
+    """Distance of a point, given by its levels, from the line through two points, mm; positive on the line's left."""
+
+    start: str
+    end: str
+    x: Level
+    y: Level
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*_xy(self.start), *_xy(self.end), *self.x.names, *self.y.names)
+
+    def of(self, values: Values) -> float:
+        x0, y0, x1, y1 = (values[n] for n in (*_xy(self.start), *_xy(self.end)))
+        ux, uy = x1 - x0, y1 - y0
+        return (ux * (self.y.of(values) - y0) - uy * (self.x.of(values) - x0)) / hypot(ux, uy)
+
+
+@dataclass(frozen=True)
+class Width:
+    """Sum of two offsets of one point: the width between two parallel lines that have it between them, mm."""
+
+    a: Offset
+    b: Offset
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.a.names + self.b.names
+
+    def of(self, values: Values) -> float:
+        return abs(self.a.of(values)) + abs(self.b.of(values))
+
+
+Measure = Span | Offset | Width | Radius | Slope | Distance | Difference | Across
+
+
+def _xy(point: str) -> tuple[str, str]:
+    """Names of a point's coordinates; a name that ends in .c means an arc's centre."""
+    return (f"{point}x", f"{point}y") if point.endswith(".c") else (f"{point}.x", f"{point}.y")
+
+
+def variables(part: Part) -> dict[str, float]:
+    """Every variable of an extruded part with its value (mm)."""
+    body = part.body
+    if not isinstance(body, Extrusion):
+        raise TypeError(f"{part.part_no} is not an extrusion: its sheet is not written yet")
+    values: dict[str, float] = {"thickness": body.thickness}
+    _add_contour(values, "outer", body.outer)
+    for i, opening in enumerate(body.openings):
+        _add_contour(values, f"opening{i}", opening)
+    for k, feature in enumerate(part.features):
+        if isinstance(feature, Hole):
+            values |= _hole(k, feature)
+        else:
+            values[f"pocket{k}.depth"] = feature.depth
+            _add_contour(values, f"pocket{k}", in_part(feature, feature.contour))
+            for i, island in enumerate(feature.island):
+                _add_contour(values, f"island{k}.{i}", in_part(feature, island))
+    return values
+
+
+def _add_contour(values: dict[str, float], name: str, contour: Contour) -> None:
+    if circle := contour.as_circle():
+        (x, y), r = circle
+        values |= {f"{name}.x": x, f"{name}.y": y, f"{name}.d": 2 * r}
+        return
+    for i, s in enumerate(contour):
+        values[f"{name}.{i}.x"], values[f"{name}.{i}.y"] = s.start
+        if isinstance(s, Arc):
+            values[f"{name}.{i}.cx"], values[f"{name}.{i}.cy"] = s.centre
+
+
+def _hole(k: int, hole: Hole) -> dict[str, float]:
+    name = f"hole{k}"
+    values = {f"{name}.{'xyz'[i]}": hole.at[i] for i in range(3) if i != axis_of(hole)}
+    values[f"{name}.d"] = hole.diameter
+    if not hole.through:
+        values[f"{name}.depth"] = hole.depth
+    if hole.counterbore:
+        values[f"{name}.wide"], values[f"{name}.deep"] = hole.counterbore
+    if hole.thread and hole.thread_depth < hole.depth:
+        values[f"{name}.thread"] = hole.thread_depth
+    return values
+
+
+def axis_of(feature: Hole | Pocket) -> int:
+    """0, 1 or 2: the axis that a feature is sunk along. Raises ValueError for a slanting one."""
+    along = [i for i, a in enumerate(feature.axis) if a]
+    if len(along) != 1:
+        raise ValueError(f"{feature.name}: axis {feature.axis} is not along x, y or z")
+    return along[0]
+
+
+def in_part(pocket: Pocket, contour: Contour) -> Contour:
+    """A contour of a pocket along z, in the part's x and y."""
+    if axis_of(pocket) != 2:
+        raise ValueError(f"{pocket.name}: pockets in side faces have no sheet yet")
+    (ux, uy, _), sign = pocket.x_axis, pocket.axis[2]
+    vx, vy = -uy * sign, ux * sign  # y_axis = axis x x_axis
+
+    def there(p: tuple[float, float]) -> tuple[float, float]:
+        # rounded to a picometre: turning may leave 1e-17 where a coordinate is 0
+        return (
+            round(pocket.at[0] + p[0] * ux + p[1] * vx, 12),
+            round(pocket.at[1] + p[0] * uy + p[1] * vy, 12),
+        )
+
+    turned = ux * vy - uy * vx < 0
+    return Contour(
+        tuple(
+            Line(there(s.start), there(s.end), s.name)
+            if isinstance(s, Line)
+            else Arc(there(s.start), there(s.end), there(s.centre), s.ccw != turned, s.name)
+            for s in contour
+        )
+    )
+
+
+def conventions(name: str, contour: Contour) -> list[Measure]:
+    """What a drawn contour says by itself: level and upright lines, arcs about their centre, tangent joints."""
+    if contour.as_circle():
+        return []
+    count = len(contour)
+    rows: list[Measure] = []
+    for i, s in enumerate(contour):
+        here, there = f"{name}.{i}", f"{name}.{(i + 1) % count}"
+        if isinstance(s, Line):
+            for axis, k in (("y", 1), ("x", 0)):
+                if abs(s.start[k] - s.end[k]) < 1e-9:
+                    rows.append(Span(level(f"{here}.{axis}"), level(f"{there}.{axis}")))
+        else:
+            rows.append(Difference(Distance(f"{here}", f"{here}.c"), Distance(f"{there}", f"{here}.c")))
+    return rows + [row for i in range(count) if (row := _tangent(name, contour, i))]
+
+
+def _tangent(name: str, contour: Contour, i: int) -> Measure | None:
+    """That segment i runs smoothly out of the one before it, if it does."""
+    before, after = contour.segments[i - 1], contour.segments[i]
+    if isinstance(before, Line) and isinstance(after, Line) or not _smooth(before, after):
+        return None
+    count = len(contour)
+    p, q, r = f"{name}.{(i - 1) % count}", f"{name}.{i}", f"{name}.{(i + 1) % count}"
+    if isinstance(before, Line):
+        return Across((p, q, q, f"{q}.c"), along=True)
+    if isinstance(after, Line):
+        return Across((q, r, q, f"{p}.c"), along=True)
+    return Across((q, f"{p}.c", q, f"{q}.c"))
+
+
+def _smooth(before: Line | Arc, after: Line | Arc) -> bool:
+    from tactcad.contour.necks import direction
+
+    (ux, uy), (vx, vy) = direction(before, before.end), direction(after, after.start)
+    return abs(ux * vy - uy * vx) < 1e-6
+
+
+@dataclass
+class Determined:
+    """Which combinations of variables are determined so far: an orthonormal basis of the rows' gradients."""
+
+    values: dict[str, float]
+
+    def __post_init__(self) -> None:
+        self.columns = {name: i for i, name in enumerate(self.values)}
+        self.basis = np.zeros((0, len(self.values)))
+
+    @property
+    def rank(self) -> int:
+        return len(self.basis)
+
+    def takes(self, row: Measure) -> bool:
+        """Whether the row says something new; if so it is taken up."""
+        new = gradient(row, self.values, self.columns)
+        whole = np.linalg.norm(new)
+        for _ in range(2):  # twice is enough for orthogonality to rounding
+            new = new - self.basis.T @ (self.basis @ new)
+        left = np.linalg.norm(new)
+        if left < INDEPENDENT * whole or left == 0:
+            return False
+        self.basis = np.vstack([self.basis, new / left])
+        return True
+
+
+def gradient(row: Measure, values: Values, columns: Mapping[str, int]) -> np.ndarray:
+    """Derivatives of a measure by all variables, shape (len(columns),)."""
+    result = np.zeros(len(columns))
+    moved = dict(values)
+    for name in dict.fromkeys(row.names):
+        at = moved[name]
+        moved[name] = at + STEP
+        above = row.of(moved)
+        moved[name] = at - STEP
+        result[columns[name]] = (above - row.of(moved)) / (2 * STEP)
+        moved[name] = at
+    return result

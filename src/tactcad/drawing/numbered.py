@@ -1,0 +1,198 @@
+"""Views of a scene's parts with their item numbers: exploded, whole or sub-assembly by sub-assembly; or side by side."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from string import ascii_uppercase
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import CheckFailure
+from tactcad.drawing.guide import exploded
+from tactcad.scenes.bom import BomRow
+from tactcad.scenes.scene import Placement, Scene
+
+from . import balloons, family, parts_list
+from .apart import Piece, pieces_of, pulled_apart
+from .exploded import (
+    Exploded,
+    alike,
+    exploded_page,
+    exploded_view,
+    length,
+    lengths_alone,
+    room,
+    seen_of_pieces,
+)
+from .ink import Item, Stroke, Text
+from .joints import box_of
+from .page import EDGE, MARGIN, Page, fewer
+from .paper import A3
+from .scale import ASSEMBLIES, shown
+from .title import TitleBlock
+from .units import UnitView, unit_views
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+GAP = 0.06  # least distance in an exploded view, of the largest extent of what it takes apart
+GAP_OF_UNITS = 0.2  # and where all of it are sub-assemblies
+SEEN = 0.5  # a part counts as seen where this share of its edges is
+WELL = 0.8  # leaders go to parts that are seen nearly as well as the best one like it
+FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance for what is not seen
+
+Box = tuple[float, float, float, float]
+
+
+def numbered_pages(
+    scene: Scene,
+    rows: Sequence[BomRow],
+    shapes: Mapping[str, TopoDS_Shape],
+    list_: parts_list.Laid | None,
+    block: TitleBlock,
+) -> tuple[list[Page], bool]:
+    """Views until every item that has a solid has its number in one, and whether the parts list stands beside one.
+
+    A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show follows in
+    further views, and where an exploded view would be too large or too crowded the parts stand side by side.
+    """
+    from tactcad.drawing.picture import ABOVE
+
+    item = {row.part_no: row.item for row in rows if row.has_solid}
+    pages: list[Page] = []
+    where: dict[int, str] = {}  # item -> the view that numbers it
+    listed = False
+
+    def add(view: Exploded, title: str, further: Sequence[str], letters: Sequence[str], small: bool) -> bool:
+        """A page for the view, where it finds room: it numbers what none before it does."""
+        nonlocal listed
+        fresh = view.labelled(lambda label: label in letters or label not in where)
+        letter = title.partition(":")[0]
+        made = (
+            exploded_page(
+                fresh, (title, *further, *_elsewhere(view, where)), None if listed else list_, small
+            )
+            if fresh.own
+            else None
+        )
+        if made:
+            pages.append(made[0])
+            listed = listed or made[1]
+            where.update({label: letter for label in fresh.own if isinstance(label, int)})
+        return made is not None
+
+    views = unit_views(scene)
+    titles = {view.letter: view.title for view in views}
+    for unit in views:
+        letters = [piece.letter for piece in unit.pieces if piece.letter]
+        add(
+            _taken_apart(unit, item, shapes),
+            f"{unit.letter}: {unit.title}, exploded",
+            [f"{n}: {titles[n]}" for n in letters],
+            letters,
+            True,
+        )
+    left = scene.placements if views or not scene.steps else exploded(scene)
+    letter = len(views)
+    while left := tuple(p for p in left if item[p.part.part_no] not in where):
+        pieces = pieces_of(scene, fewer(left)) if views else [Piece((p,)) for p in fewer(left)]
+        if views:
+            pieces = pulled_apart(scene, pieces, GAP * _extent(pieces), {})
+        view = exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
+        title = (
+            f"{ascii_uppercase[letter]}: {'what the views before it do not number' if pages else 'exploded'}"
+        )
+        if not add(view, title, (), (), bool(pages)):
+            return pages + _family_pages(left, item, shapes, block), listed
+        letter += 1
+    return pages, listed
+
+
+def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
+    """Which items of the view have their numbers in one before it."""
+    items = [label for label in view.own if label in where]
+    return [f"Also here: {', '.join(f'{n} (see {where[n]})' for n in items)}"] if items else []
+
+
+def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
+    """The unit exploded; what is hardly seen is pulled out farther, as long as that shows more."""
+    from tactcad.drawing.picture import ABOVE
+
+    if not unit.pieces:
+        pieces = [Piece((p,)) for p in fewer(exploded(unit.scene))]
+        return exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
+    pieces = _fewer_pieces(unit.pieces)
+    gap = (GAP_OF_UNITS if all(piece.letter for piece in pieces) else GAP) * _extent(pieces)
+    alone = lengths_alone(pieces, shapes, ABOVE)
+    more: dict[int, float] = {}
+    tried = []
+    for farther in FARTHER:
+        moved = pulled_apart(unit.scene, pieces, gap, more)
+        seen = seen_of_pieces(moved, shapes, ABOVE)
+        shares = [length(some) / whole for some, whole in zip(seen, alone)]
+        hidden = [n for n, best in enumerate(_best_of_alike(pieces, shares)) if best < SEEN]
+        tried.append((len(hidden), moved, seen, shares))
+        if not hidden:
+            break
+        more.update({n: farther * gap for n in hidden})
+    _, moved, seen, shares = min(tried, key=lambda one: one[0])
+    well = {n for n, best in enumerate(_best_of_alike(pieces, shares)) if shares[n] >= WELL * best}
+    return exploded_view(moved, seen, item, well)
+
+
+def _best_of_alike(pieces: Sequence[Piece], shares: Sequence[float]) -> list[float]:
+    """For each piece the largest share that is seen of one like it."""
+    best: dict[tuple, float] = {}
+    for piece, share in zip(pieces, shares):
+        best[alike(piece)] = max(best.get(alike(piece), 0.0), share)
+    return [best[alike(piece)] for piece in pieces]
+
+
+def _fewer_pieces(pieces: Sequence[Piece]) -> list[Piece]:
+    """Without the parts that are left out where there are very many."""
+    kept = {p.designator for p in fewer([p for piece in pieces for p in piece.placements])}
+    thinned = [
+        replace(piece, placements=tuple(p for p in piece.placements if p.designator in kept))
+        for piece in pieces
+    ]
+    return [piece for piece in thinned if piece.placements]
+
+
+def _extent(pieces: Sequence[Piece]) -> float:
+    """The largest of length, width and height of all, mm."""
+    boxes = [box_of(p) for piece in pieces for p in piece.placements]
+    return max(float(max(b[1, k] for b in boxes) - min(b[0, k] for b in boxes)) for k in range(3))
+
+
+def _family_pages(
+    left: Sequence[Placement], item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape], block: TitleBlock
+) -> list[Page]:
+    """One of each part; the title block has the commonest scale of a page, parts at others say so."""
+    from tactcad.drawing.picture import ABOVE, drawing
+    from tactcad.solids.place import placed_shape
+
+    first = {item[p.part.part_no]: p for p in reversed(left)}
+    own = {
+        n: drawing([placed_shape(shapes[p.part.part_no], p.origin, p.rotation)], ABOVE).sharp
+        for n, p in sorted(first.items())
+    }
+    x0, y0, x1, y1 = (v + m for v, m in zip(room(A3, False), (MARGIN, MARGIN, -MARGIN, -MARGIN - 8.0)))
+    made = family.pages(own, (x0, y0, x1, y1))
+    if not made:
+        raise CheckFailure(
+            f"drawings: {block.number}: a part does not fit A3 at {shown(ASSEMBLIES[-1])}; no drawing was written"
+        )
+    title = Text(
+        (x0, y1 + 3.0),
+        "One of each part, in the order of item numbers; scales that differ from the title block's stand below",
+        3.5,
+    )
+    found = []
+    for page in made:
+        main = Counter(part.scale for part in page).most_common(1)[0][0]
+        items: list[Item] = [title, *(Stroke(line, EDGE) for part in page for line in part.lines)]
+        items += balloons.drawn([part.balloon for part in page])
+        items += [Text(part.below, shown(part.scale), 2.5, "middle") for part in page if part.scale != main]
+        found.append(Page(A3, shown(main), tuple(items), "Assembly drawing"))
+    return found

@@ -1,0 +1,79 @@
+"""Sheets of paper after ISO 5457:1999: sizes, frame, centring marks, zones; A4 upright, A3 lying by default."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .ink import FRAME, THIN, Item, Text, box, segment
+
+LEFT, OTHER = 20.0, 10.0  # borders outside the frame: filing margin, and the others
+ZONE = 50.0  # length of a zone, from the centring marks outwards
+MARK = 10.0  # length of the centring marks, outwards from the frame
+GRID = 5.0  # width of the strip that carries the zones' letters
+LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"  # without I and O
+
+Area = tuple[float, float, float, float]  # x_min, y_min, x_max, y_max
+
+
+@dataclass(frozen=True)
+class Paper:
+    """A trimmed sheet, mm."""
+
+    name: str
+    width: float
+    height: float
+
+    @property
+    def size(self) -> tuple[float, float]:
+        return (self.width, self.height)
+
+    @property
+    def area(self) -> Area:
+        """Inside of the frame."""
+        return (LEFT, OTHER, self.width - OTHER, self.height - OTHER)
+
+
+A4 = Paper("A4", 210.0, 297.0)
+A4_LYING = Paper("A4", 297.0, 210.0)
+A3 = Paper("A3", 420.0, 297.0)
+A3_UPRIGHT = Paper("A3", 297.0, 420.0)
+
+
+def frame(paper: Paper) -> list[Item]:
+    """Frame, border of the zones, centring marks, letters from the top and numbers from the left."""
+    x0, y0, x1, y1 = paper.area
+    xm, ym = paper.width / 2, paper.height / 2
+    items: list[Item] = [
+        box(x0, y0, x1 - x0, y1 - y0, FRAME, "frame"),
+        box(x0 - GRID, y0 - GRID, x1 - x0 + 2 * GRID, y1 - y0 + 2 * GRID, THIN, "frame"),
+    ]
+    for a, b in (
+        ((xm, y1), (xm, y1 + MARK)),
+        ((xm, y0), (xm, y0 - MARK)),
+        ((x0, ym), (x0 - MARK, ym)),
+        ((x1, ym), (x1 + MARK, ym)),
+    ):
+        items.append(segment(a, b, FRAME, "frame"))
+    for n, (a, b) in enumerate(_zones(x0, x1, xm)):
+        for y in (y1, y0 - GRID):
+            items.append(Text(((a + b) / 2, y + 1.4), str(n + 1), 2.5, "middle", role="frame"))
+            if b < x1:
+                items.append(segment((b, y), (b, y + GRID), THIN, "frame"))
+    for n, (a, b) in enumerate(reversed(_zones(y0, y1, ym))):
+        for x in (x0 - GRID, x1):
+            items.append(Text((x + GRID / 2, (a + b) / 2 - 1.25), LETTERS[n], 2.5, "middle", role="frame"))
+            if a > y0:
+                items.append(segment((x, a), (x + GRID, a), THIN, "frame"))
+    items.append(Text((x1, y0 - GRID - 3.7), paper.name, 2.5, "end", role="frame"))
+    return items
+
+
+def _zones(low: float, high: float, middle: float) -> list[tuple[float, float]]:
+    """Fields of ZONE length either way from the middle; what is left over joins the outermost."""
+    half = max(
+        1, int((middle - low) / ZONE + 0.4)
+    )  # with these ISO 5457's 8 x 6 on A3 and 4 x 6 on A4 come out
+    upper = max(1, int((high - middle) / ZONE + 0.4))
+    inner = [middle + ZONE * i for i in range(1 - half, upper)]
+    stops = [low, *inner, high]
+    return list(zip(stops, stops[1:]))

@@ -1,0 +1,269 @@
+"""The plan of a plate, disc or block: outline and holes by running dimensions from one corner, callouts for the rest.
+
+What the rule-made dimensions leave open is filled by whatever coordinate or radius says something new, so that the
+account of `Determined` closes for any outline of lines and arcs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from tactcad.contour import Contour, Line
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.parts.description import Extrusion, Part, Pocket, Vector
+
+from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline, widest
+from .contours import contours
+from .holes import Group, groups, rounds
+from .ink import Point
+from .measure import Span, conventions, halfway, in_part, level, size
+from .plan import Characteristic, Datum, Dimension, Linear, Plan, View, characteristic, seen
+from .running import depth_running, face_running, filled, running_along
+from .section import section_of, section_view
+from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_box
+
+FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
+BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+
+
+def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = True) -> Plan:
+    """The plan of any extruded part, with a section where it is of use and `cut` asks for it. Raises CheckFailure where a characteristic or a variable stays without dimension."""
+    body = part.body
+    assert isinstance(body, Extrusion)
+    sketch = Sketch(part)
+    for name, contour in contours(part):
+        for row in conventions(name, contour):
+            sketch.convention(row)
+    found = rounds(part, design)
+    eye, up = _front(
+        [r.axis for r in found] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(found) + 1)
+    )
+    right = View("", eye, up, (0, 0, 0, 0)).right
+    below = _below_eye(found, up)
+    eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
+    called = groups(found, sketch.values, eyes)
+    limits = {c.name: c for c in part.characteristics}
+    front = _front_view(sketch, part, eye, up, called, limits)
+    views = [front]
+    if below:
+        views.append(
+            _sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits)
+        )
+    section = section_of(part, found, front, below) if cut else None
+    aside = [g for g in called if g.axis[0]]
+    if aside or not below:
+        side = side_view(sketch, part, front, called if aside else [], limits, thickness=not below)
+        views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
+    if section and (below or section.axis == 1):
+        view = section_view(front, below, section)
+        views.append(replace(view, box=view_box(view, part)))
+    if limits:
+        raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
+    closed(sketch)
+    return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes))
+
+
+def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
+    """The face from which more is made is seen from the front; axes lead into the material."""
+    from_top = sum(1 for axis in axes if axis[2] < 0)
+    from_below = sum(1 for axis in axes if axis[2] > 0)
+    return BACK if from_below > from_top else FRONT
+
+
+def _below_eye(found: Sequence, up: Vector) -> Vector | None:
+    """Where holes are sunk into the y faces: the eye that sees more of them, the upper face first; else None."""
+    upper = sum(1 for r in found if r.axis[1] < 0)
+    lower = sum(1 for r in found if r.axis[1] > 0)
+    if not upper + lower:
+        return None
+    return up if upper >= lower else tuple(-u for u in up)
+
+
+# --- front view ---
+
+
+def _front_view(
+    sketch: Sketch,
+    part: Part,
+    eye: Vector,
+    up: Vector,
+    called: Sequence[Group],
+    limits: dict[str, Characteristic],
+) -> View:
+    view = View("front", eye, up, (0, 0, 0, 0))
+    view = replace(view, box=view_box(view, part))
+    along_z = [g for g in called if g.axis[2]]
+    callouts = [hole_callout(sketch, view, g) for g in along_z]
+    callouts += pocket_callouts(sketch, view, part)
+    points = [c for name, contour in contours(part) for c in _coordinates(name, contour)]
+    points += [
+        Coordinate(f"{r.label} {'xy'[k]}", level(f"{r.name}.{'xy'[k]}"), r.at)
+        for g in along_z
+        for r in g.holes
+        for k in (0, 1)
+    ]
+    disc = part.body.outer.as_circle()
+    linears: list[Linear] = []
+    if disc:
+        callouts.insert(0, round_outline(sketch, part))
+        linears = _lands(sketch, view, part, limits)
+    runnings = []
+    for k, side in ((0, "top"), (1, "right")):
+        mine = [
+            c
+            for c in points
+            if c.level.names[0].endswith("xy"[k]) and "c" not in c.level.names[0].rsplit(".", 1)[1]
+        ]
+        runnings.append(running_along(sketch, view, side, k, mine, "outer" if disc else None))
+    callouts += radius_callouts(sketch, view, part)
+    for k, index in ((0, 0), (1, 1)):
+        rest = [c for c in points if c.level.names[0].rsplit(".", 1)[1].endswith("xy"[k])]
+        runnings[index] = filled(sketch, view, runnings[index], k, rest)
+    datums = () if disc else _datums(view, part.body.outer)
+    return replace(
+        view,
+        linears=tuple(linears),
+        runnings=tuple(r for r in runnings if len(r.stops) > 1),
+        callouts=tuple(callouts),
+        datums=datums,
+        centres=tuple((seen(view, r.at), widest(r.hole)) for g in along_z for r in g.holes)
+        + (((seen(view, (*disc[0], 0.0)), 2 * disc[1]),) if disc else ()),
+        threads=_threads(view, along_z),
+    )
+
+
+def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
+    """Letters on the two edges that the running dimensions start from: on the longest there that has room."""
+    lines = [(seen(view, (*s.start, 0.0)), seen(view, (*s.end, 0.0))) for s in outer if isinstance(s, Line)]
+    found = []
+    for letter, k, away in (("B", 0, (-1.0, 0.0)), ("C", 1, (0.0, -1.0))):
+        on = [(p, q) for p, q in lines if max(abs(p[k] - view.box[k]), abs(q[k] - view.box[k])) < ALIKE]
+        longest = sorted(on, key=lambda e: -round(abs(e[0][1 - k] - e[1][1 - k]), 6))
+        found += [Datum(letter, *edge, away) for edge in longest]
+    return tuple(found)
+
+
+def _coordinates(name: str, contour: Contour) -> list[Coordinate]:
+    """Coordinates of a contour that may carry a dimension: edges first, then corners, then arcs' centres."""
+    if circle := contour.as_circle():
+        at = (*circle[0], 0.0)
+        return [Coordinate(f"{name} {a}", level(f"{name}.{a}"), at) for a in "xy"]
+    edges, corners, centres = [], [], []
+    for i, s in enumerate(contour):
+        label = s.name or f"{name} {i}"
+        if isinstance(s, Line):
+            for k, a in ((0, "x"), (1, "y")):
+                if abs(s.start[k] - s.end[k]) < 1e-9:
+                    edges.append(Coordinate(label, level(f"{name}.{i}.{a}"), (*s.start, 0.0), (*s.end, 0.0)))
+        else:
+            centres += [
+                Coordinate(f"{label} centre", level(f"{name}.{i}.c{a}"), (*s.centre, 0.0)) for a in "xy"
+            ]
+        corners += [Coordinate(f"{label} start", level(f"{name}.{i}.{a}"), (*s.start, 0.0)) for a in "xy"]
+    return edges + corners + centres
+
+
+def _lands(sketch: Sketch, view: View, part: Part, limits: dict[str, Characteristic]) -> list[Linear]:
+    """Length and width of a rectangular land left standing in the middle of a disc, on its centre lines."""
+    linears = []
+    for k, f in enumerate(part.features):
+        for i, island in enumerate(f.island if isinstance(f, Pocket) else ()):
+            if len(island) != 4 or island.as_circle():
+                continue
+            x0, y0, x1, y1 = in_part(f, island).box
+            for axis, low, high, side, p, q in (
+                ("x", x0, x1, "top", (x0, y1), (x1, y1)),
+                ("y", y0, y1, "right", (x1, y0), (x1, y1)),
+            ):
+                a, b = (edge_level(sketch, f"island{k}.{i}", axis, v) for v in (low, high))
+                sketch.convention(Span(halfway(a, b), level(f"outer.{axis}")))
+                given = limits.pop(f"{f.name.removeprefix('around_')} along {axis}", None)
+                name = f"{f.name} along {axis}"
+                d = characteristic(given, (Span(a, b),)) if given else Dimension(name, (Span(a, b),))
+                linears.append(Linear(sketch.must(d), side, seen(view, (*p, 0.0)), seen(view, (*q, 0.0))))
+    return linears
+
+
+# --- the other views ---
+
+
+def _sunk_view(
+    sketch: Sketch,
+    part: Part,
+    front: View,
+    name: str,
+    eye: Vector,
+    called: Sequence[Group],
+    limits: dict[str, Characteristic],
+) -> View:
+    """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of them."""
+    sign = 1.0 if name == "below" else -1.0
+    up = tuple(-sign * e for e in front.eye)
+    view = View(name, eye, up, (0, 0, 0, 0))
+    view = replace(view, box=view_box(view, part))
+    mine = [g for g in called if g.axis[1]]
+    callouts = [hole_callout(sketch, view, g) for g in mine]
+    side = "bottom" if name == "below" else "top"
+    return replace(
+        view,
+        callouts=tuple(callouts),
+        runnings=(
+            face_running(sketch, view, part, side, 0, mine),
+            depth_running(sketch, view, part, "left", mine, limits),
+        ),
+        centres=tuple((seen(view, r.at), widest(r.hole)) for g in mine for r in g.holes),
+        datums=_underside(view, part),
+        threads=_threads(view, mine),
+    )
+
+
+def _threads(view: View, called: Sequence[Group]) -> tuple[tuple[Point, float], ...]:
+    """Middles and nominal diameters of threads that are entered from the view's side or run through."""
+    found = []
+    for r in (r for g in called for r in g.holes if r.hole.thread):
+        towards = sum(a * e for a, e in zip(r.axis, view.eye)) < 0
+        if towards or r.hole.through and r.hole.thread_depth >= r.hole.depth:
+            found.append((seen(view, r.at), r.hole.thread_diameter))
+    return tuple(found)
+
+
+def side_view(
+    sketch: Sketch,
+    part: Part,
+    front: View,
+    called: Sequence[Group],
+    limits: dict[str, Characteristic],
+    thickness: bool,
+) -> View:
+    """The view from the left, beside the front view: thickness, and holes of the x faces."""
+    view = View("right", tuple(-r for r in front.right), front.up, (0, 0, 0, 0))
+    view = replace(view, box=view_box(view, part))
+    mine = [g for g in called if g.axis[0]]
+    if mine:
+        raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")
+    given = limits.pop("thickness", None)
+    rows = (size("thickness"),)
+    d = sketch.must(
+        characteristic(given, rows, key_number(part, given)) if given else Dimension("thickness", rows)
+    )
+    x0, y0, x1, y1 = view.box
+    return replace(view, linears=(Linear(d, "bottom", (x0, y0), (x1, y0)),), datums=_underside(view, part))
+
+
+def key_number(part: Part, c: Characteristic | None) -> int:
+    """Number of a key characteristic on the sheet: its place among the part's; 0 for one that is not key."""
+    keys = [k for k in part.characteristics if k.key]
+    return keys.index(c) + 1 if c in keys else 0
+
+
+def _underside(view: View, part: Part) -> tuple[Datum, ...]:
+    """Letter A on the face z = 0."""
+    u0, v0, u1, v1 = view.box
+    zu, zv = view.right[2], view.up[2]
+    if zu:
+        u = u0 if zu > 0 else u1
+        return (Datum("A", (u, v0), (u, v1), (-zu, 0.0)),)
+    v = v0 if zv > 0 else v1
+    return (Datum("A", (u0, v), (u1, v), (0.0, -zv)),)

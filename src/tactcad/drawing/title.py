@@ -1,0 +1,206 @@
+"""Title block after ISO 7200:2004, 180 mm wide, in the lower right corner, and blocks of notes and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tactcad.design.messages import CheckFailure
+
+from .fonts import width
+from .ink import CENTRE, FRAME, THIN, VISIBLE, Arc, Item, Point, Stroke, Text, box, segment
+from .paper import Paper
+
+WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
+LABEL = 1.8  # height of the cells' headings, ISO 3098 series
+GENERAL_TOLERANCES = ("ISO 2768-1:1989-m", "ISO 2768-2:1989-K")
+
+
+@dataclass(frozen=True)
+class TitleBlock:
+    """What the title block says. `mass` in g; None where it means nothing; scale as text, "5:1"."""
+
+    legal_owner: str
+    number: str
+    revision: str
+    date: str
+    title: str
+    supplementary: str  # the design that the sheet belongs to
+    creator: str
+    document_type: str
+    status: str
+    scale: str
+    sheet: int = 1
+    sheets: int = 1
+    approval: str = ""  # empty: signed by hand
+    material: str = ""
+    mass: float | None = None
+    finish: str = ""
+    language: str = "en"
+
+
+def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
+    """The block's lines and texts. Raises CheckFailure where a text does not fit its cell."""
+    x0, y0 = paper.area[2] - WIDTH, paper.area[1]
+    items: list[Item] = [box(x0, y0, WIDTH, HEIGHT, FRAME, "table")]
+    mass = "" if t.mass is None else f"{t.mass:.3g} g" if t.mass < 1000 else f"{t.mass / 1000:.3g} kg"
+    rows = (  # height, cells of width, heading, value
+        (
+            12,
+            (
+                (58, "Material and temper", t.material),
+                (24, "Mass", mass),
+                (60, "General tolerances", GENERAL_TOLERANCES),
+                (18, "Scale", t.scale),
+                (20, "Projection", ""),
+            ),
+        ),
+        (
+            12,
+            (
+                (96, "Surface finish", t.finish),
+                (54, "Dimensions", "mm, angles in degrees"),
+                (15, "Paper", paper.name),
+                (15, "Language", t.language),
+            ),
+        ),
+        (
+            10,
+            (
+                (46, "Created by", t.creator),
+                (46, "Approved by", t.approval),
+                (44, "Document type", t.document_type),
+                (44, "Document status", t.status),
+            ),
+        ),
+        (
+            15,
+            (
+                (92, "Title, supplementary title", (t.title, t.supplementary)),
+                (88, "Identification number", t.number),
+            ),
+        ),
+        (
+            10,
+            (
+                (92, "Legal owner", t.legal_owner),
+                (18, "Revision", t.revision),
+                (40, "Date of issue", t.date),
+                (30, "Sheet", f"{t.sheet}/{t.sheets}"),
+            ),
+        ),
+    )
+    y = y0 + HEIGHT
+    for height, cells in rows:
+        y -= height
+        x = x0
+        for w, heading, value in cells:
+            items += _cell(x, y, w, height, heading, value)
+            x += w
+    return items + _first_angle((x0 + 170.0, y0 + HEIGHT - 7.6))
+
+
+def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tuple[str, ...]) -> list[Item]:
+    items: list[Item] = [
+        box(x, y, w, h, THIN, "table"),
+        Text((x + 1.0, y + h - LABEL - 0.9), heading, LABEL, role="table"),
+    ]
+    lines, size = _fitted((value,) if isinstance(value, str) else value, w - 2.0, h - LABEL - 2.4)
+    if lines is None:
+        raise CheckFailure(f"drawings: {heading.lower()} {' '.join(value)!r} does not fit the title block")
+    step = 1.6 * size
+    base = y + 1.1 + 0.25 * size
+    return items + [
+        Text((x + 1.0, base + step * (len(lines) - 1 - i)), line, size, role="table")
+        for i, line in enumerate(lines)
+    ]
+
+
+def _fitted(given: tuple[str, ...], room: float, high: float) -> tuple[list[str] | None, float]:
+    """The lines at the largest size at which they fit, broken where they have to be; None where none fits."""
+    given = tuple(line for line in given if line)
+    for size, whole in ((3.5, True), (2.5, True), (2.5, False), (1.8, True), (1.8, False)):
+        lines = list(given) if whole else [piece for line in given for piece in wrapped(line, size, room)]
+        high_enough = size * (1.6 * len(lines) - 0.3) <= high
+        if high_enough and all(width(line, size) <= room for line in lines):
+            return lines, size
+    return None, 0.0
+
+
+def _first_angle(at: Point) -> list[Item]:
+    """Symbol of first-angle projection (ISO 5456-2): truncated cone to the left of its end view."""
+    x, y = at
+    small, large = 1.4, 2.8
+    left, right = x - 7.2, x - 1.8
+    circle = x + 3.6
+    return [
+        Stroke(
+            ((left, y - small), (right, y - large), (right, y + large), (left, y + small)),
+            VISIBLE,
+            "symbol",
+            True,
+        ),
+        segment((left - 1.0, y), (right + 1.0, y), CENTRE, "symbol"),
+        Arc((circle, y), small, line=VISIBLE, role="symbol"),
+        Arc((circle, y), large, line=VISIBLE, role="symbol"),
+        segment((circle - large - 1.0, y), (circle + large + 1.0, y), CENTRE, "symbol"),
+        segment((circle, y - large - 1.0), (circle, y + large + 1.0), CENTRE, "symbol"),
+    ]
+
+
+def wrapped(text: str, height: float, room: float) -> list[str]:
+    """The text in lines no wider than `room` mm, broken at blanks, or inside a word that is too long by itself."""
+    lines, line = [], ""
+    for word in text.split():
+        longer = f"{line} {word}" if line else word
+        if width(longer, height) <= room:
+            line = longer
+            continue
+        if line:
+            lines.append(line)
+        while width(word, height) > room:
+            fits = max(n for n in range(1, len(word)) if n == 1 or width(word[:n], height) <= room)
+            lines.append(word[:fits])
+            word = word[fits:]
+        line = word
+    return [*lines, line] if line else lines
+
+
+def notes(at: Point, lines: Sequence[str], room: float, height: float = 2.5) -> tuple[list[Item], float]:
+    """Numbered notes from the upper left corner `at`, wrapped to `room` mm; the items, and how high they are (mm)."""
+    items: list[Item] = []
+    indent = width("00. ", height)
+    x, y = at
+    for n, line in enumerate(lines, start=1):
+        for i, piece in enumerate(wrapped(line, height, room - indent)):
+            y -= 1.7 * height
+            if i == 0:
+                items.append(Text((x, y), f"{n}.", height))
+            items.append(Text((x + indent, y), piece, height))
+        y -= 0.3 * height
+    return items, at[1] - y
+
+
+def table(
+    at: Point, heads: Sequence[str], rows: Sequence[Sequence[str]], height: float = 2.5
+) -> tuple[list[Item], float, float]:
+    """A grid of texts from the upper left corner `at`; the items, its width and its height (mm)."""
+    columns = list(zip(heads, *rows))
+    widths = [max(width(cell, height) for cell in column) + 2 * height * 0.6 for column in columns]
+    step = 2.0 * height
+    x0, y0 = at
+    items: list[Item] = []
+    for r, row in enumerate([heads, *rows]):
+        x = x0
+        for w, cell in zip(widths, row):
+            items.append(
+                Text((x + 0.6 * height, y0 - (r + 1) * step + 0.55 * height), cell, height, role="table")
+            )
+            x += w
+    total, down = sum(widths), step * (len(rows) + 1)
+    xs = [x0 + sum(widths[:i]) for i in range(len(widths) + 1)]
+    items += [segment((x, y0), (x, y0 - down), THIN, "table") for x in xs]
+    items += [
+        segment((x0, y0 - step * r), (x0 + total, y0 - step * r), THIN, "table") for r in range(len(rows) + 2)
+    ]
+    return items, total, down

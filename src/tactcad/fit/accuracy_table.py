@@ -1,0 +1,148 @@
+"""Worst error of every rung by zone of the envelope, against solid elements, from the samples: data/accuracy.json."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import time
+from datetime import date
+
+import numpy as np
+
+from tactcad.mechanics import accuracy, beams, ladder, solid, validity
+from tactcad.mechanics import plane as form
+from tactcad.mechanics.accuracy import CANDIDATES, Candidate
+
+from .accuracy_samples import SECONDS, SEED
+from .fit_samples import Columns, joined, section
+
+# Promised is this much over the worst that was measured: a fresh design can always be somewhat worse, and the
+# more so the fewer were measured.
+MARGIN, MARGIN_OF_FEW, FEW = 1.5, 3.0, 60
+# Under l/t = 1 the hinge is shorter than thick and its two roots are one; from 2 they are apart. A leaf much longer
+# than wide curls over all of its width, which the width factor was fitted on few designs for.
+NARROW = 0.7
+ZONES: tuple[dict[str, list[float | None]], ...] = (
+    {"b/l": [NARROW, None], "l/t": [0.0, 1.0]},
+    {"b/l": [NARROW, None], "l/t": [1.0, 2.0]},
+    {"b/l": [NARROW, None], "l/t": [2.0, None]},
+    {"b/l": [0.0, NARROW]},
+)
+TIMED = 10_000  # designs in the table that closed forms are timed on
+REFERENCE = (
+    "three-dimensional linear elasticity of the element cut at load line and clamp edge, "
+    "by solid elements refined to their limit (fem-solid)"
+)
+
+Errors = dict[str, np.ndarray]
+
+
+def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) -> dict:
+    """The contents of data/accuracy.json from the "fitted", "held out" and "range" samples, for the constants and
+    the range in `ladder_data` (data/ladder.json)."""
+    clock = closed_form_seconds()
+    columns = joined(list(samples.values()))
+    errors = candidate_errors(columns, ladder_data)
+    groups, two_sided = validity.groups(section(columns)), columns["two_sided"] == 1.0
+    zones = []
+    for zone in ({"sides": sides, "bounds": bounds} for sides in ("two", "one") for bounds in ZONES):
+        narrow = "l/t" not in zone["bounds"]  # too few to tell the notch forms apart
+        inside = groups["b/l"] < NARROW if narrow else accuracy.in_zone(zone, groups, two_sided)
+        zones.append(zone | _measured(columns, errors, inside, clock))
+    return {
+        "reference": REFERENCE,
+        "margin": {"usual": MARGIN, f"of fewer than {FEW} designs": MARGIN_OF_FEW},
+        "date": today.isoformat(),
+        "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}, numpy {np.__version__}, "
+        f"{os.cpu_count()} cores, one used",
+        "samples": {name: len(c["poisson"]) for name, c in samples.items()} | {"seed of range": SEED},
+        "seconds a call": {c.name: clock.get(c.name, (0.0, 0.0))[0] for c in CANDIDATES},
+        "zones": zones,
+    }
+
+
+def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
+    """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
+
+    K_solid is fem-solid's, on the finest meshes that the design was solved on. The closed form solid is a product
+    of the plane rung and a width factor; its error counts where only the plane part was measured, too.
+    """
+    s = section(columns)
+    plane = columns["plane_stiffness"] * columns["width"]
+    truth = plane * columns["width_factor"]
+    for name in ("solid_mesh_2", "solid_mesh_3", "solid_mesh_4"):
+        truth = np.where(np.isfinite(columns[name]), columns[name], truth)
+    two = columns["two_sided"] == 1.0
+    flat = np.where(two, *(form.compliance(s, ladder_data["root"][side]) for side in ("two", "one")))
+    width = np.where(
+        two, *(solid.width_factor(s, flat, ladder_data["width"][side]) for side in ("two", "one"))
+    )
+    compliance = {
+        "short": beams.short_hinge(s),
+        "beam": beams.beam(s),
+        "section": beams.section_integral(s),
+        "plane": flat,
+        "solid": flat / width,
+    }
+    errors = {rung: np.abs(1.0 / (C * truth) - 1.0) for rung, C in compliance.items()}
+    errors["solid"] = np.fmax(errors["solid"], np.abs(1.0 / (flat * plane) - 1.0))
+    errors["fem-plane"] = np.abs(plane / truth - 1.0)
+    finest = np.where(np.isfinite(columns["solid_mesh_4"]), columns["solid_mesh_4"], np.nan)
+    errors["fem-solid, mesh 3"] = np.abs(columns["solid_mesh_3"] / finest - 1.0)
+    finer = np.where(np.isfinite(finest), finest, columns["solid_mesh_3"])
+    errors["fem-solid, mesh 2"] = np.abs(columns["solid_mesh_2"] / finer - 1.0)
+    return errors
+
+
+def closed_form_seconds(repeats: int = 7) -> dict[str, tuple[float, float]]:
+    """(seconds of a call, seconds a design in a long table) of every closed form, shortest of several runs."""
+    from .fit_samples import draw_box
+
+    many = section(draw_box(200, seed=0)).rows(np.arange(TIMED) % 200)
+    one = many.rows(0)
+    found = {}
+    for rung in ladder.CLOSED_FORMS:
+        call, table = (min(_seconds(rung, s) for _ in range(repeats)) for s in (one, many))
+        found[rung] = (call, table / TIMED)
+    return {rung: tuple(float(f"{x:.2g}") for x in pair) for rung, pair in found.items()}
+
+
+def _seconds(rung: str, s) -> float:
+    start = time.perf_counter()
+    ladder.stiffness(s, rung)
+    return time.perf_counter() - start
+
+
+def _measured(
+    columns: Columns, errors: Errors, inside: np.ndarray, clock: dict[str, tuple[float, float]]
+) -> dict:
+    """A zone's worst errors and what they promise, and the seconds of an element."""
+    worst, counts, seconds = {}, {}, {}
+    for candidate in CANDIDATES:
+        # few designs are solved on refined meshes: those of all zones count in each
+        e = errors[candidate.name][inside] if candidate.mesh is None else errors[candidate.name]
+        e = e[np.isfinite(e)]
+        worst[candidate.name] = float(f"{e.max():.3g}")
+        counts[candidate.name] = len(e)
+        closed = clock.get(candidate.name)
+        seconds[candidate.name] = closed[1] if closed else _median(candidate, columns, inside)
+    own = worst["fem-solid, mesh 3"]  # what the reference itself may err by
+    promised = {
+        name: _rounded_up((MARGIN if counts[name] >= FEW else MARGIN_OF_FEW) * (worst[name] + own))
+        for name in worst
+    }
+    return {"designs": counts, "worst": worst, "promised": promised, "seconds": seconds}
+
+
+def _rounded_up(value: float) -> float:
+    """To two digits, upwards."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{math.ceil(value / step - 1e-9) * step:.2g}")
+
+
+def _median(candidate: Candidate, columns: Columns, inside: np.ndarray) -> float:
+    """Of the zone's designs, or of all where none of the zone was timed."""
+    seconds = columns[SECONDS[candidate.name]]
+    timed = seconds[inside] if np.isfinite(seconds[inside]).any() else seconds
+    return float(f"{np.nanmedian(timed):.2g}")

@@ -1,0 +1,312 @@
+"""The fit of the ladder's constants on finite-element samples, and the report that goes with them."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable
+from datetime import date
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+from tactcad.mechanics import beams, plane, solid, strain, validity
+from tactcad.mechanics.section import HingeSection
+
+from .fit_samples import BOX, GRIDS, LEAST_HEIGHT, SEEDS, Columns, section
+
+Array = NDArray[np.float64]
+Constants = dict[str, float]
+
+SIDES = {"two": 1.0, "one": 0.0}
+WEIGHT_OUTSIDE = 0.3  # of samples outside the promised box: they widen the range, the box decides
+HALF_FILLET = 1.0  # grids on two-sided hinges are fitted up to straight part + this times r
+
+MID_WIDTH = {"grid": "mid_grid_ratio", "fillet": "mid_peak_ratio"}
+
+# Where the search starts: the order of magnitude that beam theory and the first look at the data gave.
+START = {
+    "root": {
+        "two": dict(
+            p0=0.19,
+            p1=0.02,
+            p2=3.0,
+            p3=0.8,
+            p4=-0.8,
+            p5=-0.3,
+            p6=0.005,
+            p7=2.0,
+            p8=0.0,
+            s=1.6,
+            s0=0.0,
+            e=0.0,
+            c=1.0,
+        ),
+        "one": dict(
+            p0=0.39,
+            p1=-0.02,
+            p2=0.5,
+            p3=0.9,
+            p4=-0.7,
+            p5=-0.2,
+            p6=0.01,
+            p7=2.0,
+            p8=0.0,
+            s=3.2,
+            s0=0.0,
+            e=0.0,
+            c=1.0,
+        ),
+    },
+    "width": {
+        side: dict.fromkeys([f"c{i}" for i in range(1, 11)], 0.0) | {"ca": 10.0, "cb": 2.0} for side in SIDES
+    },
+    "fillet": {
+        "two": dict(a=0.4, b=0.3, c=0.15, m=0.85, d=0.2, e=20.0),
+        "one": dict(a=0.6, b=0.4, c=0.2, m=0.85, d=0.15, e=20.0),
+    },
+    "mid-width grid": {"two": dict(a=0.0, d=0.0, e=0.0), "one": dict(a=0.0, d=0.0, e=0.0)},
+    "mid-width fillet": {"two": dict(a=0.0, d=0.0, e=0.0), "one": dict(a=0.0, d=0.0, e=0.0)},
+    "face": {"one": dict(a=1.0, b=0.2, c=0.05, d=0.3, e=4.0)},
+    "grid": {
+        "two": dict(u=3.6, v=0.9, m=0.064, x=0.24, y=5.8, z=0.12),
+        "one": dict(u=3.9, v=0.77, m=0.64, x=2.2, y=2.2),
+    },
+}
+
+
+def fit(samples: Columns, held_out: Columns, today: date) -> dict:
+    """Constants, range and report as data/ladder.json holds them."""
+    constants: dict[str, dict[str, Constants]] = {group: {} for group in START}
+    for side, flag in SIDES.items():
+        rows = _rows(samples, samples["two_sided"] == flag)
+        root = constants["root"][side] = _fit_root(rows, START["root"][side])
+        with_solid = _rows(rows, np.isfinite(rows["width_factor"]))
+        constants["width"][side] = _fit_width(with_solid, root, START["width"][side])
+        for at, column in MID_WIDTH.items():
+            constants[f"mid-width {at}"][side] = _fit_mid_width(
+                with_solid, at, column, START[f"mid-width {at}"][side]
+            )
+        constants["fillet"][side] = _fit_factor(
+            rows, strain.fillet_factor, "slot_peak", START["fillet"][side]
+        )
+        if side == "one":
+            constants["face"][side] = _fit_factor(rows, strain.face_factor, "flat_peak", START["face"][side])
+    rounded = _rounded(constants)
+    for side, flag in SIDES.items():
+        rows = _rows(samples, samples["two_sided"] == flag)
+        rounded["grid"][side] = _rounded(_fit_grid(rows, rounded["root"][side], side))
+    return rounded | {
+        "range": {
+            "least_height": LEAST_HEIGHT,
+            "least_body_length": _digits((samples["body_length"] / samples["hinge_thickness"]).min(), 3),
+            "groups": sampled_range(samples),
+        },
+        "report": _report(rounded, samples, held_out, today),
+    }
+
+
+def plane_error(s: HingeSection, stiffness: Array, k: Constants) -> Array:
+    """Relative error of the plane rung's stiffness (unit width)."""
+    return 1.0 / (plane.compliance(s.with_(width=1.0), k) * stiffness) - 1.0
+
+
+def in_box(columns: Columns) -> NDArray[np.bool_]:
+    """Which designs lie in the promised box."""
+    return np.logical_and.reduce(
+        [(columns[k] >= low) & (columns[k] <= high) for k, (low, high) in BOX.items()]
+    )
+
+
+def sampled_range(samples: Columns) -> dict[str, list[float]]:
+    """Least and largest value of each group over the samples, to three digits."""
+    return {
+        k: [_digits(v.min(), 3), _digits(v.max(), 3)] for k, v in validity.groups(section(samples)).items()
+    }
+
+
+def _fit_root(rows: Columns, start: Constants) -> Constants:
+    s, stiffness = section(rows), rows["plane_stiffness"]
+    return _search(lambda k: plane_error(s, stiffness, k), start, _weights(rows))
+
+
+def _fit_width(rows: Columns, root: Constants, start: Constants) -> Constants:
+    s = section(rows)
+    flat = plane.compliance(s, root)
+    return _search(
+        lambda k: solid.width_factor(s, flat, k) / rows["width_factor"] - 1.0, start, _weights(rows)
+    )
+
+
+def _fit_mid_width(rows: Columns, at: str, column: str, start: Constants) -> Constants:
+    s, measured = section(rows), rows[column] * rows["width_factor"]
+    return _search(
+        lambda k: strain.mid_width(s, at, k) / measured - 1.0, start, _weights(rows), worst_case=False
+    )
+
+
+def _fit_factor(rows: Columns, factor: Callable, column: str, start: Constants) -> Constants:
+    s = section(rows)
+    return _search(lambda k: factor(s, k) / rows[column] - 1.0, start, _weights(rows), worst_case=False)
+
+
+def _fit_grid(rows: Columns, root: Constants, side: str) -> Constants:
+    cases = _grid_cases(rows, side)
+    lengths = {grid: sum(plane.root_lengths(section(r), root)) / 2.0 for grid, r in cases.items()}
+    form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
+
+    def error(k: Constants) -> Array:
+        return np.concatenate(
+            [
+                form(section(r), grid * r["hinge_length"], k, lengths[grid]) / r[f"grid_{grid:g}"] - 1.0
+                for grid, r in cases.items()
+            ]
+        )
+
+    weights = np.concatenate([_weights(r) for r in cases.values()])
+    return _search(error, START["grid"][side], weights, worst_case=False)
+
+
+def _grid_cases(rows: Columns, side: str) -> dict[float, Columns]:
+    cases = {}
+    for grid in GRIDS:
+        usable = np.isfinite(rows[f"grid_{grid:g}"])
+        if side == "two":
+            straight = rows["hinge_length"] - 2.0 * rows["fillet_radius"]
+            usable &= grid * rows["hinge_length"] <= straight + HALF_FILLET * rows["fillet_radius"]
+        if usable.any():
+            cases[grid] = _rows(rows, usable)
+    return cases
+
+
+def _search(
+    error: Callable[[Constants], Array], start: Constants, weights: Array, worst_case: bool = True
+) -> Constants:
+    """Least squares, then least fourth powers from there, so that the worst case counts most."""
+    names = list(start)
+
+    def residual(values: Array, power: int) -> Array:
+        with np.errstate(all="ignore"):
+            e = 1e3 * weights * error(dict(zip(names, values)))
+        return (
+            np.abs(np.nan_to_num(e, nan=100.0, posinf=100.0, neginf=-100.0)) ** power
+            if power > 1
+            else np.nan_to_num(e, nan=100.0, posinf=100.0, neginf=-100.0)
+        )
+
+    x = np.array(list(start.values()))
+    for power in (1, 2) if worst_case else (1,):
+        scale = np.maximum(np.abs(x), 0.05)
+        x = least_squares(residual, x, x_scale=scale, max_nfev=1000, args=(power,)).x
+    return dict(zip(names, x.tolist()))
+
+
+def _report(data: dict, samples: Columns, held_out: Columns, today: date) -> dict:
+    import scipy
+    import skfem
+
+    from tactcad import __version__
+
+    errors = {
+        name: {
+            side: _errors(data, _rows(c, mask & (c["two_sided"] == flag)), side)
+            for side, flag in SIDES.items()
+        }
+        for name, c, mask in (
+            ("held out, box", held_out, np.ones(len(held_out["poisson"]), dtype=bool)),
+            ("fitted, box", samples, in_box(samples)),
+            ("fitted, beyond the box", samples, ~in_box(samples)),
+        )
+    }
+    return {
+        "date": today.isoformat(),
+        "versions": {
+            "tactcad": __version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "scikit-fem": skfem.__version__,
+        },
+        "samples": {
+            name: {
+                "seed": SEEDS[name],
+                "designs": len(c["poisson"]),
+                "with solid elements": int(np.isfinite(c["width_factor"]).sum()),
+            }
+            for name, c in (("fitted", samples), ("held out", held_out))
+        },
+        "box": {k: list(v) for k, v in BOX.items()},
+        "relative_error": errors,
+    }
+
+
+def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]:
+    """rms, worst and number of each quantity's relative error over the rows."""
+    s, root = section(rows), data["root"][side]
+    flat, K2 = plane.compliance(s, root), rows["plane_stiffness"] * rows["width"]
+    K3 = K2 * rows["width_factor"]
+    found = {
+        f"{name}, against plane elements": 1.0 / (f(s) * K2) - 1.0
+        for name, f in (
+            ("short", beams.short_hinge),
+            ("beam", beams.beam),
+            ("section", beams.section_integral),
+        )
+    }
+    found["plane, against plane elements"] = 1.0 / (flat * K2) - 1.0
+    found["plane, against solid elements"] = 1.0 / (flat * K3) - 1.0
+    factor = solid.width_factor(s, flat, data["width"][side])
+    found["solid, against solid elements"] = factor / (flat * K3) - 1.0
+    found["width factor"] = factor / rows["width_factor"] - 1.0
+    found["peak strain at the fillet"] = (
+        strain.fillet_factor(s, data["fillet"][side]) / rows["slot_peak"] - 1.0
+    )
+    if side == "one":
+        found["peak strain on the flat face"] = (
+            strain.face_factor(s, data["face"]["one"]) / rows["flat_peak"] - 1.0
+        )
+    form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
+    found["mean strain under a grid"] = np.concatenate(
+        [np.empty(0)]
+        + [
+            form(
+                section(r),
+                grid * r["hinge_length"],
+                data["grid"][side],
+                sum(plane.root_lengths(section(r), root)) / 2.0,
+            )
+            / r[f"grid_{grid:g}"]
+            - 1.0
+            for grid, r in _grid_cases(rows, side).items()
+        ]
+    )
+    for at, column in MID_WIDTH.items():
+        measured = rows[column] * rows["width_factor"]
+        found[f"strain per deflection at mid-width, {at}"] = (
+            strain.mid_width(s, at, data[f"mid-width {at}"][side]) / measured - 1.0
+        )
+    return {name: _summary(e) for name, e in found.items()}
+
+
+def _summary(error: Array) -> dict[str, float | None]:
+    e = error[np.isfinite(error)]
+    if not len(e):
+        return {"rms": None, "max": None, "n": 0}
+    return {"rms": _digits(np.sqrt(np.mean(e * e)), 3), "max": _digits(np.abs(e).max(), 3), "n": len(e)}
+
+
+def _weights(rows: Columns) -> Array:
+    return np.where(in_box(rows), 1.0, WEIGHT_OUTSIDE)
+
+
+def _rows(columns: Columns, mask: NDArray[np.bool_]) -> Columns:
+    return {k: v[mask] for k, v in columns.items()}
+
+
+def _rounded(data):
+    """Constants to six digits: far below what the samples determine."""
+    return {k: _rounded(v) for k, v in data.items()} if isinstance(data, dict) else _digits(data, 6)
+
+
+def _digits(value: float, digits: int) -> float:
+    return float(f"{value:.{digits}g}")

@@ -1,0 +1,202 @@
+"""Stiffness, strain, stress and strength of every element of a design, by one rung of the ladder."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.design.messages import CheckFailure
+from tactcad.mechanics import ladder, strain, strength
+from tactcad.mechanics.accuracy import Choice, choose
+from tactcad.mechanics.section import Array, HingeSection
+from tactcad.parts.element import element
+from tactcad.parts.hinge_section import design_alloy, hinge_section
+from tactcad.parts.layout import ElementPlace, Layout
+
+
+@dataclass(frozen=True)
+class ElementEstimate:
+    """One element at one force. Strain and stress are None where the stress would pass the yield strength.
+
+    gauge_strain is None too where the grid does not fit a two-sided hinge.
+    """
+
+    number: int
+    arm: float  # mm
+    load_arm: float  # mm
+    stiffness: float  # N/mm
+    stiffness_ratio: float  # K_r/K_m: the stiffest element's stiffness over this one's
+    force: float  # N
+    deflection: float | None  # mm
+    gauge_strain: float | None  # mean under the gauge's grid
+    peak_strain: float | None  # at the slot-side fillet
+    stress: float | None  # MPa, there
+    elastic: bool
+    yield_factor_fillet: float
+    yield_factor_face: float
+    goodman_factor: float | None  # at 5e8 cycles between 0 and the force
+    yield_force: float  # N
+    yield_deflection: float  # mm
+    rated_force: float  # N, in use
+    rated_deflection: float  # mm, never passed: overload and calibration stay below
+
+
+def estimate(
+    layout: Layout, rung: str, force: float | None = None, mesh: int | None = None
+) -> list[ElementEstimate]:
+    """Every element of the layout, by number; force in N, by default the design's rating; `mesh` the density
+    of rung fem-solid's finer mesh.
+
+    Raises CheckFailure where an element lies outside the rung's range.
+    """
+    design = layout.design
+    force = design.rating.force if force is None else force
+    section = hinge_section(layout, layout.elements)
+    if rung not in ladder.FINITE_ELEMENTS:
+        return estimate_sections(layout, section, rung, force)
+    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)
+    return _estimates(layout, section, K, per_newton, force)
+
+
+def estimate_sections(
+    layout: Layout, section: HingeSection, rung: str, force: float
+) -> list[ElementEstimate]:
+    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the elements)
+    instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
+    K = np.asarray(ladder.stiffness(section, rung))
+    return _estimates(
+        layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force
+    )
+
+
+def choose_rung(layout: Layout, accuracy: float) -> Choice:
+    """The quickest rung that keeps the relative accuracy of stiffness at every element, each distinct one counted
+    once in the expected time as it is solved once. Raises CheckFailure where there is none."""
+    places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
+    names = [f"element {p.number}" for p in places.values()]
+    return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
+
+
+@dataclass(frozen=True)
+class _PerNewton:
+    """Arrays over the elements: strains in 1/N and stresses in MPa/N."""
+
+    gauge: Array
+    fillet: Array
+    fillet_stress: Array
+    face_stress: Array
+
+
+def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
+    peak = strain.peak(s, 1.0, rung)
+    try:
+        gauge = strain.gauge(s, 1.0, grid, rung)
+    except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
+        gauge = np.nan
+    if rung in ladder.WITH_ROOTS:
+        stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
+    else:  # these rungs know no fillet
+        stress = face = peak * s.youngs_modulus
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
+
+
+def _by_elements(
+    layout: Layout,
+    places: tuple[ElementPlace, ...],
+    section: HingeSection,
+    rung: str,
+    grid: float,
+    mesh: int | None,
+) -> tuple[Array, _PerNewton]:
+    """Finite elements on each distinct contour, cut at clamp edge and load line."""
+    from tactcad.fem import ladder as elements
+    from tactcad.fem.convergence import SOLID_MESH
+    from tactcad.fem.shape import cut_element
+
+    solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
+    results = []
+    for i, place in enumerate(places):
+        key = (place.arm, place.hinge, place.body_length)
+        if key not in solved:
+            contour = element(layout, place).body.outer
+            shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
+            one = section.rows(i)
+            found = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
+            # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
+            plane = found if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
+            solved[key] = found, plane
+        results.append(solved[key])
+    results, planes = zip(*results)
+    E = section.youngs_modulus
+    stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
+    return np.array([r.stiffness for r in results]), _PerNewton(
+        np.array([r.gauge_strain for r in results]), np.array([r.fillet_peak for r in results]), stress, face
+    )
+
+
+def _estimates(
+    layout: Layout, section: HingeSection, K: Array, per_newton: _PerNewton, force: float
+) -> list[ElementEstimate]:
+    alloy, rating = design_alloy(layout.design), layout.design.rating
+    rows = []
+    for i, place in enumerate(layout.elements):
+        yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
+        face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
+        elastic = force <= min(yield_force, face_yield)
+        at = lambda value: float(value) * force if elastic and np.isfinite(value) else None  # noqa: E731
+        stress = float(per_newton.fillet_stress[i])
+        rows.append(
+            ElementEstimate(
+                number=place.number,
+                arm=place.arm,
+                load_arm=float(section.load_arm[i]),
+                stiffness=float(K[i]),
+                stiffness_ratio=float(K.max() / K[i]),
+                force=force,
+                deflection=at(1.0 / K[i]),
+                gauge_strain=at(per_newton.gauge[i]),
+                peak_strain=at(per_newton.fillet[i]),
+                stress=at(stress),
+                elastic=elastic,
+                yield_factor_fillet=yield_force / force,
+                yield_factor_face=face_yield / force,
+                goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
+                yield_force=yield_force,
+                yield_deflection=yield_force / float(K[i]),
+                rated_force=min(force, yield_force / rating.yield_factor),
+                rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
+            )
+        )
+    return rows
+
+
+@dataclass(frozen=True)
+class UncutComparison:
+    """Plane-stress stiffness (N/mm) of one element's whole contour, and of the model cut from it."""
+
+    number: int
+    uncut: float
+    model: float
+
+
+def compare_uncut(layout: Layout) -> UncutComparison:
+    """The element with the shortest arm, whose pad and ledge weigh most: with pad, land and holes, held
+    between its spacers and pressed evenly on the pad, against the arm cut off at the load line."""
+    from tactcad.fem.convergence import converged_plane
+    from tactcad.fem.shape import cut_element
+    from tactcad.fem.uncut import uncut_compliance
+
+    place = min(layout.elements, key=lambda p: p.arm)
+    d, part = layout.design, element(layout, place)
+    shape = cut_element(part.body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
+    material = d.material.youngs_modulus, d.material.poisson, d.sheet.thickness
+    compliance = uncut_compliance(
+        part.body.outer,
+        part.body.openings,
+        shape,
+        (layout.clamp_edge, *layout.spacer_z),
+        (layout.pad_inner, layout.pad_outer, -d.element.pad_height),
+        *material,
+    )
+    return UncutComparison(place.number, 1.0 / compliance, converged_plane(shape, *material).stiffness)

@@ -1,0 +1,104 @@
+"""Stiffness, strain and strength of the elements as made: the measured dimensions in the estimator, beside the nominal ones.
+
+The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by one,
+added as squares. Of a dimension that was not measured it is the tolerance, as in the design's [tolerance]; of
+one that was measured with no uncertainty given it is nought. The model's own error is not in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.mechanics.section import Array, HingeSection
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
+
+from .array_estimate import ElementEstimate, estimate_sections
+from .inspection_sheet import Reading
+
+INTERVALS = ("stiffness", "gauge_strain", "yield_force")
+
+
+@dataclass(frozen=True)
+class AsMade:
+    """One element by the design, and by its measured dimensions with intervals (low, high) of its stiffness, gauge
+    strain, yield force and rated force; None where the value itself is None."""
+
+    number: int
+    nominal: ElementEstimate
+    made: ElementEstimate
+    intervals: dict[str, tuple[float, float] | None]
+    readings: tuple[Reading, ...]
+
+
+def as_made(
+    layout: Layout, readings: Sequence[Reading], rung: str, force: float | None = None
+) -> list[AsMade]:
+    """Every element of the layout by a closed form (`rung`); force in N, by default the design's rating.
+
+    Raises CheckFailure where an element, as designed or as made, lies outside the rung's range.
+    """
+    force = layout.design.rating.force if force is None else force
+    designed = hinge_section(layout, layout.elements)
+    of = {p.number: tuple(r for r in readings if r.number == p.number) for p in layout.elements}
+    entering = list(dict.fromkeys(r.dimension.enters for r in readings if r.dimension.enters))
+    table = {name: [_of_dimension(of[p.number], name) for p in layout.elements] for name in entering}
+    values = {name: np.array([_value(r) for r in column]) for name, column in table.items()}
+    halves = {name: np.array([_half_width(r) for r in column]) for name, column in table.items()}
+    section = designed.with_(**values)
+    nominal = estimate_sections(layout, designed, rung, force)
+    made = estimate_sections(layout, section, rung, force)
+    half_widths = _half_widths(layout, section, halves, rung, force)
+    return [
+        AsMade(p.number, nominal[i], made[i], _intervals(layout, made[i], half_widths[:, i]), of[p.number])
+        for i, p in enumerate(layout.elements)
+    ]
+
+
+def _of_dimension(readings: Sequence[Reading], enters: str) -> Reading:
+    return next(r for r in readings if r.dimension.enters == enters)
+
+
+def _value(r: Reading) -> float:
+    return r.dimension.nominal if r.measured is None else r.measured
+
+
+def _half_width(r: Reading) -> float:
+    if r.measured is None:
+        return (r.dimension.upper - r.dimension.lower) / 2
+    return r.uncertainty or 0.0
+
+
+def _half_widths(
+    layout: Layout, section: HingeSection, halves: dict[str, Array], rung: str, force: float
+) -> Array:
+    """Half-widths of the estimates in INTERVALS, shape (len(INTERVALS), elements).
+
+    For each dimension it is half of what moving it by its own half-width, both ways, changes.
+    """
+    squares = np.zeros((len(INTERVALS), len(layout.elements)))
+    for dimension, half in halves.items():
+        ends = []
+        for sign in (-1.0, 1.0):
+            moved = section.with_(**{dimension: getattr(section, dimension) + sign * half})
+            rows = estimate_sections(layout, moved, rung, force)
+            ends.append(
+                np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
+            )  # None: NaN
+        squares += ((ends[1] - ends[0]) / 2) ** 2
+    return np.sqrt(squares)
+
+
+def _intervals(
+    layout: Layout, made: ElementEstimate, half_widths: Array
+) -> dict[str, tuple[float, float] | None]:
+    found: dict[str, tuple[float, float] | None] = {}
+    for name, half in zip(INTERVALS, half_widths.tolist()):
+        value = getattr(made, name)
+        found[name] = None if value is None or half != half else (value - half, value + half)
+    safety = layout.design.rating.yield_factor
+    found["rated_force"] = tuple(min(made.force, end / safety) for end in found["yield_force"])
+    return found

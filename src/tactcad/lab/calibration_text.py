@@ -1,0 +1,235 @@
+"""A calibration as text for people, as CSV and as JSON, and read back."""
+
+from __future__ import annotations
+
+import json
+from math import inf, isfinite
+
+import numpy as np
+
+from tactcad.design.csv_table import LARGEST_FILE, Field, refuse_duplicates
+from tactcad.design.csv_table import read as read_table
+from tactcad.design.files import read_json
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.lab.calibration import ElementCalibration, Estimate
+from tactcad.lab.grasp import Sensitivity
+from tactcad.lab.plain import plain
+
+SCHEMA = "tactcad-calibration-1"
+KNOWN_EXACTLY = 1e6  # degrees of freedom of a table that states no uncertainty
+FIELDS = (
+    Field("element", "1", 1, 100_000, integer=True),
+    Field("stiffness_N_per_mm", "N/mm", 0, 1e9, above=True),
+    Field("signal_per_deflection_V_per_mm", "V/mm", -1e9, 1e9),
+)
+UNCERTAINTY = (
+    Field("stiffness_se", "N/mm", 0, 1e9),
+    Field("signal_per_deflection_se", "V/mm", 0, 1e9),
+    Field("correlation", "1", -1, 1),
+    Field("dof", "1", 1, 1e9),
+)
+
+
+def to_text(rows: list[ElementCalibration], load_cell: float, level: float) -> str:
+    """A table for the terminal, outliers and notes below."""
+    head = (
+        "element",
+        "runs",
+        "K N/mm",
+        f"{level:.0%} interval",
+        "as paper",
+        "K_v V/mm",
+        f"{level:.0%} interval",
+        "K_v/K V/N",
+        f"{level:.0%} interval",
+        "V_0 V",
+        "max d um",
+        "max F N",
+        "max dV V",
+        "lin F %",
+        "lin V %",
+    )
+    body = [
+        (
+            str(r.element),
+            str(r.runs),
+            f"{r.stiffness.value:.3f}",
+            _range(r.stiffness),
+            f"{r.stiffness_as_paper.value:.3f}",
+            f"{r.signal_per_deflection.value:.3f}",
+            _range(r.signal_per_deflection),
+            f"{r.signal_per_force.value:.4f}",
+            _range(r.signal_per_force, 4),
+            f"{r.zero_signal:.3f}",
+            f"{r.max_deflection * 1e3:.1f}",
+            f"{r.max_force:.3f}",
+            f"{r.max_signal_change:.3f}",
+            f"{r.linearity_force * 100:.2f}",
+            f"{r.linearity_signal * 100:.2f}",
+        )
+        for r in rows
+    ]
+    width = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
+    lines = ["  ".join(cell.rjust(w) for cell, w in zip(line, width)) for line in [head, *body]]
+    lines += [
+        "",
+        f"load cell in series: {load_cell:g} N/mm; K, K_v, K_v/K by weighted fit of all runs; 'as "
+        "paper': averaged runs, force against deflection",
+    ]
+    for r in rows:
+        lines += [
+            f"outlier: element {o.element}, run {o.run}, displacement {o.displacement:g} mm, {o.quantity} "
+            f"(line {o.line})"
+            for o in r.outliers
+        ]
+        lines += [f"element {r.element}: {note}" for note in r.notes]
+    return "\n".join(lines) + "\n"
+
+
+def _range(e: Estimate, digits: int = 3) -> str:
+    return f"{e.low:.{digits}f} to {e.high:.{digits}f}"
+
+
+def to_json(rows: list[ElementCalibration], load_cell: float, level: float) -> str:
+    """Everything, infinities as text."""
+    data = {
+        "schema": SCHEMA,
+        "load_cell_stiffness_N_per_mm": load_cell,
+        "level": level,
+        "units": "mm, N, V",
+        "elements": rows,
+    }
+    return json.dumps(plain(data), indent=1, allow_nan=False) + "\n"
+
+
+def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
+    """Table 1's columns with standard errors: what `read` takes. Raises CheckFailure where a stiffness is
+    not bounded.
+    """
+    for r in rows:
+        if not (0 < r.stiffness.value < inf and isfinite(r.stiffness.standard_error)):
+            raise CheckFailure(
+                f"element {r.element}: the readings do not give its stiffness, so there is no calibration "
+                "to write"
+            )
+    names = (
+        "element",
+        "stiffness_N_per_mm",
+        "stiffness_se",
+        "max_deflection_um",
+        "max_force_N",
+        "max_signal_V",
+        "signal_per_deflection_V_per_mm",
+        "signal_per_deflection_se",
+        "correlation",
+        "dof",
+        "signal_per_force_V_per_N",
+        "zero_signal_V",
+    )
+    lines = [
+        f"# calibration by tactcad calibrate; load cell {load_cell:g} N/mm in series removed",
+        ",".join(names),
+    ]
+    for r in rows:
+        lines.append(
+            f"{r.element},"
+            + ",".join(
+                f"{v:.9g}"
+                for v in (
+                    r.stiffness.value,
+                    r.stiffness.standard_error,
+                    r.max_deflection * 1e3,
+                    r.max_force,
+                    r.max_signal_change,
+                    r.signal_per_deflection.value,
+                    r.signal_per_deflection.standard_error,
+                    r.correlation,
+                    r.dof,
+                    r.signal_per_force.value,
+                    r.zero_signal,
+                )
+            )
+        )
+    return "\n".join(lines) + "\n"
+
+
+def read(path: str) -> Sensitivity:
+    """A calibration from CSV or JSON, as `to_csv` and `to_json` write it; a table without uncertainties
+    counts as exact.
+
+    Raises InputError: an element twice, a stiffness that is not positive, a sensitivity of zero.
+    """
+    if path.endswith(".json"):
+        return _from_json(path)
+    rows = read_table(path, FIELDS, UNCERTAINTY)
+    refuse_duplicates(rows, ("element",))
+    for i, v in enumerate(rows.values("signal_per_deflection_V_per_mm")):
+        if v == 0:
+            raise InputError(
+                rows.where(i, "signal_per_deflection_V_per_mm"),
+                "a sensitivity of zero gives no deflection",
+                legal="not 0",
+            )
+    number = rows.values("element").astype(int)
+
+    def pick(name: str, default: float) -> np.ndarray:
+        return rows.values(name) if name in rows.columns else np.full(len(number), default)
+
+    return Sensitivity(
+        number,
+        rows.values("stiffness_N_per_mm"),
+        pick("stiffness_se", 0.0),
+        rows.values("signal_per_deflection_V_per_mm"),
+        pick("signal_per_deflection_se", 0.0),
+        pick("correlation", 0.0),
+        pick("dof", KNOWN_EXACTLY),
+    )
+
+
+def _from_json(path: str) -> Sensitivity:
+    data = read_json(path, LARGEST_FILE, "a calibration")
+    try:
+        elements = data["elements"]
+        if data.get("schema") != SCHEMA:
+            raise KeyError("schema")
+        columns = [
+            [
+                float(e["element"]),
+                e["stiffness"]["value"],
+                e["stiffness"]["standard_error"],
+                e["signal_per_deflection"]["value"],
+                e["signal_per_deflection"]["standard_error"],
+                e["correlation"],
+                e["dof"],
+            ]
+            for e in elements
+        ]
+        values = np.array(columns, dtype=float).reshape(-1, 7)
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
+        raise InputError(
+            path, "not a calibration by tactcad calibrate --json", legal=f"schema {SCHEMA}"
+        ) from None
+    if not len(values):
+        raise InputError(path, "a calibration of no element", legal="one element at least")
+    if not (np.isfinite(values[:, 0]).all() and (values[:, 0] >= 1).all() and (values[:, 0] % 1 == 0).all()):
+        raise InputError(
+            path, "an element's number is none", value=values[:, 0].tolist(), legal="whole numbers from 1"
+        )
+    number = values[:, 0].astype(int)
+    if len(set(number.tolist())) != len(number):
+        raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")
+    if not (
+        np.isfinite(values).all()
+        and (values[:, 1] > 0).all()
+        and (values[:, 2] >= 0).all()
+        and (values[:, 3] != 0).all()
+        and (values[:, 4] >= 0).all()
+        and (np.abs(values[:, 5]) <= 1).all()
+        and (values[:, 6] >= 1).all()
+    ):
+        raise InputError(
+            path,
+            "a stiffness, sensitivity or its uncertainty is not usable",
+            legal="stiffness above 0, finite errors from 0",
+        )
+    return Sensitivity(number, *values[:, 1:].T)

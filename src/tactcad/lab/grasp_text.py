@@ -1,0 +1,78 @@
+"""Object stiffnesses as text for people and as JSON."""
+
+from __future__ import annotations
+
+import json
+from math import isinf
+
+from tactcad.lab.grasp import Grasp, Interval
+from tactcad.lab.plain import plain
+
+SCHEMA = "tactcad-stiffness-1"
+
+
+def to_text(found: list[Grasp], level: float) -> str:
+    """Each sample: pairs, then the combined value, then what must be known about it."""
+    lines = []
+    for g in found:
+        c = g.combined
+        lines += [
+            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {level:.0%} interval {_interval(c)} "
+            f"({c.verdict})",
+            "",
+        ]
+        head = (
+            "measuring",
+            "reference",
+            "R",
+            f"{level:.0%} interval",
+            "K_obj N/mm",
+            f"{level:.0%} interval",
+            "condition",
+            "verdict",
+        )
+        body = [
+            (
+                str(p.measuring),
+                str(p.reference),
+                f"{p.ratio:.4f}",
+                f"{p.ratio_low:.4f} to {p.ratio_high:.4f}",
+                _number(p.object.estimate),
+                _interval(p.object),
+                f"{p.condition:.1f}",
+                p.object.verdict,
+            )
+            for p in g.pairs
+        ]
+        width = [max(len(line[i]) for line in [head, *body]) for i in range(len(head))]
+        lines += [
+            "  ".join(cell.rjust(w) for cell, w in zip(line[:-1], width)) + "  " + line[-1]
+            for line in [head, *body]
+        ]
+        lines += [
+            "",
+            f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees "
+            "of freedom); the combined value uses all elements at once, with the covariance of pairs "
+            "that share the reference",
+        ]
+        lines += [*g.notes, ""]
+    return "\n".join(lines)
+
+
+def to_json(found: list[Grasp], level: float) -> str:
+    """Everything; an end that is not bounded is 'inf'."""
+    samples = [plain(g) for g in found]
+    for sample, g in zip(samples, found):
+        sample["combined"]["verdict"] = g.combined.verdict
+        for pair, p in zip(sample["pairs"], g.pairs):
+            pair["object"]["verdict"] = p.object.verdict
+    data = {"schema": SCHEMA, "level": level, "units": "mm, N, V", "samples": samples}
+    return json.dumps(data, indent=1, allow_nan=False) + "\n"
+
+
+def _number(value: float) -> str:
+    return "infinite" if isinf(value) else f"{value:.4g}"
+
+
+def _interval(i: Interval) -> str:
+    return "none" if i.empty else f"{i.low:.4g} to {'no bound' if isinf(i.high) else f'{i.high:.4g}'}"

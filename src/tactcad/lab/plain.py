@@ -1,0 +1,33 @@
+"""Records as JSON holds them."""
+
+from __future__ import annotations
+
+import dataclasses
+from math import isfinite
+
+import numpy as np
+
+UNREPORTED = {
+    "unreported": True
+}  # metadata of a field that is a picture's raw material, left out of the JSON
+
+
+def plain(value: object) -> object:
+    """Dataclasses, arrays and numbers as JSON's kinds; numbers that JSON lacks as 'nan', 'inf', '-inf'."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {
+            f.name: plain(getattr(value, f.name))
+            for f in dataclasses.fields(value)
+            if not f.metadata.get("unreported")
+        }
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float) and not isfinite(value):
+        return str(value)
+    return value

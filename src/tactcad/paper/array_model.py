@@ -1,0 +1,122 @@
+"""What the studies of the paper take from a design: hinge sections, gauge, read-out, tolerances, rig."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.mechanics.gauge_signal import Gauge
+from tactcad.mechanics.readout import ReadOut
+from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.self_heating import Power
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Half-widths, taken as two standard deviations; mm, tilt in degrees."""
+
+    hinge_thickness: float
+    hinge_length: float
+    load_arm: float
+    sheet_thickness: float
+    arm_height: float
+    pad_height: float
+    tilt: float
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Calibration and grasping; N, N/mm, mm. load_point: half-width of the roller's place."""
+
+    load_cell_stiffness: float
+    load_cell_resolution: float
+    micrometer_resolution: float
+    load_point: float
+    friction: float
+    sample_thickness: float
+    sample_poisson: float
+    moving_weight: float
+    weight: float
+    weights: int
+
+
+@dataclass(frozen=True)
+class ArrayModel:
+    """A design as those studies see it; section arrays and pad places (mm) have one entry an element."""
+
+    name: str
+    number: np.ndarray
+    arm: np.ndarray
+    section: HingeSection
+    pad_length: float
+    pad_height: float
+    pad_x: np.ndarray
+    pad_y: np.ndarray
+    gauge: Gauge
+    readout: ReadOut
+    power: Power
+    tolerance: Tolerance
+    rig: Rig
+
+    def rows(self, number: np.ndarray) -> np.ndarray:
+        """Index of each element number; -1 where the design has no such element."""
+        place = {int(n): i for i, n in enumerate(self.number)}
+        return np.array([place.get(int(n), -1) for n in number])
+
+
+def from_design(design: Design) -> ArrayModel:
+    """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig
+    tables.
+    """
+    for name in ("calibration", "sample", "grasping"):
+        if getattr(design, name) is None:
+            raise InputError(f"design {design.name}", f"has no [{name}] table, which a validation needs")
+    layout = Layout(design)
+    places = layout.elements
+    side = np.array(
+        [1.0 if p.row == 1 else -1.0 for p in places]
+    )  # row two is row one's kind turned by 180 degrees
+    gauge, readout, rig = design.gauge, design.readout, design.calibration
+    return ArrayModel(
+        design.name,
+        np.array([p.number for p in places]),
+        np.array([float(p.arm) for p in places]),
+        # friction acts at the pad of a calibration rig, and is asked for there
+        hinge_section(layout, places).with_(pad_height=0.0, friction=0.0),
+        design.element.pad_length,
+        design.element.pad_height,
+        side * design.array.row_pitch / 2,
+        side * np.array([p.y for p in places]),
+        _pick(Gauge, gauge),
+        replace(_pick(ReadOut, readout), adc_bits=int(readout.adc_bits), samples=int(readout.samples)),
+        Power(
+            gauge.resistance,
+            gauge.carrier_conductivity,
+            gauge.resistance_per_kelvin,
+            readout.reference_mismatch,
+            readout.on_time,
+            readout.period,
+        ),
+        _pick(Tolerance, design.tolerance),
+        Rig(
+            rig.load_cell_stiffness,
+            rig.load_cell_resolution,
+            rig.micrometer_resolution,
+            rig.load_point,
+            rig.friction,
+            design.sample.thickness,
+            design.sample.poisson,
+            design.grasping.moving_weight,
+            design.grasping.weight,
+            int(design.grasping.weights),
+        ),
+    )
+
+
+def _pick(kind, table):
+    return kind(**{name: getattr(table, name) for name in kind.__dataclass_fields__})

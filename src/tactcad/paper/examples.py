@@ -1,0 +1,80 @@
+"""Writes the example readings: `python -m tactcad.paper.examples DIR`. Simulated, and the files say so.
+
+Truth: Table 1's stiffnesses and sensitivities. Two samples, one soft and one far stiffer than every element.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from tactcad.lab.simulate import Noise, Truth, calibration_rows, grasp_signals
+from tactcad.paper import published
+
+SEED = 20260102
+NOISE = Noise()
+READING_NOISE = 0.0002  # V, of ten averaged samples
+SAMPLES = (3.85, 3000.0)  # N/mm
+PAD_HEIGHT = 0.005  # mm, standard deviation
+LOADS = 8  # weights added to the moving weight
+
+
+def truth() -> Truth:
+    """Table 1's elements."""
+    t = published.load().table1
+    return Truth(t.element, t.stiffness.value, t.signal_per_deflection.value, t.zero_signal.value)
+
+
+def calibration_csv(rng: np.random.Generator) -> str:
+    """Three runs an element, in the paper's steps."""
+    figure = published.load().figure
+    step, travel, cell = (
+        figure["calibration_step"] * 1e-3,
+        figure["calibration_travel"] * 1e-3,
+        figure["load_cell_stiffness"],
+    )
+    displacement = step * np.arange(round(travel / step) + 1)
+    rows = calibration_rows(truth(), cell, displacement, int(figure["calibration_runs"]), NOISE, rng)
+    lines = [
+        "# SIMULATED readings, not measured ones (python -m tactcad.paper.examples).",
+        f"# Truth: the paper's Table 1; load cell {cell:g} N/mm in series; noise {NOISE.force * 1e3:g} "
+        f"mN, {NOISE.displacement * 1e3:g} um, {NOISE.signal * 1e3:g} mV.",
+        "element,run,displacement_um,force_N,signal_V",
+    ]
+    lines += [f"{e:.0f},{r:.0f},{x * 1e3:.0f},{f:.4f},{v:.5f}" for e, r, x, f, v in rows]
+    return "\n".join(lines) + "\n"
+
+
+def grasp_csv(rng: np.random.Generator) -> str:
+    """Two samples at no load, the moving weight and each added weight; pads not quite in one plane."""
+    figure = published.load().figure
+    weight = figure["added_mass"] * 9.80665e-3
+    load = np.concatenate([[0.0], figure["moving_weight"] + weight * np.arange(LOADS + 1)])
+    array = truth()
+    height = PAD_HEIGHT * rng.standard_normal(len(array.element))
+    lines = [
+        "# SIMULATED readings, not measured ones (python -m tactcad.paper.examples).",
+        f"# Truth: the paper's Table 1; sample 1 is {SAMPLES[0]:g} N/mm, sample 2 {SAMPLES[1]:g} N/mm "
+        f"under one pad; pad heights +-{PAD_HEIGHT * 1e3:g} um, noise {READING_NOISE * 1e3:g} mV.",
+        "sample,load_N,element,signal_V",
+    ]
+    for number, x in enumerate(SAMPLES, 1):
+        signal = grasp_signals(array, load, x, READING_NOISE, rng, height)
+        signal[:, 0] = array.zero_signal + READING_NOISE * rng.standard_normal(len(height))  # no contact yet
+        for j, force in enumerate(load):
+            lines += [f"{number},{force:.4f},{e},{signal[i, j]:.5f}" for i, e in enumerate(array.element)]
+    return "\n".join(lines) + "\n"
+
+
+def write(folder: Path) -> None:
+    """calibration.csv and grasp.csv."""
+    rng = np.random.default_rng(SEED)
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "calibration.csv").write_text(calibration_csv(rng), "utf-8")
+    (folder / "grasp.csv").write_text(grasp_csv(rng), "utf-8")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))

@@ -1,0 +1,155 @@
+"""Figures 6 and 7 again: R against the grasping force, simulated, and R against K_m/K_obj, measured and by
+equation (2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import fdtrc
+
+from tactcad.lab.simulate import Truth, approach, grasp_signals
+from tactcad.mechanics import ladder, lumped
+from tactcad.paper.array_model import ArrayModel
+from tactcad.paper.published import Published
+from tactcad.paper.reference_stiffness import Table2Study
+
+REPEATS = 400  # simulated grasps for the error bars
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """R [measuring element, load] of one simulated array: one grasp as drawn, standard deviation over many,
+    truth.
+    """
+
+    reference_stiffness: float
+    ratio: np.ndarray
+    deviation: np.ndarray
+    true: np.ndarray  # equation (2)
+    reference_deflection: np.ndarray  # um, by load
+
+
+@dataclass(frozen=True)
+class Figure6:
+    measuring: np.ndarray  # N/mm
+    object_stiffness: float
+    load: np.ndarray  # N
+    measured: np.ndarray  # Table 2's R of this sample, by measuring element
+    as_printed: Simulated
+    as_supported: Simulated
+    with_pad_heights: Simulated  # supported stiffness, pads out of plane by the tolerance: R from totals
+    slopes_with_pad_heights: (
+        np.ndarray
+    )  # R from slopes of the same grasps, mean over many, by measuring element
+
+
+def elements_in_parallel(data: Published, array: ArrayModel) -> tuple[Truth, int]:
+    """All elements that press on the sample: Table 1's, and by the beam model those of the design that it
+    leaves out.
+
+    Returns the truth for a simulation and the index of the reference element.
+    """
+    t = data.table1
+    K_model = ladder.stiffness(array.section)
+    unread = ~np.isin(array.number, t.element)
+    number = np.concatenate([t.element, array.number[unread]])
+    stiffness = np.concatenate([t.stiffness.value, K_model[unread]])
+    fill = np.full(int(unread.sum()), float(np.median(t.signal_per_deflection.value)))
+    k_v = np.concatenate([t.signal_per_deflection.value, fill])
+    zero = np.concatenate([t.zero_signal.value, np.zeros(len(fill))])
+    return Truth(number, stiffness, k_v, zero), data.reference
+
+
+def figure_6(data: Published, array: ArrayModel, supported: float, rng: np.random.Generator) -> Figure6:
+    """The sample of Figure 6 at the moving weight and each added weight."""
+    truth, reference = elements_in_parallel(data, array)
+    K_m = data.table2.measuring_stiffness.value
+    rows = np.array([int(np.argmin(np.abs(truth.stiffness - k))) for k in K_m])
+    x = data.figure["figure_6_sample"]
+    column = int(np.argmin(np.abs(data.table2.object_stiffness.value - x)))
+    load = array.rig.moving_weight + array.rig.weight * np.arange(array.rig.weights + 1)
+    noise = array.readout.averaged_noise
+    heights = array.tolerance.pad_height / 2 * rng.standard_normal((REPEATS, len(truth.element)))
+
+    def simulated(K_r: float, height: np.ndarray | None) -> tuple[Simulated, np.ndarray]:
+        K = truth.stiffness.copy()
+        K[reference] = K_r
+        here = replace(truth, stiffness=K)
+        found, slopes = [], []
+        for i in range(REPEATS):
+            h = None if height is None else height[i]
+            signal = grasp_signals(here, load, x, noise, rng, h)
+            d = (signal - here.zero_signal[:, None]) / here.signal_per_deflection[:, None]
+            found.append(d[rows] / d[reference])
+            g = (d - d.mean(1, keepdims=True)) @ (load - load.mean())
+            slopes.append(g[rows] / g[reference])
+        true = lumped.deflection_ratio(K_r, K_m, x)
+        _, clean = approach(load, K, x)
+        result = Simulated(K_r, found[0], np.array(found).std(0), true, clean[reference] * 1e3)
+        return result, np.array(slopes).mean(0)
+
+    printed, _ = simulated(data.figure["reference_stiffness"], None)
+    own, _ = simulated(supported, None)
+    uneven, slopes = simulated(supported, heights)
+    return Figure6(K_m, x, load, data.table2.ratio.value[:, column], printed, own, uneven, slopes)
+
+
+@dataclass(frozen=True)
+class Figure7:
+    """Measured points [measuring element, sample] and equation (2) over K_m/K_obj for two reference
+    stiffnesses.
+    """
+
+    measuring: np.ndarray
+    relative: np.ndarray  # K_m/K_obj of the points
+    ratio: np.ndarray
+    axis: np.ndarray
+    printed: np.ndarray  # [measuring element, axis]
+    supported: np.ndarray
+    supported_stiffness: float
+    slope: (
+        np.ndarray
+    )  # straight line R = c + slope K_m/K_obj through each element's points, as the paper draws
+    line_rms: float  # of R about these lines
+    model_rms: float  # of R about equation (2) with the supported stiffness
+    line_parameters: int
+    model_parameters: int
+    p_lines: float  # probability that the lines fit so much better by chance (F test)
+
+
+def figure_7(study: Table2Study) -> Figure7:
+    """R against K_m/K_obj with the object stiffness of Table 2's header."""
+    k, x, R = study.measuring, study.object_printed, study.ratio
+    relative = k[:, None] / x[None, :]
+    axis = np.geomspace(relative.min() * 0.8, relative.max() * 1.2, 80)
+    K_r = study.supported.value[0]
+    lines = [np.polyfit(a, b, 1) for a, b in zip(relative, R)]
+    straight = np.array([np.polyval(p, a) for p, a in zip(lines, relative)])
+    model = lumped.deflection_ratio(K_r, k[:, None], x[None, :])
+    curve = lambda r: lumped.deflection_ratio(r, k[:, None], k[:, None] / axis[None, :])  # noqa: E731
+    return Figure7(
+        k,
+        relative,
+        R,
+        axis,
+        curve(study.reference_printed),
+        curve(K_r),
+        K_r,
+        np.array([p[0] for p in lines]),
+        float(((R - straight) ** 2).mean() ** 0.5),
+        float(((R - model) ** 2).mean() ** 0.5),
+        2 * len(k),
+        1,
+        _chance(R, straight, model, 2 * len(k)),
+    )
+
+
+def _chance(R: np.ndarray, straight: np.ndarray, model: np.ndarray, parameters: int) -> float:
+    """F test of the lines against a model with one parameter, which they do not contain: a guide, not a
+    proof.
+    """
+    lines, one = ((R - straight) ** 2).sum(), ((R - model) ** 2).sum()
+    extra, rest = parameters - 1, R.size - parameters
+    return float(fdtrc(extra, rest, max(one - lines, 0.0) / extra / (lines / rest)))

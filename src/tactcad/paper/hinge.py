@@ -1,0 +1,217 @@
+"""Which hinge fits Table 1 and the paper's two strains best, and what they cannot tell apart.
+
+The thickness is the paper's. Length, fillet radius and notch form, which the paper leaves out, are varied:
+ln K has one unknown standard error, so the regions are those of least squares (F), and the strains enter by
+the accuracy that one may expect of a plane finite-element model.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import fdtri
+
+from tactcad.lab.plain import UNREPORTED
+from tactcad.lab.regression import t_quantile
+from tactcad.mechanics import ladder, strain
+from tactcad.mechanics.section import HingeSection
+from tactcad.paper.array_model import ArrayModel
+from tactcad.paper.published import Published
+from tactcad.paper.residuals import matched
+
+LENGTHS = np.linspace(0.30, 2.0, 171)  # mm, slot length l
+RADII = np.linspace(0.05, 0.60, 56)  # mm, fillet radius r
+CENTRE = 1e-3  # grid length over hinge thickness that stands for a point
+# Chosen: what a plane finite-element model of that time may be off in surface strain by its mesh.
+STRAIN_ACCURACY = 0.01
+
+
+@dataclass(frozen=True)
+class Form:
+    """One notch form: best fit and regions. Lengths mm; square sums of ln K over the grid [radius,
+    length].
+    """
+
+    name: str
+    two_sided: bool
+    square_sum: np.ndarray = field(metadata=UNREPORTED)
+    best_length: float
+    best_radius: float
+    best_scatter: float  # rms of ln K at the best point, degrees of freedom taken off
+    length_at_radius: np.ndarray  # best length at each radius
+    scatter_at_radius: np.ndarray
+    design_length: float  # best length at the design's radius
+    design_low: float  # its 95 % interval
+    design_high: float
+    effective_length: float  # mean E b t^3/(12 K L^2) of the fitted elements: what K identifies
+    effective_spread: float  # over the 95 % region: (largest - least)/mean
+    radius_from_strain: tuple[
+        float, float
+    ]  # radii whose face strain agrees with the printed strains; NaN if none
+
+
+@dataclass(frozen=True)
+class StrainCheck:
+    """The paper's two strains at 2 N: load point and factor on 6 F L/(E b t^2) that they imply."""
+
+    arms: tuple[float, float]
+    printed: tuple[float, float]  # plain ratios
+    nominal: tuple[float, float]  # with the load at the pad's centre
+    offset: float  # from the tip, mm
+    offset_half: float  # by rounding of the print
+    factor: float
+    factor_half: float
+    pad_half: float
+
+
+@dataclass(frozen=True)
+class HingeFit:
+    element: np.ndarray
+    forms: tuple[Form, ...]
+    strains: StrainCheck
+    design_length: float
+    design_radius: float
+    design_two_sided: bool
+    region: float  # square sum below which a hinge lies in the joint 95 % region
+    f_ratio: float  # worse form's least square sum over the better one's
+    f_limit: float  # 95 % point of F for it
+    leave_out: dict[int, float]  # design_length's fit of the design's form without one element
+
+    @property
+    def own(self) -> Form:
+        """The form that the design has."""
+        return next(f for f in self.forms if f.two_sided == self.design_two_sided)
+
+    @property
+    def forms_alike(self) -> bool:
+        return self.f_ratio < self.f_limit
+
+
+def fit(data: Published, array: ArrayModel, rung: str = "solid") -> HingeFit:
+    """Both forms over the grid of lengths and radii."""
+    here, s = matched(data, array)
+    K = data.table1.stiffness.value[here]
+    design_r, design_l = (float(np.median(v)) for v in (s.fillet_radius, s.hinge_length))
+    t = float(np.median(s.hinge_thickness))
+    strains = _strains(data, t, array)
+    own = bool(np.any(s.two_sided))
+    forms, logs = [], {}
+    for name, two in (("one-sided", False), ("two-sided", True)):
+        log_k = _grid(s.with_(two_sided=two), rung)
+        logs[two] = log_k
+        forms.append(_form(name, two, log_k, K, s, design_r, strains))
+    n = len(K)
+    sums = [np.nanmin(f.square_sum) for f in forms]
+    region = min(sums) * (1 + 2 * fdtri(2, n - 2, 0.95) / (n - 2))
+    at = int(np.argmin(np.abs(RADII - design_r)))
+    leave = {}
+    for i, number in enumerate(data.table1.element[here]):
+        rest = np.arange(n) != i
+        square = ((logs[own][at][:, rest] - np.log(K[rest])) ** 2).sum(-1)
+        leave[int(number)] = float(LENGTHS[np.nanargmin(square)])
+    return HingeFit(
+        data.table1.element[here],
+        tuple(forms),
+        strains,
+        design_l,
+        design_r,
+        own,
+        float(region),
+        float(max(sums) / min(sums)),
+        float(fdtri(n - 2, n - 2, 0.95)),
+        leave,
+    )
+
+
+def _grid(s: HingeSection, rung: str) -> np.ndarray:
+    """ln K over [radius, length, element]; NaN outside the rung's range."""
+    r, l = np.meshgrid(RADII, LENGTHS, indexing="ij")  # noqa: E741
+    wide = {name: np.broadcast_to(getattr(s, name), s.shape) for name in s.__dataclass_fields__}
+    clamp = wide["body_length"] + wide["hinge_length"] / 2  # the clamp's edge stays where it is
+    grid = HingeSection(**wide).with_(
+        fillet_radius=np.broadcast_to(r[..., None], (*r.shape, *s.shape)),
+        hinge_length=np.broadcast_to(l[..., None], (*r.shape, *s.shape)),
+        body_length=clamp - l[..., None] / 2,
+    )
+    return np.log(ladder.evaluate(grid, rung).stiffness)
+
+
+def _form(
+    name: str,
+    two: bool,
+    log_k: np.ndarray,
+    K: np.ndarray,
+    s: HingeSection,
+    design_r: float,
+    strains: StrainCheck,
+) -> Form:
+    n = len(K)
+    square = ((log_k - np.log(K)) ** 2).sum(-1)
+    i, j = np.unravel_index(np.nanargmin(square), square.shape)
+    with np.errstate(invalid="ignore"):
+        filled = np.where(np.isnan(square), np.inf, square)
+    best_j = filled.argmin(1)
+    at_radius = np.where(np.isinf(filled.min(1)), np.nan, LENGTHS[best_j])
+    own = filled[int(np.argmin(np.abs(RADII - design_r)))]
+    inside = own <= own.min() * (1 + t_quantile(0.95, n - 1) ** 2 / (n - 1))
+    region = filled <= filled.min() * (1 + 2 * fdtri(2, n - 2, 0.95) / (n - 2))
+    effective = s.youngs_modulus * s.width * s.hinge_thickness**3 / (12 * np.exp(log_k) * s.load_arm**2)
+    effective = effective.mean(-1)
+    fitted = zip(RADII, at_radius)
+    factor = np.array(
+        [
+            float(np.median(face_factor(s.with_(fillet_radius=r, hinge_length=l, two_sided=two))))
+            for r, l in fitted
+        ]
+    )
+    agrees = np.abs(factor / strains.factor - 1) <= 2 * STRAIN_ACCURACY
+    radii = (float(RADII[agrees].min()), float(RADII[agrees].max())) if agrees.any() else (np.nan, np.nan)
+    return Form(
+        name,
+        two,
+        square,
+        float(LENGTHS[j]),
+        float(RADII[i]),
+        float((square[i, j] / (n - 2)) ** 0.5),
+        at_radius,
+        np.sqrt(filled.min(1) / (n - 1)),
+        float(LENGTHS[own.argmin()]),
+        float(LENGTHS[inside].min()),
+        float(LENGTHS[inside].max()),
+        float(effective[i, j]),
+        float((effective[region].max() - effective[region].min()) / effective[i, j]),
+        radii,
+    )
+
+
+def face_factor(s: HingeSection) -> np.ndarray:
+    """Strain on the gauge face at the hinge's centre over 6 F L/(E b t^2), plane stress: a grid of no length."""
+    return strain.grid_factor(s, CENTRE * s.hinge_thickness, "plane")
+
+
+def _strains(data: Published, t: float, array: ArrayModel) -> StrainCheck:
+    """eps = f 6 F (a - c)/(E b t^2) at two arms gives offset c and factor f."""
+    figure = data.figure
+    arms = (figure["short_arm"], figure["long_arm"])
+    eps = np.array([figure["strain_short_arm"], figure["strain_long_arm"]]) / 100
+    half = np.array([data.half_step["strain_short_arm"], data.half_step["strain_long_arm"]]) / 100
+    unit = 6 * figure["fem_force"] / (figure["youngs_modulus"] * figure["sheet_thickness"] * t * t)
+
+    def solve(e: np.ndarray) -> tuple[float, float]:
+        slope = (e[1] - e[0]) / (arms[1] - arms[0])
+        return arms[0] - e[0] / slope, slope / unit
+
+    offset, factor = solve(eps)
+    corners = [solve(eps + half * np.array(sign)) for sign in ((1, -1), (-1, 1), (1, 1), (-1, -1))]
+    pad_half = array.pad_length / 2
+    return StrainCheck(
+        arms,
+        tuple(eps.tolist()),
+        tuple(unit * (a - pad_half) for a in arms),
+        float(offset),
+        float(max(abs(c[0] - offset) for c in corners)),
+        float(factor),
+        float(max(abs(c[1] - factor) for c in corners)),
+        pad_half,
+    )

@@ -1,0 +1,105 @@
+"""Section 8: the uncertainty budget."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactcad.paper import plots as d
+from tactcad.paper.budget import Budget
+from tactcad.paper.report import Figure, Section, Table, listed, percent, sig
+
+MATTERS = 0.05
+
+
+def page(b: Budget) -> Section:
+    return Section(
+        "budget",
+        "Uncertainty budget",
+        "Every effect with its size for this array, carried to K_obj of one pair: K_r = "
+        f"{sig(b.reference)}, K_m = {b.measuring:g}, K_obj = {b.object_stiffness:g} N/mm.",
+        findings(b),
+        (_table(b),),
+        (_plot(b),),
+        b,
+    )
+
+
+def findings(b: Budget) -> tuple[str, ...]:
+    top = b.effects[:3]
+    small = next(e for e in b.effects if e.name.startswith("closed form"))
+    above = [e for e in b.effects if e.on_object > small.on_object]
+    left = sorted(b.effects, key=lambda e: -e.remaining)[:2]
+    large = [e for e in b.effects if e.on_object > MATTERS]
+    return (
+        f"Largest are {listed(f'{e.name} ({percent(e.on_object)})' for e in top)}. {len(large)} of "
+        f"{len(b.effects)} effects move K_obj by more than {percent(MATTERS)} each.",
+        f"An error of 1 % in K_r is {abs(b.sensitivity_reference):.2f} % in K_obj here, 1 % in K_m "
+        f"{abs(b.sensitivity_measuring):.2f} %, 1 % in R {abs(b.sensitivity_ratio):.2f} %.",
+        f"Together (root of squares) they make {percent(b.total())} as the paper's rig stood, with K "
+        f"from the drawing; with each remedy {percent(b.total(remaining=True))}. Then "
+        f"{listed(f'{e.name} ({percent(e.remaining)})' for e in left)} lead.",
+        f"The closed form's own error ({percent(small.short_arm)} of K, {percent(small.on_object)} of "
+        f"K_obj) is smaller than {len(above)} of the other {len(b.effects) - 1} effects: it is a sharp "
+        "tool, not the answer.",
+    )
+
+
+def _table(b: Budget) -> Table:
+    part = lambda v: "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"  # noqa: E731
+    rows = tuple(
+        (e.name, part(e.short_arm), part(e.long_arm), part(e.on_object), e.how, e.remedy, part(e.remaining))
+        for e in b.effects
+    )
+    return Table(
+        "Effects by size on K_obj",
+        (
+            ("effect", ""),
+            ("on K", "shortest arm"),
+            ("on K", "longest arm"),
+            ("on K_obj", ""),
+            ("how computed", ""),
+            ("remedy", ""),
+            ("remaining", "on K_obj"),
+        ),
+        rows,
+        "Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. "
+        "'assumed' and 'chosen' values stand in the source. Dimensions matter only where K is taken "
+        "from the drawing; a calibrated element carries only its calibration.",
+    )
+
+
+def _plot(b: Budget) -> Figure:
+    shown = [e for e in b.effects if e.on_object > 0]
+    with d.panels(size=(11.2, 0.31 * len(shown) + 1.3)) as (figure, ax):
+        y = np.arange(len(shown))[::-1]
+        least = 3e-4
+        ax.barh(
+            y,
+            [e.on_object for e in shown],
+            0.62,
+            color=d.BLUE,
+            label="as the paper's rig stood, K from the drawing",
+            left=0,
+        )
+        ax.plot(
+            [max(e.remaining, least) for e in shown],
+            y,
+            "D",
+            color=d.ORANGE,
+            mec=d.BLACK,
+            ms=7,
+            label="with the remedy",
+        )
+        ax.set_xscale("log")
+        ax.set_xlim(least, max(e.on_object for e in shown) * 1.6)
+        ax.set_xticks([1e-3, 1e-2, 0.1, 1.0], ["0.1 %", "1 %", "10 %", "100 %"])
+        ax.set_yticks(y, [e.name for e in shown])
+        ax.set_ylim(-0.7, len(shown) - 0.3)
+        ax.set_xlabel("half-width on K_obj (left edge: 0.03 % and less)")
+        ax.legend(loc="lower right")
+        ax.grid(axis="y", visible=False)
+        return Figure(
+            "budget",
+            d.svg(figure, "budget"),
+            "Effects on K_obj, largest first, and what a better rig or sample leaves of them.",
+        )

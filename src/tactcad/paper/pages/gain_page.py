@@ -1,0 +1,218 @@
+"""Section 3: K_v by one gain."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactcad.paper import plots as d
+from tactcad.paper.array_model import ArrayModel
+from tactcad.paper.gain import GainFit
+from tactcad.paper.report import (
+    Figure,
+    Marked,
+    Section,
+    Table,
+    exact,
+    interval,
+    listed,
+    percent,
+    sig,
+    signed_percent,
+)
+
+
+def page(g: GainFit, array: ArrayModel) -> Section:
+    return Section(
+        "gain",
+        "Signal sensitivity K_v by one gain",
+        "All elements share one read-out. Does one gain explain their K_v, and which gain is it?",
+        findings(g, array),
+        (_by_element(g), _lengths(g), _heating(g, array)),
+        (_plot(g),),
+        g,
+    )
+
+
+def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
+    far = np.abs(g.residual) > 2 * g.scatter
+    inside = g.fitted_low <= g.design_gain <= g.fitted_high
+    change = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
+    found = [
+        f"One gain of {sig(g.fitted_gain)} V per unit of strain (95 % "
+        f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of {percent(g.scatter)} in K_v. "
+        f"Excitation {array.readout.excitation:g} V × amplifier {array.readout.gain:g} × gauge factor "
+        f"{array.gauge.factor:g}/4 gives {sig(g.design_gain)}, {'inside' if inside else 'OUTSIDE'} that "
+        "interval.",
+        "What the data identify is gain over hinge length, not the gain: over slot lengths from "
+        f"{g.lengths[0]:.2f} to {g.lengths[-1]:.2f} mm the fitted gain runs from "
+        f"{sig(g.gain_at_length[0])} to {sig(g.gain_at_length[-1])} V (as the effective length that K fixes "
+        f"to the power {g.per_length_exponent:.2f}; a grid longer than the leaf keeps it below 1), while the "
+        f"scatter changes by {percent(change)} of itself.",
+        (
+            f"Element{'s' if far.sum() > 1 else ''} {listed(f'no. {n}' for n in g.element[far])} "
+            f"lie{'' if far.sum() > 1 else 's'} more than two standard deviations off."
+            if far.any()
+            else "No element lies more than two standard deviations off: gauge place and bonding scatter "
+            "over all of them alike."
+        ),
+    ]
+    if g.signal.limited.any():
+        found.append(
+            "At the paper's largest deflections the read-out of "
+            f"{listed(f'no. {n}' for n in g.element[g.signal.limited])} reaches a supply's or the "
+            "converter's limit."
+        )
+    found.append(
+        f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
+        f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
+        "deviations of the averaged reading are "
+        f"{interval(*(np.array([g.signal.resolution.min(), g.signal.resolution.max()]) * 1e3), 2)} mN, "
+        "with the noise that the design assumes."
+    )
+    found.append(
+        f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at "
+        f"{sig(g.always_on.power_density, 2)} kW/m² and reads up to "
+        f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, "
+        f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN remain at the end of "
+        f"a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
+    )
+    return tuple(found)
+
+
+def _heating(g: GainFit, array: ArrayModel) -> Table:
+    rows = tuple(
+        (
+            name,
+            h.power * 1e3,
+            h.power_density,
+            h.rise,
+            f"{h.drift * 1e6:.1f}".replace("-", "−"),
+            drift.min() * 1e3,
+            drift.max() * 1e3,
+        )
+        for name, h, drift in (
+            ("power on all the time", g.always_on, g.drift_always_on),
+            (
+                f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s",
+                g.switched,
+                g.drift_switched,
+            ),
+        )
+    )
+    return Table(
+        "Self-heating of the grid",
+        (
+            ("", ""),
+            ("mean power", "mW"),
+            ("per grid area", "kW/m²"),
+            ("grid over leaf", "K"),
+            ("drift dR/R", "10⁻⁶"),
+            ("reads as, least", "mN"),
+            ("largest", "mN"),
+        ),
+        rows,
+        "Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
+        "moment. The drift is what the reference gauges leave.",
+    )
+
+
+def _by_element(g: GainFit) -> Table:
+    rows = tuple(
+        (
+            int(n),
+            exact(g.arm[i]),
+            g.strain_per_deflection[i] * 100,
+            exact(g.measured[i]),
+            Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i],
+            signed_percent(np.expm1(g.residual[i])),
+            exact(g.measured_per_force[i]),
+            g.signal.per_force[i],
+            g.signal.volts[i],
+            percent(g.signal.nonlinearity[i]),
+            g.signal.resolution[i] * 1e3,
+        )
+        for i, n in enumerate(g.element)
+    )
+    return Table(
+        "Predicted and printed sensitivities (magnitudes)",
+        (
+            ("element", ""),
+            ("arm a", "mm"),
+            ("foil strain per deflection", "%/mm"),
+            ("K_v printed", "V/mm"),
+            ("K_v, fitted gain", "V/mm"),
+            ("printed over fitted", "−1"),
+            ("K_v/K printed", "V/N"),
+            ("K_v/K, design's gain", "V/N"),
+            ("signal at largest deflection", "V"),
+            ("bridge non-linearity", ""),
+            ("resolution", "mN"),
+        ),
+        rows,
+        "The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's "
+        "figure would show. The last four columns use the design's read-out, not the fitted gain. "
+        "Resolution: two standard deviations of the averaged reading.",
+    )
+
+
+def _lengths(g: GainFit) -> Table:
+    pick = np.unique(np.linspace(0, len(g.lengths) - 1, 7).round().astype(int))
+    return Table(
+        "The gain that another hinge length would need",
+        (("slot length", "mm"), *((f"{g.lengths[i]:.2f}", "") for i in pick)),
+        (
+            ("fitted gain, V", *(sig(g.gain_at_length[i]) for i in pick)),
+            ("scatter of ln K_v", *(f"{g.scatter_at_length[i]:.4f}" for i in pick)),
+        ),
+    )
+
+
+def _plot(g: GainFit) -> Figure:
+    with d.panels(1, 2, size=(11.2, 4.4)) as (figure, (left, right)):
+        span = np.array([g.predicted.min() * 0.7, g.predicted.max() * 1.4])
+        left.fill_between(
+            span,
+            span * np.exp(-g.scatter),
+            span * np.exp(g.scatter),
+            color=d.SKY,
+            alpha=0.35,
+            lw=0,
+            label="± one standard deviation",
+        )
+        left.plot(span, span, color=d.BLACK, lw=1.2)
+        left.plot(g.predicted, g.measured, "o", color=d.RED, ms=8, mec="white")
+        used: list[tuple[float, float]] = []
+        for x, y, n in zip(g.predicted, g.measured, g.element):
+            shift = 9 if not any(abs(x - a) < 0.05 * x and abs(y - b) < 0.06 * y for a, b in used) else -22
+            left.annotate(f"{n}", (x, y), (shift, -4), textcoords="offset points", fontsize=10)
+            used.append((x, y))
+        for axis in (left.xaxis, left.yaxis):
+            axis.axes.set_xscale("log")
+            axis.axes.set_yscale("log")
+        d.log_ticks(left.xaxis, (3, 4, 5, 6, 8, 10))
+        d.log_ticks(left.yaxis, (2, 3, 4, 6, 8, 10))
+        left.set_xlim(*span)
+        left.set_xlabel("K_v predicted with one gain, V/mm")
+        left.set_ylabel("K_v printed, V/mm")
+        left.set_title("by element number")
+        left.legend(loc="upper left")
+        right.plot(g.lengths, g.gain_at_length, "-", color=d.BLUE, lw=2)
+        right.axhline(g.design_gain, color=d.RED, ls="--", lw=1.6)
+        right.annotate(
+            "the design's read-out",
+            (g.lengths[-1], g.design_gain),
+            (0, -15),
+            textcoords="offset points",
+            ha="right",
+            color=d.RED,
+            fontsize=10,
+        )
+        right.set_xlabel("slot length l, mm")
+        right.set_ylabel("gain that fits K_v best, V per unit strain")
+        right.set_title("gain and length: every point on the line fits equally well")
+        right.set_ylim(0)
+        return Figure(
+            "gain",
+            d.svg(figure, "gain"),
+            "Left: K_v with one gain. Right: the gain that each slot length would need.",
+        )

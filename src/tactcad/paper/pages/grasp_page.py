@@ -1,0 +1,198 @@
+"""Section 6: Figures 6 and 7 redrawn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactcad.paper import plots as d
+from tactcad.paper.array_model import ArrayModel
+from tactcad.paper.grasp_figures import Figure6, Figure7, Simulated
+from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent
+
+VISIBLE = 0.05  # drift of R over the load that a reader sees in Figure 6
+
+
+def page(six: Figure6, seven: Figure7, array: ArrayModel) -> Section:
+    return Section(
+        "figures",
+        "Figures 6 and 7 redrawn",
+        "R against the grasping force, simulated with all elements in parallel on one sample; and R "
+        "against K_m/K_obj with the measured points.",
+        findings(six, seven, array),
+        (_table6(six), _table7(seven)),
+        (_figure6(six), _figure7(seven)),
+        {"figure_6": six, "figure_7": seven},
+    )
+
+
+def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]:
+    better = _miss(six, six.as_supported) < _miss(six, six.as_printed)
+    uneven = float((six.with_pad_heights.deviation / six.with_pad_heights.true[:, None]).max())
+    noise = float((six.as_supported.deviation / six.as_supported.true[:, None]).max())
+    found = [
+        f"For the {six.object_stiffness:g} N/mm sample the simulation with K_r = "
+        f"{sig(six.as_supported.reference_stiffness)} N/mm is {percent(_miss(six, six.as_supported))} "
+        f"(rms) from Table 2's R; with the printed {six.as_printed.reference_stiffness:g} it is "
+        f"{percent(_miss(six, six.as_printed))}. "
+        + ("The supported one is closer." if better else "The printed one is closer."),
+        "R does not depend on the load as long as pads are in one plane: read-out noise moves it by at "
+        f"most {percent(noise)} (one standard deviation, at {six.load[0]:g} N). Pads out of plane by "
+        f"±{array.tolerance.pad_height * 1e3:g} µm move an R made of totals by {percent(uneven)} there, "
+        f"{'which Figure 6 would show' if uneven > VISIBLE else 'which Figure 6 would hardly show'}; "
+        "made of slopes, R keeps to "
+        f"{percent(float(np.abs(six.slopes_with_pad_heights / six.with_pad_heights.true - 1).max()))}.",
+        "At the largest load the simulated reference element deflects by "
+        f"{sig(six.as_supported.reference_deflection[-1])} µm with the supported and by "
+        f"{sig(six.as_printed.reference_deflection[-1])} µm with the printed stiffness (section 7 holds "
+        "both against the printed range).",
+    ]
+    found.append(
+        f"The paper's six straight lines of R over K_m/K_obj leave {sig(seven.line_rms)} (rms of R) with "
+        f"{seven.line_parameters} parameters; equation (2) leaves {sig(seven.model_rms)} with "
+        f"{seven.model_parameters}, and bends: R levels off at K_r/K_m. "
+        + (
+            "The points scatter too much to tell which is right."
+            if seven.p_lines > 0.01
+            else f"The lines fit better than chance allows (F test, p {seven.p_lines:.0e}): one reference "
+            f"stiffness alone does not carry all of Table 2."
+        )
+    )
+    return tuple(found)
+
+
+def _miss(six: Figure6, s: Simulated) -> float:
+    return float((np.log(six.measured / s.true) ** 2).mean() ** 0.5)
+
+
+def _table6(six: Figure6) -> Table:
+    rows = tuple(
+        (
+            f"{k:g}",
+            six.measured[i],
+            six.as_supported.true[i],
+            signed_percent(six.as_supported.true[i] / six.measured[i] - 1),
+            six.as_printed.true[i],
+            signed_percent(six.as_printed.true[i] / six.measured[i] - 1),
+            six.as_supported.deviation[i, 0],
+            six.with_pad_heights.deviation[i, 0],
+            six.with_pad_heights.deviation[i, -1],
+        )
+        for i, k in enumerate(six.measuring)
+    )
+    return Table(
+        f"R on the {six.object_stiffness:g} N/mm sample",
+        (
+            ("K_m", "N/mm"),
+            ("R measured", ""),
+            ("R, supported K_r", ""),
+            ("off", ""),
+            ("R, printed K_r", ""),
+            ("off", ""),
+            ("s of R by noise", f"{six.load[0]:g} N"),
+            ("s of R by pad heights", f"{six.load[0]:g} N"),
+            ("the same", f"{six.load[-1]:.4g} N"),
+        ),
+        rows,
+        "s: standard deviation over simulated grasps. The element that did not function presses too: "
+        "its stiffness is the beam model's.",
+    )
+
+
+def _table7(seven: Figure7) -> Table:
+    rows = tuple(
+        (f"{k:g}", interval(row.min(), row.max()), interval(r.min(), r.max()), s)
+        for k, row, r, s in zip(seven.measuring, seven.relative, seven.ratio, seven.slope)
+    )
+    return Table(
+        "Straight lines through Figure 7's points",
+        (("K_m", "N/mm"), ("K_m/K_obj", ""), ("R", ""), ("slope of the line", "")),
+        rows,
+    )
+
+
+def _figure6(six: Figure6) -> Figure:
+    with d.panels(1, 3, size=(11.2, 4.9), sharey=True) as (figure, axes):
+        shown = (
+            (six.as_printed, f"printed K_r = {six.as_printed.reference_stiffness:g} N/mm"),
+            (six.as_supported, f"supported K_r = {six.as_supported.reference_stiffness:.1f} N/mm"),
+            (six.with_pad_heights, "supported K_r, pads out of plane"),
+        )
+        for ax, (s, title) in zip(axes, shown):
+            for i, k in enumerate(six.measuring):
+                ax.errorbar(
+                    six.load,
+                    s.ratio[i],
+                    yerr=2 * s.deviation[i],
+                    fmt=d.MARKERS[i],
+                    color=d.SERIES[i],
+                    ms=5,
+                    lw=1.1,
+                    capsize=2,
+                    label=f"K_m = {k:g}",
+                )
+                ax.plot(
+                    six.load[-1] + 1.1,
+                    six.measured[i],
+                    d.MARKERS[i],
+                    mfc="white",
+                    mec=d.SERIES[i],
+                    mew=1.6,
+                    ms=7,
+                )
+            ax.set_title(title, fontsize=10.5)
+            ax.set_xlabel("grasping force, N")
+            ax.set_xlim(six.load[0] - 0.7, six.load[-1] + 1.8)
+        axes[0].set_ylabel("deflection ratio R")
+        axes[0].set_ylim(0, None)
+        handles, labels = axes[0].get_legend_handles_labels()
+        figure.legend(
+            handles,
+            labels,
+            loc="outside lower center",
+            ncols=len(labels),
+            columnspacing=1.2,
+            handletextpad=0.3,
+        )
+        return Figure(
+            "figure-6",
+            d.svg(figure, "figure-6"),
+            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, "
+            "bars of two standard deviations over many. Open symbols at the right edge: Table 2's "
+            "measured R.",
+        )
+
+
+def _figure7(seven: Figure7) -> Figure:
+    with d.panels(1, 2, size=(11.2, 5.0), sharey=True) as (figure, axes):
+        for ax, curves, title in (
+            (axes[0], seven.printed, "equation (2), printed K_r"),
+            (axes[1], seven.supported, f"equation (2), K_r = {seven.supported_stiffness:.1f} N/mm"),
+        ):
+            for i, k in enumerate(seven.measuring):
+                own = (seven.axis >= seven.relative[i].min() * 0.93) & (
+                    seven.axis <= seven.relative[i].max() * 1.07
+                )
+                ax.plot(seven.axis[own], curves[i][own], color=d.SERIES[i], lw=2)
+                ax.plot(
+                    seven.relative[i],
+                    seven.ratio[i],
+                    d.MARKERS[i],
+                    color=d.SERIES[i],
+                    ms=7,
+                    mec="white",
+                    mew=0.6,
+                    label=f"K_m = {k:g}",
+                )
+            ax.set_xscale("log")
+            d.log_ticks(ax.xaxis, (0.6, 1, 2, 4, 8, 16))
+            ax.set_title(title)
+            ax.set_xlabel("K_m/K_obj")
+            ax.set_ylim(0, 11)
+        axes[0].set_ylabel("deflection ratio R")
+        axes[1].legend(loc="upper right", ncols=2, title="measured, N/mm")
+        return Figure(
+            "figure-7",
+            d.svg(figure, "figure-7"),
+            "Figure 7 again: measured R (symbols) and equation (2) (lines), with the printed and with "
+            "the supported reference stiffness.",
+        )

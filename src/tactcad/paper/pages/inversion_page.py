@@ -1,0 +1,205 @@
+"""Section 9: object stiffness from Table 2 by equation (3)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tactcad.paper import plots as d
+from tactcad.paper.inversion import Inversion, Inverted
+from tactcad.paper.report import Figure, Marked, Section, Table, interval, percent, sig
+
+WELL = 5.0  # |condition number| below which a pair is called well conditioned
+FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called right
+
+
+def page(v: Inversion) -> Section:
+    found = findings(v)
+    return Section(
+        "inversion",
+        "Inversion: object stiffness from R",
+        "What would a user of this array have read off as K_obj, by equation (3), from Table 2's R?",
+        found,
+        (_table(v, v.supported), _table(v, v.printed)),
+        (_plot(v),),
+        v,
+        (found[0],),
+    )
+
+
+def findings(v: Inversion) -> tuple[str, ...]:
+    x = v.object_stiffness
+    right = {name: _right(w, x) for name, w in (("printed", v.printed), ("supported", v.supported))}
+    held = v.supported.holds(x)
+    well = np.abs(v.supported.condition) < WELL
+    error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
+    lost = ~v.supported.physical()
+    rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
+    n = x.size * len(v.measuring)
+    found = [
+        f"With the printed K_r = {v.printed.reference:g} N/mm {right['printed'].sum()} of {n} readings "
+        f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
+        f"{sig(v.supported.reference)} N/mm {right['supported'].sum()}; the median is "
+        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's.",
+        f"With the supported K_r {lost.sum()} readings give no positive K_obj at all"
+        + (f" (K_m = {', '.join(rows_lost)} N/mm)." if lost.any() else ".")
+        + f" The 95 % interval (R scatters by {percent(v.ratio_error)}) holds the sample's K_obj for "
+        f"{held.sum()} of {n}"
+        + f", and is bounded for {(v.supported.bounded & (v.supported.low > 0)).sum()}.",
+    ]
+    if well.any() and (~well).any():
+        inside, outside = (_typical(error, m) for m in (well, ~well))
+        found.append(
+            f"The condition number says so beforehand: below {WELL:g} ({well.sum()} pairs) the typical "
+            f"error is {inside}, above it {outside}; rank correlation of condition number and error "
+            f"{v.rank_correlation:.2f}. Least is {sig(np.abs(v.supported.condition).min())}, so that "
+            f"{percent(v.ratio_error)} in R are at best "
+            f"{percent(v.ratio_error * np.abs(v.supported.condition).min())} in K_obj."
+        )
+    return tuple(found)
+
+
+def _right(w: Inverted, x: np.ndarray) -> np.ndarray:
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return w.physical() & (
+            np.abs(np.log(np.where(w.physical(), w.estimate, np.nan) / x)) <= np.log(FACTOR)
+        )
+
+
+def _median(w: Inverted, x: np.ndarray) -> float:
+    """Median of estimate over K_obj; what is not positive counts as infinitely stiff where R is near 1."""
+    return float(np.median(np.where(w.physical(), w.estimate, np.inf) / x))
+
+
+def _typical(error: np.ndarray, where: np.ndarray) -> str:
+    """Median error of a group as a factor; 'without bound' where half of the group has no estimate."""
+    middle = np.median(np.where(np.isnan(error[where]), np.inf, error[where]))
+    return f"a factor {np.exp(middle):.2f}" if np.isfinite(middle) else "without bound"
+
+
+def _table(v: Inversion, w: Inverted) -> Table:
+    rows = []
+    for i, k in enumerate(v.measuring):
+        cells = []
+        for j, x in enumerate(v.object_stiffness):
+            low, high, value = w.low[i, j], w.high[i, j], w.estimate[i, j]
+            if not w.bounded[i, j]:
+                text = f"{sig(value, 2)} (open)"
+            else:
+                text = (
+                    f"{sig(value, 2)} ({interval(max(low, 0.0), high, 2)})"
+                    if high > 0
+                    else f"{sig(value, 2)} (none ≥ 0)"
+                )
+            right = w.physical()[i, j] and abs(np.log(value / x)) <= np.log(FACTOR)
+            cells.append(text if right else Marked(text))
+        rows.append((f"{k:g}", *cells))
+        rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
+    return Table(
+        f"K_obj by equation (3) with K_r = {sig(w.reference)} N/mm, 95 % intervals by Fieller",
+        (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
+        tuple(rows),
+        f"Marked: not within a factor {FACTOR:g}. open: the interval runs through infinity. condition: "
+        "dln K_obj/dln R at the sample's K_obj.",
+    )
+
+
+def _plot(v: Inversion) -> Figure:
+    x = v.object_stiffness
+    with d.panels(1, 3, size=(11.2, 4.9)) as (figure, axes):
+        for ax, w, title in (
+            (axes[0], v.printed, f"K_r = {v.printed.reference:g}, printed"),
+            (axes[1], v.supported, f"K_r = {sig(v.supported.reference)}, supported"),
+        ):
+            span = np.array([1.6, 14.0])
+            ax.plot(span, span, color=d.BLACK, lw=1.2)
+            for i in range(len(v.measuring)):
+                ok = w.physical()[i] & w.bounded[i]
+                shift = np.exp(0.018 * (i - 2.5))
+                low = np.clip(w.low[i][ok], 0.3, None)
+                bars = np.maximum(np.array([w.estimate[i][ok] - low, w.high[i][ok] - w.estimate[i][ok]]), 0)
+                ax.errorbar(
+                    x[ok] * shift,
+                    w.estimate[i][ok],
+                    yerr=bars,
+                    fmt=d.MARKERS[i],
+                    color=d.SERIES[i],
+                    ms=6,
+                    lw=0.9,
+                    capsize=2,
+                    alpha=0.95,
+                )
+                ax.plot(
+                    x[~ok] * shift,
+                    np.full((~ok).sum(), 0.36),
+                    d.MARKERS[i],
+                    mfc="white",
+                    mec=d.SERIES[i],
+                    ms=6,
+                )
+            ax.set_xscale("log")
+            ax.set_yscale("log")
+            d.log_ticks(ax.xaxis, (2, 3, 4, 5, 7, 10))
+            d.log_ticks(ax.yaxis, (0.5, 1, 2, 5, 10, 20, 50, 100))
+            ax.set_xlim(2.0, 12)
+            ax.set_ylim(0.3, 170)
+            ax.set_title(title)
+            ax.set_xlabel("K_obj of the sample, N/mm")
+        axes[0].set_ylabel("K_obj by equation (3), N/mm")
+        right = axes[2]
+        for i in range(len(v.measuring)):
+            ok = v.supported.physical()[i]
+            condition = np.abs(v.supported.condition[i])
+            right.plot(
+                condition[ok],
+                np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok]))),
+                d.MARKERS[i],
+                color=d.SERIES[i],
+                ms=7,
+                mec="white",
+                mew=0.6,
+            )
+            right.plot(
+                np.minimum(condition[~ok], 600),
+                np.full((~ok).sum(), 8.5),
+                d.MARKERS[i],
+                mfc="white",
+                mec=d.SERIES[i],
+                ms=7,
+            )
+        grid = np.geomspace(2, np.log(9) / v.ratio_error, 50)
+        right.plot(
+            grid,
+            np.exp(grid * v.ratio_error),
+            color=d.BLACK,
+            lw=1.2,
+            ls="--",
+            label="condition × scatter of R",
+        )
+        right.set_xscale("log")
+        right.set_yscale("log")
+        d.log_ticks(right.xaxis, (2, 5, 10, 50, 200, 600))
+        d.log_ticks(right.yaxis, (1, 1.5, 2, 3, 5, 8))
+        right.set_ylim(0.97, 10)
+        right.set_xlabel("|condition number| of K_obj in R")
+        right.set_ylabel("off by this factor, supported K_r")
+        right.set_title("what was to be expected")
+        right.legend(loc="lower right", fontsize=9)
+        from matplotlib.lines import Line2D
+
+        handles = [
+            Line2D([], [], marker=d.MARKERS[i], color=d.SERIES[i], ls="", ms=7, label=f"K_m = {k:g}")
+            for i, k in enumerate(v.measuring)
+        ]
+        figure.legend(
+            handles=handles,
+            loc="outside lower center",
+            ncols=len(handles),
+            columnspacing=1.2,
+            handletextpad=0.3,
+        )
+        return Figure(
+            "inversion",
+            d.svg(figure, "inversion"),
+            "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that "
+            "runs through infinity.",
+        )

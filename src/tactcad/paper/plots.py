@@ -1,0 +1,135 @@
+"""How the reports' pictures look, and their SVG text: equal bytes from equal numbers."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+# Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
+BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
+    "#000000",
+    "#E69F00",
+    "#56B4E9",
+    "#009E73",
+    "#0072B2",
+    "#D55E00",
+    "#CC79A7",
+)
+SERIES = (BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE)
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+GREY = "#6a737d"
+
+STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 11,
+    "axes.titlesize": 12,
+    "axes.titlelocation": "left",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "#e3e7eb",
+    "grid.linewidth": 0.8,
+    "axes.axisbelow": True,
+    "legend.frameon": False,
+    "legend.fontsize": 10,
+    "svg.fonttype": "path",
+    "figure.constrained_layout.use": True,
+}
+
+
+@contextmanager
+def panels(rows: int = 1, columns: int = 1, size: tuple[float, float] = (11.2, 4.6), **options) -> Iterator:
+    """Figure and axes in the reports' style; closed afterwards."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    with matplotlib.rc_context(STYLE):
+        figure, axes = plt.subplots(rows, columns, figsize=size, **options)
+        try:
+            yield figure, axes
+        finally:
+            plt.close(figure)
+
+
+def svg(figure, name: str) -> str:
+    """SVG text for a page: no date, ids made of the name and the content, no XML header."""
+    import matplotlib
+
+    out = io.StringIO()
+    with matplotlib.rc_context({"svg.hashsalt": name}):
+        figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None, "Title": name})
+    text = out.getvalue()
+    text = text[text.index("<svg") :]
+    # Several pictures share one page: ids get the picture's name before them.
+    text = re.sub(r'(\bid="|xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
+    return re.sub(r"[ \t]+\n", "\n", text)
+
+
+def log_ticks(axis, ticks) -> None:
+    """Plain numbers at these places of a logarithmic axis, no minor labels."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
+
+    axis.set_major_locator(FixedLocator(list(ticks)))
+    axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def place_labels(figure, ax, labels: list[tuple[str, float, float]], size: float = 10.0) -> None:
+    """Write each label (text, x, y in data) beside its point, on the side where it covers the least.
+
+    Call it when the axes have their limits: the places of points on the page decide.
+    """
+    figure.canvas.draw()  # the layout is known only then
+    scale = 72.0 / figure.dpi
+    points = [tuple(v * scale for v in ax.transData.transform((x, y))) for _, x, y in labels]
+    frame = ax.get_window_extent()
+    low, high = (frame.x0 * scale, frame.y0 * scale), (frame.x1 * scale, frame.y1 * scale)
+    taken = [(x - 5, y - 5, x + 5, y + 5) for x, y in points]
+    for (text, *at), (x, y) in zip(labels, points):
+        width, height = 0.62 * size * len(text), 1.1 * size
+
+        def box(place: tuple[float, float, str, str]) -> tuple[float, float, float, float]:
+            dx, dy, ha, va = place
+            left = x + dx - {"left": 0.0, "right": width, "center": width / 2}[ha]  # noqa: B023
+            foot = y + dy - {"bottom": 0.0, "top": height, "center": height / 2}[va]  # noqa: B023
+            return (left, foot, left + width, foot + height)  # noqa: B023
+
+        def covered(place: tuple[float, float, str, str]) -> float:
+            mine = box(place)  # noqa: B023
+            outside = sum(max(0.0, low[i] - mine[i]) + max(0.0, mine[i + 2] - high[i]) for i in (0, 1))
+            return sum(_common(mine, other) for other in taken) + 100.0 * outside
+
+        best = min(_PLACES, key=covered)
+        taken.append(box(best))
+        dx, dy, ha, va = best
+        ax.annotate(
+            text, at, xytext=(dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=size, zorder=4
+        )
+
+
+# dx, dy in points and which corner of the text stands there, in the order of preference
+_PLACES = (
+    (9, 0, "left", "center"),
+    (-9, 0, "right", "center"),
+    (0, 9, "center", "bottom"),
+    (0, -9, "center", "top"),
+    (7, 7, "left", "bottom"),
+    (7, -7, "left", "top"),
+    (-7, 7, "right", "bottom"),
+    (-7, -7, "right", "top"),
+    (14, 14, "left", "bottom"),
+    (14, -14, "left", "top"),
+    (-14, 14, "right", "bottom"),
+    (-14, -14, "right", "top"),
+    (0, 20, "center", "bottom"),
+    (0, -20, "center", "top"),
+)
+
+
+def _common(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> float:
+    """Common area of two boxes (left, foot, right, top)."""
+    return max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1]))

@@ -1,0 +1,245 @@
+"""The reference element: its printed signals against its printed deflections, and what could explain its
+stiffness.
+
+Each explanation takes Table 1's K as given and predicts K_v and K_v/K with the gain that fits the other
+elements.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.mechanics import gauge_signal, ladder, lumped
+from tactcad.paper.array_model import ArrayModel
+from tactcad.paper.grasp_figures import elements_in_parallel
+from tactcad.paper.published import Published
+from tactcad.paper.reference_stiffness import Table2Study
+from tactcad.paper.residuals import matched, solve
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What one cause, sized to give the printed K, predicts; V/mm and V/N."""
+
+    name: str
+    size: float  # of the cause
+    unit: str
+    possible: bool  # within what the geometry or the process allows
+    limit: str
+    stiffness: float
+    signal_per_deflection: float
+    signal_per_force: float
+    miss_per_deflection: float  # ln(printed/predicted)
+    miss_per_force: float
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the reference element would have shown if one account of Table 2 were true; least and largest
+    over the samples.
+
+    The whole load is the one that deflects the softest element by the largest deflection that the paper
+    prints.
+    """
+
+    name: str
+    stiffness: float
+    load: float  # N
+    weights: float  # added ones that make this load
+    deflection: tuple[float, float]  # um, as the paper would have printed it
+    signal: tuple[float, float]  # V, with Table 1's K_v
+    deflection_agrees: bool  # overlaps the printed range
+    signal_agrees: bool
+
+
+@dataclass(frozen=True)
+class ReferenceElement:
+    """Signals V, deflections um, K_v V/mm, forces N."""
+
+    element: int
+    stiffness: float
+    nominal_stiffness: float
+    twin: int | None  # element of equal arm, measured K nearest the model's
+    printed_k_v: float
+    signal: tuple[float, float]
+    deflection: tuple[float, float]
+    implied_k_v: tuple[float, float]  # least/least, most/most
+    deflection_from_signal: tuple[float, float]  # with the printed K_v
+    softest_k_v: tuple[
+        float, float
+    ]  # V/mm: largest printed signal over largest printed deflection, and Table 1's
+    readings: tuple[Reading, ...]  # by account of Table 2
+    gain: float  # V per strain, from the other elements
+    scatter: float  # of ln K_v about it
+    explanations: tuple[Explanation, ...]
+    from_k_v_thickness: tuple[float, float, float]  # K_r, low, high: K_v taken as true, thickness free
+    from_k_v_load_point: tuple[float, float, float]
+
+    @property
+    def best(self) -> Explanation:
+        """The explanation whose K_v and K_v/K are least off."""
+        return min(self.explanations, key=lambda e: abs(e.miss_per_deflection) + abs(e.miss_per_force))
+
+
+def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "solid") -> ReferenceElement:
+    """Everything about Table 2's reference element, whichever it is."""
+    supported = table2.supported.value[0]
+    factor = table2.fit("R times a factor").value[0]
+    here, s = matched(data, array)
+    t1, figure = data.table1, data.figure
+    own = int(np.flatnonzero(here == data.reference)[0])
+    K, k_v = t1.stiffness.value[here], np.abs(t1.signal_per_deflection.value[here])
+    section = s.rows([own])
+    q = gauge_signal.foil_strain_per_deflection(s, array.gauge)
+    others = np.arange(len(here)) != own
+    log_gain = np.log(k_v / q)[others]
+    gain, scatter = float(np.exp(log_gain.mean())), float(log_gain.std(ddof=1))
+    nominal = float(ladder.stiffness(section, rung)[0])
+    signal = (figure["reference_signal_least"], figure["reference_signal_most"])
+    deflection = (figure["reference_deflection_least"], figure["reference_deflection_most"])
+    printed = (K[own], k_v[own])
+    return ReferenceElement(
+        int(t1.element[here[own]]),
+        float(K[own]),
+        nominal,
+        _twin(t1.element[here], t1.arm.value[here], K, own, nominal),
+        float(k_v[own]),
+        signal,
+        deflection,
+        tuple(v / d * 1e3 for v, d in zip(signal, deflection)),
+        tuple(v / k_v[own] * 1e3 for v in signal),
+        (figure["softest_signal_most"] / figure["softest_deflection_most"] * 1e3, float(k_v[np.argmin(K)])),
+        tuple(
+            _reading(data, array, name, K_r, share, k_v[own], deflection, signal)
+            for name, K_r, share in (
+                ("as printed", K[own], 1.0),
+                ("softer reference element", supported, 1.0),
+                ("deflection scale of the reference element off", K[own], factor),
+            )
+        ),
+        gain,
+        scatter,
+        _explanations(section, array, printed, gain, nominal, rung),
+        _from_k_v("hinge_thickness", section, array, k_v[own] / gain, scatter, rung),
+        _from_k_v("load_arm", section, array, k_v[own] / gain, scatter, rung),
+    )
+
+
+def _twin(number: np.ndarray, arm: np.ndarray, K: np.ndarray, own: int, nominal: float) -> int | None:
+    same = [i for i in range(len(arm)) if arm[i] == arm[own] and i != own]
+    return int(number[min(same, key=lambda i: abs(np.log(K[i] / nominal)))]) if same else None
+
+
+def _reading(
+    data: Published,
+    array: ArrayModel,
+    name: str,
+    K_r: float,
+    factor: float,
+    k_v: float,
+    deflection: tuple[float, float],
+    signal: tuple[float, float],
+) -> Reading:
+    """factor: the reference element's true deflection over the printed one, which is what R is off by."""
+    truth, reference = elements_in_parallel(data, array)
+    K = truth.stiffness.copy()
+    K[reference] = K_r
+    d = lumped.element_deflection(K[:, None], data.table2.object_stiffness.value[None, :], 1.0)
+    per_newton = d / (K[:, None] * d).sum(0)
+    softest = int(np.argmin(data.table1.stiffness.value))
+    load = data.figure["softest_deflection_most"] * 1e-3 / per_newton[softest].max()
+    true = per_newton[reference] * load
+    shown = (float(true.min() / factor * 1e3), float(true.max() / factor * 1e3))
+    volts = (float(true.min() * k_v), float(true.max() * k_v))
+    overlap = lambda a, b: bool(a[0] <= b[1] and b[0] <= a[1])  # noqa: E731
+    return Reading(
+        name,
+        float(K_r),
+        float(load),
+        float((load - array.rig.moving_weight) / array.rig.weight),
+        shown,
+        volts,
+        overlap(shown, deflection),
+        overlap(volts, signal),
+    )
+
+
+def _explanations(
+    s, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float, rung: str
+) -> tuple[Explanation, ...]:
+    K, k_v = printed
+    q0 = float(gauge_signal.foil_strain_per_deflection(s, array.gauge)[0])
+    L0, t0 = float(s.load_arm[0]), float(s.hinge_thickness[0])
+    L = float(solve(s, "load_arm", np.array([K]), 0.2, 3.0, rung)[0])
+    t = float(solve(s, "hinge_thickness", np.array([K]), 0.3, 3.0, rung)[0])
+    # Strain and deflection are both taken at the load point, which a calibration's roller also is.
+    q_load = float(gauge_signal.foil_strain_per_deflection(s.with_(load_arm=[L]), array.gauge)[0])
+    q_thick = float(gauge_signal.foil_strain_per_deflection(s.with_(hinge_thickness=[t]), array.gauge)[0])
+    scale = K / nominal
+    pad, wire = array.pad_length / 2, array.tolerance.hinge_thickness
+    found = [
+        (
+            "load point",
+            L - L0,
+            "mm",
+            abs(L - L0) <= pad,
+            f"within the pad, {pad:g} mm either way",
+            gain * q_load,
+        ),
+        (
+            "hinge thickness",
+            t - t0,
+            "mm",
+            abs(t - t0) <= wire,
+            f"cutting tolerance {wire:g} mm",
+            gain * q_thick,
+        ),
+        (
+            "deflection scale of its calibration",
+            1 / scale,
+            "1",
+            False,
+            "one rig calibrated all elements",
+            gain * q0 * scale,
+        ),
+        ("force scale of its calibration", scale, "1", False, "one rig calibrated all elements", gain * q0),
+    ]
+    return tuple(
+        Explanation(
+            name,
+            size,
+            unit,
+            bool(possible),
+            limit,
+            K,
+            v,
+            v / K,
+            float(np.log(k_v / v)),
+            float(np.log(k_v / K / (v / K))),
+        )
+        for name, size, unit, possible, limit, v in found
+    )
+
+
+def _from_k_v(
+    name: str, s, array: ArrayModel, q: float, scatter: float, rung: str
+) -> tuple[float, float, float]:
+    """K (N/mm) when one dimension is what makes strain per deflection q, and for q a 95 % scatter lower and
+    higher.
+
+    0 or inf where no value of that dimension within the rung's range does.
+    """
+    factor = np.geomspace(0.35, 2.5, 800)
+    grid = s.rows(np.zeros(len(factor), int)).with_(**{name: float(getattr(s, name)[0]) * factor})
+    result = ladder.evaluate(grid, rung)
+    usable = grid.rows(np.flatnonzero(result.valid))
+    q_grid = gauge_signal.foil_strain_per_deflection(usable, array.gauge)
+    order = np.argsort(q_grid)
+    log_q, log_k = np.log(q_grid[order]), np.log(result.stiffness[result.valid][order])
+    found = [
+        float(np.exp(np.interp(np.log(q) + shift * scatter, log_q, log_k, left=-np.inf, right=np.inf)))
+        for shift in (0.0, -1.96, 1.96)
+    ]
+    return found[0], found[1], found[2]

@@ -1,0 +1,244 @@
+"""A report as data: sections of findings, tables and figures; written as one offline HTML page and as
+JSON.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from dataclasses import dataclass
+from math import isinf, isnan
+
+import numpy as np
+
+from tactcad.lab.plain import plain
+
+SCHEMA = "tactcad-validation-1"
+
+STYLE = """
+:root{color-scheme:light}
+body{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}
+main,header,footer{max-width:1120px;margin:0 auto;padding:0 28px}
+header{padding-top:30px}
+h1{font-size:27px;line-height:1.25;margin:0 0 6px}
+h2{font-size:21px;margin:46px 0 4px;padding-top:14px;border-top:2px solid #0072B2}
+h3{font-size:16px;margin:24px 0 4px}
+p.lead,p.note,figcaption{color:#4a525b}
+p.note,figcaption{font-size:14px;margin:4px 0 0}
+ul.findings{background:#f1f6fa;border-left:5px solid #0072B2;padding:12px 18px 12px 34px;margin:12px 0}
+ul.findings li{margin:5px 0}
+nav ol{columns:2;font-size:15px;padding-left:22px}
+nav a{color:#0b5c8f}
+figure{margin:18px 0}
+figure svg{width:100%;height:auto;display:block}
+div.scroll{overflow-x:auto}
+table{border-collapse:collapse;font-size:14px;margin:6px 0 2px;font-variant-numeric:tabular-nums}
+th,td{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:right;vertical-align:top}
+th{border-bottom:2px solid #6a737d;font-weight:600;text-align:right}
+th small{display:block;font-weight:400;color:#4a525b}
+td{white-space:nowrap}
+td.text,th.text{text-align:left}
+td.text{white-space:normal}
+td.mark{background:#fdf0e2}
+footer{padding:30px 28px 50px;color:#4a525b;font-size:14px}
+@media print{h2{break-after:avoid}figure,table{break-inside:avoid}}
+"""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns are (name, unit); cells are text, numbers, or Marked numbers that the text points at."""
+
+    title: str
+    columns: tuple[tuple[str, str], ...]
+    rows: tuple[tuple, ...]
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A cell to be noticed."""
+
+    value: object
+
+
+@dataclass(frozen=True)
+class Figure:
+    """An SVG picture as text; name is the file's without its ending."""
+
+    name: str
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True)
+class Section:
+    key: str
+    title: str
+    question: str
+    findings: tuple[str, ...]
+    tables: tuple[Table, ...] = ()
+    figures: tuple[Figure, ...] = ()
+    values: object = None  # the study's dataclass, for JSON
+    headline: tuple[str, ...] = ()  # the findings that stand at the top of the report too
+
+
+@dataclass(frozen=True)
+class Report:
+    title: str
+    subtitle: str
+    summary: tuple[str, ...]
+    sections: tuple[Section, ...]
+    colophon: str
+
+
+def sig(value: float, digits: int = 3) -> str:
+    """A number with that many significant digits, without exponent between 1e-4 and 1e7."""
+    value = float(value)
+    if isnan(value):
+        return "–"
+    if isinf(value):
+        return "∞" if value > 0 else "−∞"
+    if value == 0:
+        return "0"
+    if not 1e-4 <= abs(value) < 1e7:
+        return f"{value:.{digits - 1}e}".replace("-", "−")
+    rounded = float(f"{value:.{digits - 1}e}")
+    decimals = max(digits - 1 - int(np.floor(np.log10(abs(rounded)))), 0)
+    return f"{rounded:.{decimals}f}".replace("-", "−")
+
+
+def exact(value: float) -> str:
+    """A printed number as it was printed, but for zeros at its end."""
+    return f"{value:g}".replace("-", "−")
+
+
+def percent(value: float, digits: int = 2) -> str:
+    """A ratio in per cent."""
+    return f"{sig(value * 100, digits)} %"
+
+
+def signed_percent(value: float, digits: int = 2) -> str:
+    return ("+" if value > 0 else "") + percent(value, digits)
+
+
+def interval(low: float, high: float, digits: int = 3) -> str:
+    return f"{sig(low, digits)} to {sig(high, digits)}"
+
+
+def listed(items) -> str:
+    """'a', 'a and b', 'a, b and c'."""
+    words = [str(i) for i in items]
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"
+
+
+def to_json(report: Report) -> str:
+    """Findings, tables' numbers and every study's values; figures by name. NaN and infinities become text."""
+    data = {
+        "schema": SCHEMA,
+        "title": report.title,
+        "subtitle": report.subtitle,
+        "summary": list(report.summary),
+        "sections": {
+            s.key: {
+                "title": s.title,
+                "findings": list(s.findings),
+                "figures": [f.name for f in s.figures],
+                "values": plain(s.values),
+            }
+            for s in report.sections
+        },
+    }
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def to_text(report: Report) -> str:
+    """The findings for a terminal."""
+    lines = [report.title, ""]
+    for i, s in enumerate(report.sections, 1):
+        lines += [f"{i}. {s.title}", *(f"   - {f}" for f in s.findings), ""]
+    return "\n".join(lines).rstrip()
+
+
+def standalone(figure: Figure) -> str:
+    """The picture as a file of its own, on white."""
+    start = figure.svg.index(">") + 1
+    return (
+        '<?xml version="1.0" encoding="utf-8"?>\n'
+        + figure.svg[:start]
+        + '<rect width="100%" height="100%" fill="#ffffff"/>'
+        + figure.svg[start:]
+    )
+
+
+def to_html(report: Report) -> str:
+    """One page with everything inside: style, pictures, tables."""
+    e = html.escape
+    contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
+    body = "".join(_section(i, s) for i, s in enumerate(report.sections, 1))
+    head = (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{e(report.title)}</title>\n'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
+        f"<style>{STYLE}</style></head>\n<body>"
+    )
+    top = (
+        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
+        f"<h3>What stands out</h3>{_list(report.summary)}"
+        f"<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
+    )
+    return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
+
+
+def _section(number: int, s: Section) -> str:
+    e = html.escape
+    return (
+        f'\n<section id="{s.key}"><h2>{number}. {e(s.title)}</h2>'
+        f"<p class=lead>{e(s.question)}</p>{_list(s.findings)}"
+        + "".join(
+            f'<figure id="{f.name}">{f.svg}<figcaption>{e(f.caption)}</figcaption></figure>'
+            for f in s.figures
+        )
+        + "".join(_table(t) for t in s.tables)
+        + "</section>"
+    )
+
+
+def _list(items: tuple[str, ...]) -> str:
+    return "<ul class=findings>" + "".join(f"<li>{html.escape(i)}</li>" for i in items) + "</ul>"
+
+
+def _table(t: Table) -> str:
+    e = html.escape
+    text = [any(_wordy(row[i]) for row in t.rows) for i in range(len(t.columns))]
+    head = "".join(
+        f"<th{' class=text' if text[i] else ''}>{e(name)}{f'<small>{e(unit)}</small>' if unit else ''}</th>"
+        for i, (name, unit) in enumerate(t.columns)
+    )
+    rows = "".join("<tr>" + "".join(_cell(c, text[i]) for i, c in enumerate(row)) + "</tr>" for row in t.rows)
+    note = f"<p class=note>{e(t.note)}</p>" if t.note else ""
+    return (
+        f"<h3>{e(t.title)}</h3><div "
+        f"class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
+    )
+
+
+def _wordy(cell: object) -> bool:
+    """Whether a cell is words, not a number with its sign, unit or interval."""
+    value = cell.value if isinstance(cell, Marked) else cell
+    return isinstance(value, str) and bool(value) and not re.match(r"[+−±–×∞]? ?[\d∞–]*[\d.]*", value)[0]
+
+
+def _cell(cell: object, text: bool) -> str:
+    marked = isinstance(cell, Marked)
+    value = cell.value if marked else cell
+    shown = (
+        value
+        if isinstance(value, str)
+        else str(value)
+        if isinstance(value, (int, np.integer))
+        else sig(value)
+    )
+    kinds = " ".join(k for k, on in (("text", text), ("mark", marked)) if on)
+    attribute = f' class="{kinds}"' if kinds else ""
+    return f"<td{attribute}>{html.escape(shown)}</td>"

@@ -1,0 +1,128 @@
+"""Make a release: checks, golden file, export, zip, read back, and only then its name."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from tactcad.checks.report import Report
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.export.golden import check_golden, golden_path
+from tactcad.export.manifest import FileRecord, read_manifest
+from tactcad.export.pipeline import Progress, export
+from tactcad.scenes import make_scene, scene_names
+
+from .archive import archive_bytes, replaced_content, written_beside
+from .readme import MARK, Contents, readme_bytes
+from .verify import README, check_archive
+
+QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
+
+
+@dataclass(frozen=True)
+class Released:
+    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only), and what
+    differs from the zip that stood there before."""
+
+    path: Path
+    design: str
+    revision: str
+    draft: bool
+    files: tuple[str, ...]
+    failures: tuple[str, ...]
+    replaced: tuple[str, ...]
+
+
+def release(
+    design: Design,
+    design_file: Path,
+    out: str | os.PathLike[str],
+    shop_file: Path,
+    progress: Progress,
+    draft: bool = False,
+) -> Released:
+    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft, `<design>-<revision>-PRELIMINARY.zip`.
+
+    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden file
+    does not hold just this revision (a draft goes on and says so in its README), or where what was written does
+    not read back; InputError where `out` cannot be written.
+    """
+    # the golden file first: it needs no kernel
+    failures = golden_faults(design, design_file)
+    _refuse(design, failures, draft, progress)
+    report = _checked(design, shop_file, progress)
+    failures += [str(f) for f in report.failures]
+    _refuse(design, failures, draft, progress)
+
+    revision = design.design.revision
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    flags = [
+        f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
+    ]
+    contents = Contents(design, scenes, flags, failures, draft)
+    target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
+    with tempfile.TemporaryDirectory(prefix="tactcad-release-") as folder:
+        files = _exported(
+            design, [scene.name for scene in scenes], Path(folder) / design.name, progress, draft
+        )
+    files = {README: readme_bytes(contents, list(files)), **files}
+    data = archive_bytes(files, design.design.date)
+    with written_beside(target, progress.line) as part:
+        replaced = replaced_content(target, data)
+        part.write_bytes(data)
+        wrong = check_archive(part, contents)
+        if wrong:
+            raise CheckFailure(
+                f"{target}: the finished release does not hold: {'; '.join(wrong)}; nothing was changed"
+            )
+    return Released(target, design.name, revision, draft, (*files,), tuple(failures), tuple(replaced))
+
+
+def golden_faults(design: Design, design_file: Path) -> list[str]:
+    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry, or where
+    the design stands in no hardware/ and can have none."""
+    path = golden_path(design_file, design)
+    return [] if path is None else [finding.message for finding in check_golden(design, path)]
+
+
+class NotReleased(CheckFailure):
+    """Why a design was not released: `failures`, a line each."""
+
+    def __init__(self, name: str, failures: Sequence[str]) -> None:
+        self.failures = tuple(failures)
+        super().__init__(f"{name}: not released, {len(failures)} reasons; nothing was written")
+
+
+def _refuse(design: Design, failures: Sequence[str], draft: bool, progress: Progress) -> None:
+    if failures and not draft:
+        for failure in failures:
+            progress.line(failure)
+        raise NotReleased(design.name, failures)
+
+
+def _checked(design: Design, shop_file: Path, progress: Progress) -> Report:
+    from tactcad.checks.run import run_checks  # loads the kernel
+
+    return run_checks(design, scene_names(design), shop_file, progress.step)
+
+
+def _exported(
+    design: Design, scenes: Sequence[str], folder: Path, progress: Progress, draft: bool
+) -> dict[str, bytes]:
+    """The export's files that go to the shop, by their path in the zip."""
+    export(design, scenes, folder, progress, drawings=True, draft=draft)
+    paths = {_path_in_zip(file): file.path for file in read_manifest(folder).files}
+    return {name: (folder / path).read_bytes() for name, path in sorted(paths.items()) if name}
+
+
+def _path_in_zip(file: FileRecord) -> str:
+    """Where an exported file goes; "" where a shop has no use for it."""
+    if file.kind in ("dxf", "step-part", "step-assembly", "inspection"):
+        return file.path
+    if file.kind == "drawing" and file.path.endswith(".pdf"):
+        return f"pdf/{Path(file.path).name}"
+    return file.path if file.kind in ("bom", "report") and file.path.endswith(".csv") else ""

@@ -1,0 +1,230 @@
+"""Bill of materials of a scene: what is made, what is bought, what is used up.
+
+Placing a part emits its line: rows are read off the scene's placements, never written by hand, and the
+solids of the scene are the sum of `qty` over the rows with `has_solid`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+from tactcad.parts.consumables import Supply
+from tactcad.parts.description import Part, Purchase
+from tactcad.scenes.scene import Scene
+
+SCHEMA = "tactcad-bom-1"
+# Designations that say too little to order by: the standard, and what has to follow.
+ORDERABLE = {
+    "ISO 4762": (
+        re.compile(r"\b(A[1-5]-\d{2,3}|\d{1,2}\.9|8\.8)\b"),
+        "a property class such as A2-70 or 8.8",
+    ),
+    "ISO 4026": (re.compile(r"\b(A[1-5]-\d{2,3}H?|\d{2}H)\b"), "a hardness class such as 45H or A2-21H"),
+    "ISO 15": (re.compile(r"\b\d{3,5}-?(2?Z|2?RS\w*|ZZ|open)\b"), "a seal code such as 623-2Z"),
+}
+
+
+@dataclass(frozen=True)
+class BomRow:
+    """One line. `qty` counts what the scene holds (spares come on top); `mass_g` is of one piece, None unknown."""
+
+    item: int
+    part_no: str
+    rev: str
+    qty: float
+    unit: str
+    description: str
+    make_buy: str
+    material: str
+    process: str
+    finish: str
+    standard_designation: str
+    manufacturer: str
+    mpn: str
+    supplier: str
+    alternates: str
+    spares: float
+    consumable: bool
+    file: str
+    sha256: str
+    mass_g: float | None
+    source_verified: bool
+    designators: str
+    has_solid: bool
+
+
+COLUMNS = tuple(f.name for f in fields(BomRow))
+
+
+def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) -> tuple[BomRow, ...]:
+    """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
+
+    `files` gives path and SHA-256 of the file that a part (by number) is made from.
+    """
+    parts = sorted(scene.parts, key=lambda part: part.bought)
+    rows = [
+        _part_row(item, part, scene, "" if part.bought else revision, *files.get(part.part_no, ("", "")))
+        for item, part in enumerate(parts, start=1)
+    ]
+    return (*rows, *(_supply_row(len(rows) + n, supply) for n, supply in enumerate(scene.supplies, start=1)))
+
+
+def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha256: str) -> BomRow:
+    order = part.purchase or Purchase("")
+    placed = [p.designator for p in scene.placements if p.part.part_no == part.part_no]
+    return BomRow(
+        item=item,
+        part_no=part.part_no,
+        rev=revision,
+        qty=len(placed),
+        unit="pcs",
+        description=part.name,
+        make_buy="buy" if part.bought else "make",
+        material=f"{part.material.name} {part.material.temper}".strip(),
+        process=part.process,
+        finish=part.finish,
+        standard_designation=order.designation,
+        manufacturer=order.manufacturer,
+        mpn=order.mpn,
+        supplier=order.supplier,
+        alternates=order.alternates,
+        spares=part.spares,
+        consumable=False,
+        file=file,
+        sha256=sha256,
+        mass_g=round(part.mass, 6),
+        source_verified=order.source_verified,
+        designators=" ".join(placed),
+        has_solid=True,
+    )
+
+
+def _supply_row(item: int, supply: Supply) -> BomRow:
+    return BomRow(
+        item=item,
+        part_no=supply.part_no,
+        rev="",
+        qty=supply.qty,
+        unit=supply.unit,
+        description=supply.description,
+        make_buy="buy",
+        material="",
+        process="bought",
+        finish="",
+        standard_designation=supply.designation,
+        manufacturer="",
+        mpn="",
+        supplier="",
+        alternates=supply.alternates,
+        spares=supply.spares,
+        consumable=supply.consumable,
+        file="",
+        sha256="",
+        mass_g=None,
+        source_verified=False,
+        designators="",
+        has_solid=False,
+    )
+
+
+def csv_bytes(rows: Sequence[BomRow]) -> bytes:
+    """The rows as CSV (RFC 4180, UTF-8), numbers by repr, truth values as true and false."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text)
+    writer.writerow(COLUMNS)
+    writer.writerows([_cell(value) for value in asdict(row).values()] for row in rows)
+    return text.getvalue().encode()
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return "" if value is None else str(value)
+
+
+def rows_from_csv(data: bytes) -> tuple[BomRow, ...]:
+    """The rows of a written CSV. Raises ValueError where it is not one of ours."""
+    lines = list(csv.reader(io.StringIO(data.decode(), newline=""), strict=True))
+    if not lines or tuple(lines[0]) != COLUMNS:
+        raise ValueError("the columns are not those of a bill of materials")
+    return tuple(_row(line) for line in lines[1:])
+
+
+def _row(line: list[str]) -> BomRow:
+    return BomRow(*(_parsed(column, cell) for column, cell in zip(fields(BomRow), line, strict=True)))
+
+
+def _parsed(column: Any, cell: str) -> object:
+    match column.type:
+        case "bool":
+            return {"true": True, "false": False}[cell]
+        case "int":
+            return int(cell)
+        case "float":
+            return float(cell)
+        case "float | None":
+            return float(cell) if cell else None
+    return cell
+
+
+def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -> bytes:
+    """The rows as JSON, with the design and the scene that they belong to."""
+    record = {
+        "schema": SCHEMA,
+        "design": design,
+        "revision": revision,
+        "scene": scene,
+        "rows": [asdict(row) for row in rows],
+    }
+    return (json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def rows_from_json(data: bytes) -> tuple[BomRow, ...]:
+    """The rows of a written JSON. Raises ValueError, TypeError or KeyError where it is not one of ours."""
+    record = json.loads(data)
+    if record["schema"] != SCHEMA:
+        raise ValueError(f"schema {record['schema']!r} instead of {SCHEMA!r}")
+    return tuple(BomRow(**row) for row in record["rows"])
+
+
+def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
+    """What is wrong with the written bills against the scene; empty where nothing is."""
+    try:
+        rows, same = rows_from_json(as_json), rows_from_csv(as_csv)
+    except (ValueError, TypeError, KeyError) as error:
+        return [f"not readable as a bill of materials: {error}"]
+    wrong = [] if rows == same else ["CSV and JSON differ"]
+    placed = sorted(p.designator for p in scene.placements)
+    if sorted(d for row in rows for d in row.designators.split()) != placed:
+        wrong.append("the designators are not those of the scene")
+    wrong += [
+        f"{row.part_no}: quantity {row.qty} with designators {row.designators!r}"
+        for row in rows
+        if row.has_solid and row.qty != len(row.designators.split())
+    ]
+    solids = sum(row.qty for row in rows if row.has_solid)
+    if solids != len(scene.placements):
+        wrong.append(f"{solids} solids instead of {len(scene.placements)}")
+    numbers = [row.part_no for row in rows]
+    wrong += [f"{n} stands on two lines" for n in sorted(set(numbers)) if numbers.count(n) > 1]
+    return wrong + [text for row in rows for text in incomplete(row)]
+
+
+def incomplete(row: BomRow) -> list[str]:
+    """What a buyer would have to ask back about a line."""
+    if row.make_buy == "make":
+        return [f"{row.part_no}: no {name}" for name in ("material", "rev") if not getattr(row, name)]
+    if not row.standard_designation and not row.mpn:
+        return [f"{row.part_no}: neither a standard designation nor a maker's number"]
+    return [
+        f"{row.part_no}: {row.standard_designation!r} lacks {lacking}"
+        for standard, (rule, lacking) in ORDERABLE.items()
+        if re.match(rf"{standard}\b", row.standard_designation)
+        and not rule.search(row.standard_designation.removeprefix(standard))
+    ]

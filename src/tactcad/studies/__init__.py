@@ -1,1 +1,0 @@
-"""Published data, validation, fits, speed against accuracy."""

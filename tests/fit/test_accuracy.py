@@ -1,0 +1,216 @@
+"""Choosing a rung by accuracy: the promise on designs that chose nothing, and the choice itself.
+
+The seed of the fresh designs may be given in the environment (ACCURACY_SEED); it is printed.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+
+import numpy as np
+import pytest
+from exact_ladder import ORDER
+
+from tactcad.cli.fit import RANGE_FILE
+from tactcad.design.messages import CheckFailure
+from tactcad.fem import ladder as elements
+from tactcad.fem.convergence import converged_solid
+from tactcad.fem.shape import reference_shape
+from tactcad.fit import accuracy_samples, fit_samples
+from tactcad.fit.accuracy_table import accuracy_table
+from tactcad.lab.batch import estimate_rows_to
+from tactcad.mechanics import accuracy, ladder, validity
+from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, choose, choose_each
+from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.section import REFERENCE
+
+SEED = int(os.environ.get("ACCURACY_SEED", "57721"))
+
+
+def fresh(count, seed):
+    """Designs of the box, of its edges, and over the whole range, a third each."""
+    tables = (
+        fit_samples.draw_box(count - 2 * (count // 3), seed),
+        fit_samples.draw_edges(count // 3, seed + 1),
+        accuracy_samples.draw_range(count // 3, seed + 2),
+    )
+    return fit_samples.section(fit_samples.joined(tables))
+
+
+def keeps_its_promise(s, wanted, mesh):
+    """Stiffness by the chosen rung against solid elements on meshes finer than any that was chosen."""
+    (answer,) = estimate_rows_to(s, wanted)
+    assert answer.reason == ""
+    truth = converged_solid(
+        reference_shape(s), float(s.youngs_modulus), float(s.poisson), float(s.width), mesh=mesh
+    )
+    error = abs(answer.stiffness / truth.stiffness - 1.0)
+    assert error <= answer.expected_error <= wanted, (answer.model, error)
+
+
+@pytest.mark.parametrize("i", range(6))
+def test_one_per_cent_is_kept_on_fresh_designs(i):
+    print("seed", SEED)
+    keeps_its_promise(small(SEED, 6).rows(i), 0.01, 2)
+
+
+def small(seed, count):
+    """Fresh designs whose solid meshes are small enough to be refined in a test: hinges of up to 6 thicknesses."""
+    s = fresh(12 * count, seed)
+    fits = (s.hinge_length / s.hinge_thickness < 6.0) & (s.width / s.hinge_thickness < 25.0)
+    return s.rows(np.flatnonzero(fits)[np.linspace(0, fits.sum() - 1, count).astype(int)])
+
+
+@pytest.mark.parametrize("i", range(2))
+def test_a_tenth_of_a_per_cent_is_kept_by_elements(i):
+    print("seed", SEED)
+    s = small(SEED + 10, 2).rows(i)
+    assert choose(s, 1e-3).candidate.rung == "fem-solid"
+    keeps_its_promise(s, 1e-3, 3)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("wanted,mesh,count", [(0.2, 2, 30), (0.01, 2, 60), (0.004, 2, 30), (1e-3, 3, 20)])
+def test_many_accuracies_are_kept_on_many_fresh_designs(wanted, mesh, count):
+    print("seed", SEED + 100)
+    s = small(SEED + 100, count)
+    for i in range(count):
+        keeps_its_promise(s.rows(i), wanted, mesh)
+
+
+def test_mesh_of_a_tenth_of_a_per_cent_is_measured_by_refinement():
+    """On its own sample fem-solid moves less than promised when refined, and by the rate that it extrapolates with."""
+    columns = fit_samples.shipped_table(RANGE_FILE)
+    s = fit_samples.section(columns)
+    for coarse, fine, mesh in (("solid_mesh_2", "solid_mesh_3", 2), ("solid_mesh_3", "solid_mesh_4", 3)):
+        moved = np.abs(columns[coarse] / columns[fine] - 1.0)
+        known = np.isfinite(moved)
+        candidate = next(c for c in CANDIDATES if c.mesh == mesh)
+        assert known.sum() >= 24 and {0.0, 1.0} <= set(columns["two_sided"][known])
+        assert np.all(moved[known] <= accuracy.expected_error(s, candidate)[known])
+
+
+@pytest.mark.parametrize(
+    "draw", [fit_samples.draw_box, accuracy_samples.draw_range], ids=["box", "whole range"]
+)
+def test_one_per_cent_is_a_closed_form_nearly_everywhere_and_a_tenth_never(draw):
+    s = fit_samples.section(draw(2000, SEED + 1000))
+    inside = validity.reasons(s, "solid") == ""
+    one = [c for c, known in zip(choose_each(s, 0.01), inside) if known]
+    closed = sum(not isinstance(c, str) and c.candidate.rung in ladder.CLOSED_FORMS for c in one)
+    assert closed >= 0.95 * len(one) > 1000
+    tenth = [c for c, known in zip(choose_each(s, 0.001), inside) if known]
+    assert all(not isinstance(c, str) and c.candidate.rung == "fem-solid" for c in tenth)
+
+
+def test_the_quickest_that_is_good_enough_is_taken():
+    """Over accuracies, against a plain search of the file."""
+    s = REFERENCE
+    (zone,) = (
+        z for z in accuracy_data()["zones"] if z["sides"] == "two" and z["bounds"].get("l/t") == [2.0, None]
+    )
+    for wanted in np.geomspace(3e-4, 0.9, 40):
+        choice = choose(s, wanted)
+        good = [name for name, error in zone["promised"].items() if error <= wanted]
+        best = min(good, key=lambda name: accuracy_data()["seconds a call"][name] + zone["seconds"][name])
+        assert choice.candidate.name == best and choice.expected_error == zone["promised"][best] <= wanted
+
+
+def test_a_tighter_wish_is_never_quicker():
+    times = [choose(REFERENCE, wanted).expected_time for wanted in (0.5, 0.2, 0.05, 0.01, 0.002, 0.0005)]
+    assert times == sorted(times)
+
+
+def test_one_rung_for_all_is_no_better_than_the_worst_of_each():
+    s = fresh(60, SEED + 5)
+    for wanted in (0.3, 0.01, 0.003):
+        each = choose_each(s, wanted)
+        together = choose(s, wanted)
+        assert all(not isinstance(c, str) for c in each)
+        assert together.expected_error == max(accuracy.expected_error(s, together.candidate))
+        assert together.expected_error <= wanted
+
+
+def test_size_and_modulus_do_not_matter():
+    lengths = [n for n in ORDER if n not in ("poisson", "youngs_modulus")]
+    jaw = REFERENCE.with_(youngs_modulus=1.0, **{n: getattr(REFERENCE, n) / 25 for n in lengths})
+    assert choose(jaw, 0.01) == choose(REFERENCE, 0.01)
+
+
+@pytest.mark.parametrize(
+    "change,rule",
+    [
+        (dict(hinge_length=9.0), "l/t"),
+        (dict(poisson=0.1), "poisson"),
+        (dict(load_arm=np.nan), "not a finite"),
+        (dict(body_length=0.5), "body too short"),
+    ],
+)
+def test_what_was_not_measured_is_refused(change, rule):
+    with pytest.raises(CheckFailure, match="not measured for this design") as refusal:
+        choose(REFERENCE.with_(**change), 0.01)
+    assert rule in str(refusal.value)
+
+
+def test_more_than_any_rung_keeps_is_refused_with_what_there_is():
+    with pytest.raises(
+        CheckFailure, match="no rung is known to keep 0.0001 %.*best is fem-solid, mesh 3.*measured to keep"
+    ):
+        choose(REFERENCE, 1e-6)
+
+
+def test_a_refusal_names_the_design():
+    s = REFERENCE.with_(hinge_length=[0.75, 9.0])
+    with pytest.raises(CheckFailure, match=r"\(element 7\)"):
+        choose(s, 0.01, ["element 3", "element 7"])
+    each = choose_each(s, 0.01)
+    assert each[0].candidate.rung == "solid" and "l/t" in each[1]
+
+
+def test_the_shipped_table_is_that_of_the_shipped_samples():
+    from datetime import date
+
+    samples = fit_samples.shipped() | {"range": fit_samples.shipped_table(RANGE_FILE)}
+    again, shipped = accuracy_table(samples, ladder_data(), date(2026, 11, 21)), accuracy_data()
+    assert again["reference"] == shipped["reference"] and again["samples"] == shipped["samples"]
+    for a, b in zip(again["zones"], shipped["zones"], strict=True):
+        assert {k: a[k] for k in ("sides", "bounds", "designs")} == {
+            k: b[k] for k in ("sides", "bounds", "designs")
+        }
+        for name in a["worst"]:
+            assert a["worst"][name] == pytest.approx(b["worst"][name], rel=0.01)
+            assert a["promised"][name] == pytest.approx(b["promised"][name], rel=0.1)
+    assert json.dumps(shipped)  # plain numbers, no NaN
+
+
+def test_designs_over_the_range_are_drawn_again_from_their_seed():
+    shipped = fit_samples.shipped_table(RANGE_FILE)
+    refined = accuracy_samples.draw_refined()
+    whole = accuracy_samples.draw_range(len(shipped["poisson"]) - len(refined["poisson"]))
+    again = fit_samples.joined([whole, refined])
+    for name, values in again.items():
+        np.testing.assert_array_equal(values, shipped[name], err_msg=name)
+
+
+@pytest.mark.parametrize("row", [2, 3])
+def test_results_over_the_range_are_computed_again(row):
+    shipped = fit_samples.shipped_table(RANGE_FILE)
+    found = accuracy_samples.results(fit_samples.section(shipped).rows(row), ())
+    assert found["plane_stiffness"] == pytest.approx(shipped["plane_stiffness"][row], rel=2e-5)
+
+
+def test_every_zone_was_measured_by_enough_designs_of_every_kind():
+    for zone in accuracy_data()["zones"]:
+        narrow = "l/t" not in zone["bounds"]
+        assert zone["designs"]["solid"] >= (3 if narrow else 60) and zone["designs"]["plane"] >= (
+            2 if narrow else 19
+        )
+        assert zone["designs"]["fem-solid, mesh 2"] >= 36 and zone["designs"]["fem-solid, mesh 3"] >= 24
+        assert zone["promised"]["solid"] > zone["worst"]["solid"] * 1.4
+
+
+def test_elements_take_the_mesh_that_is_named():
+    s = REFERENCE.with_(two_sided=False)
+    coarse, fine = (elements.stiffness(s, "fem-solid", mesh) for mesh in (2, 3))
+    assert coarse != fine and coarse == pytest.approx(fine, rel=1e-4)

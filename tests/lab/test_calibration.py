@@ -1,0 +1,291 @@
+"""Calibration readings to Table 1's columns: exact without noise, honest with it, outliers named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.lab import calibration, calibration_text, readings, regression, simulate
+from tactcad.lab.readings import CalibrationReadings
+from tactcad.lab.simulate import Noise, Truth
+
+CELL = 57.04
+STEPS = 0.025 * np.arange(7)
+TRUTH = Truth(np.array([4, 8]), np.array([5.78, 80.38]), np.array([-3.8, -9.0]), np.array([-2.14, 0.2]))
+
+
+def simulated(noise, seed=0, runs=3, truth=TRUTH, steps=STEPS, cell=CELL) -> CalibrationReadings:
+    rows = simulate.calibration_rows(truth, cell, steps, runs, noise, np.random.default_rng(seed))
+    return CalibrationReadings(
+        rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows)) + 2
+    )
+
+
+def test_without_noise_both_fits_give_the_truth():
+    for row, K, k_v, zero in zip(
+        calibration.calibrate(simulated(Noise(0, 0, 0)), CELL),
+        TRUTH.stiffness,
+        TRUTH.signal_per_deflection,
+        TRUTH.zero_signal,
+    ):
+        assert row.stiffness.value == pytest.approx(K, rel=1e-10)
+        assert row.stiffness_as_paper.value == pytest.approx(K, rel=1e-10)
+        assert row.signal_per_deflection.value == pytest.approx(k_v, rel=1e-10)
+        assert row.signal_per_force.value == pytest.approx(k_v / K, rel=1e-10)
+        assert row.zero_signal == pytest.approx(zero, abs=1e-10)
+        assert row.max_deflection == pytest.approx(
+            0.150 * CELL / (CELL + K), rel=1e-10
+        )  # two springs in series
+        assert row.max_force == pytest.approx(0.150 / (1 / CELL + 1 / K), rel=1e-10)
+        assert row.linearity_force < 1e-10 and not row.outliers and not row.notes
+
+
+def test_a_late_contact_shifts_only_the_intercept():
+    """The stage's zero 10 um before contact: slopes and the unloaded signal keep, as the intercept
+    takes it up.
+    """
+    shifted = simulated(Noise(0, 0, 0))
+    row = calibration.calibrate(
+        CalibrationReadings(
+            shifted.element,
+            shifted.run,
+            shifted.displacement + 0.010,
+            shifted.force,
+            shifted.signal,
+            shifted.line,
+        ),
+        CELL,
+    )[0]
+    assert row.stiffness.value == pytest.approx(5.78, rel=1e-10)
+    assert row.zero_signal == pytest.approx(-2.14, abs=1e-10)
+
+
+def test_a_rigid_load_cell_takes_nothing():
+    row = calibration.calibrate(simulated(Noise(0, 0, 0), cell=1e12), np.inf)[1]
+    assert row.stiffness.value == pytest.approx(80.38, rel=1e-9)
+
+
+def test_as_the_paper_did_is_a_straight_line_through_averages():
+    """Against numpy's polyfit on readings averaged by hand."""
+    data = simulated(Noise(0.01, 0.001, 0.002), seed=3)
+    row = calibration.calibrate(data, CELL)[1]
+    here = data.element == 8
+    force = data.force[here].reshape(3, 7).mean(0)
+    signal = data.signal[here].reshape(3, 7).mean(0)
+    d = STEPS - force / CELL
+    assert row.stiffness_as_paper.value == pytest.approx(np.polyfit(d, force, 1)[0], rel=1e-9)
+    assert row.signal_per_deflection_as_paper.value == pytest.approx(np.polyfit(d, signal, 1)[0], rel=1e-9)
+    line = np.polyval(np.polyfit(STEPS, force, 1), STEPS)
+    assert row.linearity_force == pytest.approx(np.abs(force - line).max() / np.ptp(force), rel=1e-9)
+
+
+def test_common_slope_with_an_intercept_a_run_against_a_design_matrix():
+    rng = np.random.default_rng(2)
+    x, run, w = rng.uniform(0, 1, 20), np.repeat([1, 2, 3, 4], 5), rng.uniform(0.5, 2, 20)
+    y = 3 * x + run + rng.normal(0, 0.1, 20)
+    lines = regression.fit_lines(x, y[:, None], run, w)
+    A = np.column_stack([x, *(run == r for r in (1, 2, 3, 4))]).astype(float)
+    root = np.sqrt(w / w.mean())
+    beta, square, *_ = np.linalg.lstsq(A * root[:, None], y * root, rcond=None)
+    covariance = np.linalg.inv((A * (root**2)[:, None]).T @ A) * square[0] / 15
+    assert lines.slope[0] == pytest.approx(beta[0], rel=1e-10)
+    assert lines.covariance[0, 0] == pytest.approx(covariance[0, 0], rel=1e-10)
+    assert lines.dof == 15
+    hat = A * root[:, None] @ np.linalg.pinv(A * root[:, None])
+    assert lines.leverage == pytest.approx(np.diag(hat), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "noise",
+    [
+        Noise(),
+        Noise(force=0.02, displacement=0.0, signal=0.002),
+        Noise(force=0.0005, displacement=0.002, signal=0.0002),
+    ],
+)
+def test_stated_intervals_hold_the_truth_as_often_as_they_say(noise):
+    """Both elements, 250 simulated calibrations: 95 % within binomial bounds of probability 1e-4."""
+    trials = 250
+    held = np.zeros(4)
+    for seed in range(trials):
+        for row, K, k_v in zip(
+            calibration.calibrate(simulated(noise, seed), CELL), TRUTH.stiffness, TRUTH.signal_per_deflection
+        ):
+            held += [
+                e.low <= truth <= e.high
+                for e, truth in (
+                    (row.stiffness, K),
+                    (row.signal_per_deflection, k_v),
+                    (row.signal_per_force, k_v / K),
+                    (row.stiffness_as_paper, K),
+                )
+            ]
+    low, high = binom.ppf([5e-5, 1 - 5e-5], 2 * trials, 0.95)
+    assert (held >= low).all() and (held <= high).all(), held / (2 * trials)
+
+
+def test_weights_help_where_noise_grows_with_the_reading():
+    """A force sensor of 1 % of its reading: the weighted slope scatters less than the unweighted one,
+    and keeps its coverage.
+    """
+    rng = np.random.default_rng(8)
+    x = np.tile(STEPS, 3)
+    run = np.repeat([1, 2, 3], 7)
+    plain, weighted, held = [], [], 0
+    for _ in range(400):
+        y = 20 * x * (1 + 0.05 * rng.standard_normal(21)) + 0.002 * rng.standard_normal(21)
+        first = regression.fit_lines(x, y[:, None], run)
+        second = regression.fit_lines(x, y[:, None], run, regression.variance_weights(first, x, 0))
+        plain.append(first.slope[0])
+        weighted.append(second.slope[0])
+        half = regression.t_quantile(0.95, second.dof) * second.covariance[0, 0] ** 0.5
+        held += abs(second.slope[0] - 20) <= half
+    assert np.std(weighted) < 0.9 * np.std(plain)
+    assert held / 400 > 0.90
+
+
+def test_outliers_are_named_by_element_run_displacement_and_line():
+    data = simulated(Noise(), seed=5)
+    bad = 7 * 3 + 7 + 4  # element 8, run 2, fifth step
+    data.force[bad] += 0.08
+    data.signal[bad + 2] += 0.02
+    row = calibration.calibrate(data, CELL)[1]
+    assert [(o.element, o.run, round(o.displacement, 3), o.quantity, o.line) for o in row.outliers] == [
+        (8, 2, 0.100, "force", bad + 2),
+        (8, 2, 0.150, "signal", bad + 4),
+    ]
+    kept, dropped = (calibration.calibrate(data, CELL, drop_outliers=d)[1] for d in (False, True))
+    assert (
+        abs(dropped.stiffness.value - 80.38) < abs(kept.stiffness.value - 80.38)
+        or dropped.stiffness.standard_error < kept.stiffness.standard_error
+    )
+    assert dropped.readings == kept.readings - 2
+
+
+def test_two_outliers_do_not_hide_each_other():
+    x = np.tile(STEPS, 3)
+    y = 40 * x + np.random.default_rng(1).normal(0, 0.003, 21)
+    y[[5, 12]] += [0.2, 0.21]
+    assert set(regression.extreme_deviates(x, y, np.repeat([1, 2, 3], 7))) == {5, 12}
+
+
+def test_good_readings_are_seldom_called_outliers():
+    """One calibration in a hundred by design; 400 simulated ones stay within binomial reach of that."""
+    x, run = np.tile(STEPS, 3), np.repeat([1, 2, 3], 7)
+    rng = np.random.default_rng(4)
+    named = sum(
+        bool(regression.extreme_deviates(x, 40 * x + rng.normal(0, 0.003, 21), run)) for _ in range(400)
+    )
+    assert named <= binom.ppf(1 - 1e-4, 400, 0.02)
+
+
+def test_runs_with_other_slopes_are_said_and_widen_the_interval():
+    data = simulated(Noise(), seed=5)
+    data.force[(data.element == 4) & (data.run == 3)] *= 1.08
+    row = calibration.calibrate(data, CELL)[0]
+    assert "runs' force slopes differ" in row.notes[0] and row.dof == 2
+    assert row.stiffness.low < 5.78 < row.stiffness.high
+
+
+def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():
+    data = simulated(
+        Noise(force=0.3),
+        seed=1,
+        truth=Truth(np.array([1]), np.array([5e4]), np.array([-9.0]), np.array([0.0])),
+    )
+    row = calibration.calibrate(data, CELL)[0]
+    assert (
+        np.isinf(row.stiffness.high) and row.stiffness.low > CELL and "from below only" in " ".join(row.notes)
+    )
+
+
+@pytest.mark.parametrize("cell", [0.0, -3.0, np.nan])
+def test_a_load_cell_without_stiffness_is_refused(cell):
+    with pytest.raises(InputError, match="load cell"):
+        calibration.calibrate(simulated(Noise()), cell)
+
+
+HEADER = "element,run,displacement,force,signal\n"
+
+
+@pytest.mark.parametrize(
+    "text, where, named",
+    [
+        ("element,run,displacement,force\n1,1,0,0\n", ":1:5", "signal"),
+        (HEADER + "1,1,0,0,0\n1,1,x,0,0\n", ":3:3", "not a number"),
+        (HEADER + "1,1,0,nan,0\n", ":2:4", "out of range"),
+        (HEADER + "1,1,150,0,0\n", ":2:3", "out of range"),  # micrometres in a column of millimetres
+        (HEADER + "1.5,1,0,0,0\n", ":2:1", "out of range"),
+        (HEADER + "1,1,0,0,0\n1,1,0,0,0\n", ":3:1", "already on line 2"),
+        (HEADER + "1,1,0,0\n", ":2:5", "another length"),
+        (HEADER, ":2:1", "no rows"),
+        ("", ":1:1", "no header"),
+        ("force,force\n", ":1:2", "twice"),
+        (HEADER + "1,1,0,0,0\n1,1,0.025,1,1\n", ":3:1", "too few readings of element 1"),
+    ],
+)
+def test_bad_files_are_refused_with_file_line_and_column(tmp_path, text, where, named):
+    file = tmp_path / "bad.csv"
+    file.write_text(text)
+    with pytest.raises(InputError, match=named) as refused:
+        readings.calibration(file)
+    assert str(refused.value).startswith(f"{file}{where}: ")
+
+
+def test_units_stand_in_the_columns_names(tmp_path):
+    data = simulated(Noise(0, 0, 0))
+    file = tmp_path / "units.csv"
+    file.write_text(
+        "# a comment\nsignal_mV,element,force_mN,note,displacement_um,run\n"
+        + "".join(
+            f"{v * 1e3:.9f},{e},{f * 1e3:.9f},hello,{x * 1e3:.6f},{r}\n"
+            for e, r, x, f, v in zip(data.element, data.run, data.displacement, data.force, data.signal)
+        )
+    )
+    rows = calibration.calibrate(readings.calibration(file), CELL)
+    assert [r.stiffness.value for r in rows] == pytest.approx([5.78, 80.38], rel=1e-7)
+    assert [r.signal_per_deflection.value for r in rows] == pytest.approx([-3.8, -9.0], rel=1e-7)
+
+
+def test_a_calibration_is_read_back_as_written(tmp_path):
+    rows = calibration.calibrate(simulated(Noise(), seed=2), CELL)
+    csv, js = tmp_path / "c.csv", tmp_path / "c.json"
+    csv.write_text(calibration_text.to_csv(rows, CELL))
+    js.write_text(calibration_text.to_json(rows, CELL, 0.95))
+    for known in (calibration_text.read(str(csv)), calibration_text.read(str(js))):
+        assert known.element.tolist() == [4, 8]
+        assert known.stiffness == pytest.approx([r.stiffness.value for r in rows], rel=1e-8)
+        assert known.stiffness_se == pytest.approx([r.stiffness.standard_error for r in rows], rel=1e-8)
+        assert known.signal_per_deflection_se == pytest.approx(
+            [r.signal_per_deflection.standard_error for r in rows], rel=1e-8
+        )
+        assert known.correlation == pytest.approx([r.correlation for r in rows], rel=1e-8)
+
+
+def test_no_calibration_is_written_that_the_readings_do_not_give():
+    data = simulated(
+        Noise(force=0.3),
+        seed=1,
+        truth=Truth(np.array([1]), np.array([5e4]), np.array([-9.0]), np.array([0.0])),
+    )
+    rows = calibration.calibrate(data, 40.0)
+    with pytest.raises(CheckFailure, match="element 1"):
+        calibration_text.to_csv(rows, 40.0)
+
+
+@pytest.mark.parametrize(
+    "line, where, named",
+    [
+        ("1,-3,-7", ":3:2", "out of range"),
+        ("2,3,0", ":3:3", "sensitivity of zero"),
+        ("1,3,-7\n1,4,-7", ":4:1", "already on line 3"),
+    ],
+)
+def test_a_bad_calibration_is_refused(tmp_path, line, where, named):
+    file = tmp_path / "cal.csv"
+    file.write_text("# c\nelement,stiffness_N_per_mm,signal_per_deflection_V_per_mm\n" + line + "\n")
+    with pytest.raises(InputError, match=named) as refused:
+        calibration_text.read(str(file))
+    assert str(refused.value).startswith(f"{file}{where}: ")

@@ -1,0 +1,184 @@
+"""The report as files: whole or not at all, offline, equal bytes, numbers in JSON; commands from end to
+end.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+from tactcad.cli.main import main
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export import folder
+from tactcad.paper import examples, validation
+from tactcad.paper import report as reporting
+
+ROOT = Path(__file__).parents[2]
+CALIBRATION, GRASP = ROOT / "hardware/examples/calibration.csv", ROOT / "hardware/examples/grasp.csv"
+
+
+def test_report_has_nine_sections_with_findings_tables_and_pictures(report):
+    assert len(report.sections) == 9
+    for section in report.sections:
+        assert section.findings and section.tables and section.figures
+
+
+def test_page_stands_alone(report):
+    page = reporting.to_html(report)
+    outside = [u for u in re.findall(r'(?:src|href)\s*=\s*"([^"]*)"', page) if not u.startswith("#")]
+    assert not outside and "@import" not in page and "<script" not in page
+    assert not re.findall(r"url\((?!#)", page)
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    for target in re.findall(r'xlink:href="#([^"]+)"', page) + re.findall(r"url\(#([^)]+)\)", page):
+        assert target in ids
+
+
+def test_json_is_strict_and_says_what_the_page_says(report):
+    data = json.loads(reporting.to_json(report), parse_constant=lambda c: pytest.fail(f"{c} is not JSON"))
+    assert data["sections"]["table2"]["findings"] == list(report.sections[4].findings)
+    assert data["sections"]["stiffness"]["values"]["measured"][0] == 40.12
+    assert {"fem-plane", "fem-solid", "solid", "plane", "section", "beam", "short"} <= set(
+        data["sections"]["stiffness"]["values"]["predicted"]
+    )
+
+
+def test_finite_elements_agree_with_their_closed_forms(report):
+    """Coarse solid elements and the plane mesh against the fitted forms: two ways to the same number."""
+    K = report.sections[0].values.predicted
+    assert K["fem-plane"] == pytest.approx(K["plane"], rel=4e-3)
+    assert K["fem-solid"] == pytest.approx(K["solid"], rel=1.5e-2)
+
+
+def test_same_data_give_equal_bytes(report, paper, array):
+    again = validation.validate(paper, array)
+    assert reporting.to_html(again) == reporting.to_html(report)
+    assert reporting.to_json(again) == reporting.to_json(report)
+
+
+def test_validate_writes_a_folder_and_replaces_it(tmp_path, capsys, monkeypatch, report):
+    monkeypatch.setattr(validation, "validate", lambda data, array: report)
+    out = tmp_path / "deep" / "validation"
+    for _ in range(2):
+        assert main(["validate", "--out", str(out)]) == 0
+        names = {p.relative_to(out).as_posix() for p in out.rglob("*") if p.is_file()}
+        assert {"report.html", "report.json", "plots/reference-stiffness.svg"} <= names
+        assert [p.name for p in out.parent.iterdir()] == ["validation"]
+    assert "9. Inversion" in capsys.readouterr().out
+    assert main(["validate", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["schema"] == "tactcad-validation-1"
+
+
+def test_a_folder_of_others_is_left_alone(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(InputError, match="not an earlier report's"):
+        folder.replace(tmp_path, {"report.json": b'{"schema": "s"}'}, "s")
+    assert [p.name for p in tmp_path.iterdir()] == ["notes.txt"]
+    (tmp_path / "report.json").write_text('{"schema": "s"}')
+    with pytest.raises(InputError, match="notes.txt"):
+        folder.replace(tmp_path, {"report.json": b"{}"}, "s")
+    with pytest.raises(InputError, match="not a folder"):
+        folder.replace(tmp_path / "notes.txt", {"report.json": b"{}"}, "s")
+
+
+@pytest.mark.parametrize("exchange", [True, False])
+def test_a_failed_write_leaves_the_earlier_report(tmp_path, monkeypatch, exchange):
+    out = tmp_path / "r"
+    folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": b"old"}, "s")
+    if not exchange:
+        monkeypatch.setattr(folder, "_exchange", lambda a, b: False)
+    real = os.rename
+    failing = {"on": True}
+
+    def rename(a, b):
+        if failing["on"] and str(b) == str(out):
+            failing["on"] = False
+            raise OSError(28, "No space left on device")
+        real(a, b)
+
+    monkeypatch.setattr(os, "rename", rename)
+    if exchange:  # the disk is full while the new one is written
+        monkeypatch.setattr(
+            Path,
+            "write_bytes",
+            lambda self, data: (_ for _ in ()).throw(OSError(28, "No space left on device")),
+        )
+    with pytest.raises(CheckFailure, match="No space left"):
+        folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": b"new"}, "s")
+    assert (out / "a/b.json").read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == ["r"]
+
+
+def test_exchange_and_moving_aside_both_replace(tmp_path, monkeypatch):
+    for exchange in (True, False):
+        out = tmp_path / f"r{exchange}"
+        if not exchange:
+            monkeypatch.setattr(folder, "_exchange", lambda a, b: False)
+        for content in (b"old", b"new"):
+            folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": content}, "s")
+        assert (out / "a/b.json").read_bytes() == b"new"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["rFalse", "rTrue"]
+
+
+def test_bad_table_exits_2_and_writes_nothing(tmp_path, capsys):
+    bad = tmp_path / "bad.csv"
+    bad.write_text("element,stiffness_N_per_mm\n1,-4\n")
+    assert main(["validate", "--table1", str(bad), "--out", str(tmp_path / "out")]) == 2
+    assert f"{bad}:1:3: column 'max_deflection_um' is missing" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_design_without_the_paper_s_elements_is_refused(paper, array):
+    from dataclasses import replace
+
+    with pytest.raises(InputError, match="does not have Table 1's elements"):
+        validation.validate(paper, replace(array, number=array.number + 100))
+
+
+def test_examples_are_simulated_say_so_and_can_be_made_again(tmp_path):
+    examples.write(tmp_path)
+    for file in (CALIBRATION, GRASP):
+        assert (tmp_path / file.name).read_text() == file.read_text()
+        assert "SIMULATED" in file.read_text().splitlines()[0]
+
+
+def test_from_readings_to_object_stiffness(tmp_path, capsys):
+    """The two commands one after the other on the shipped examples: the truth that their comments state."""
+    table = tmp_path / "calibration.csv"
+    assert main(["calibrate", str(CALIBRATION), "--out", str(table)]) == 0
+    assert "load cell in series: 57.04" in capsys.readouterr().out
+    assert main(["stiffness", str(GRASP), "--calibration", str(table), "--json"]) == 0
+    soft, stiff = json.loads(capsys.readouterr().out)["samples"]
+    assert (
+        soft["combined"]["low"] < 3.85 < soft["combined"]["high"] and soft["combined"]["verdict"] == "bounded"
+    )
+    assert len(soft["pairs"]) == 8 and {p["reference"] for p in soft["pairs"]} == {8}
+    assert stiff["combined"]["low"] < 3000 and any(p["object"]["high"] == "inf" for p in stiff["pairs"])
+    assert main(["stiffness", str(GRASP), "--calibration", str(table)]) == 0
+    assert "bounded from below only" in capsys.readouterr().out
+
+
+def test_calibration_as_json_serves_as_well(tmp_path, capsys):
+    assert main(["calibrate", str(CALIBRATION), "--json"]) == 0
+    table = tmp_path / "calibration.json"
+    table.write_text(capsys.readouterr().out)
+    assert main(["stiffness", str(GRASP), "--calibration", str(table), "--reference", "1"]) == 0
+    assert "sample 1: K_obj = 3.8" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "arguments, named",
+    [
+        (["calibrate", "none.csv"], "cannot be read"),
+        (["calibrate", str(CALIBRATION), "--load-cell", "-1"], "stiffness must be positive"),
+        (["calibrate", str(CALIBRATION), "--level", "2"], "level"),
+        (["stiffness", str(GRASP), "--calibration", str(CALIBRATION)], "'stiffness_N_per_mm' is missing"),
+        (["stiffness", str(GRASP), "--calibration", "none.json"], "cannot be read"),
+    ],
+)
+def test_bad_requests_exit_2_with_one_line(arguments, named, capsys):
+    assert main(arguments) == 2
+    error = capsys.readouterr().err
+    assert named in error and error.count("\n") == 1
