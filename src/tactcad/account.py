@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -89,6 +89,26 @@ def making(kind: str, name: str) -> Iterator[None]:
     start = time.process_time()
     yield
     own.made.append(Made(kind, name, time.process_time() - start))
+
+
+_listener: Callable[[str], None] | None = None
+
+
+@contextmanager
+def listening(hear: Callable[[str], None]) -> Iterator[None]:
+    """`hear` is told how far a long piece of work has come, by whoever does it inside."""
+    global _listener
+    before, _listener = _listener, hear
+    try:
+        yield
+    finally:
+        _listener = before
+
+
+def under_way(how_far: str) -> None:
+    """Say how far a long piece of work has come ("strip 3 of 7"); costs nothing where nobody listens."""
+    if _listener:
+        _listener(how_far)
 
 
 def text(record: dict) -> str:

@@ -15,7 +15,7 @@ from .dimension_lines import stacked
 from .ink import Item, moved
 from .measure import Span, level
 from .page import MARGIN, Page, edges, fewer
-from .paper import A3, A3_UPRIGHT, Paper
+from .paper import A0, A1, A2, A3, A3_UPRIGHT, Paper
 from .plan import Dimension, Linear
 from .scale import ASSEMBLIES, factor, largest_fitting, shown
 from .title import HEIGHT, WIDTH, TitleBlock, notes
@@ -24,13 +24,14 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
 APART = 14.0  # between views
+LEAST = 1 / 50  # scale: larger paper before a smaller scale
 AROUND = 20.0  # left of and over the views, for overall dimensions
 
 Box = tuple[float, float, float, float]
 
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
-    """Front, plan below it, view from the left to its right, at the largest scale that lying or upright A3 allows."""
+    """Front, plan below it, view from the left to its right."""
     from tactcad.drawing.picture import EXACT_UP_TO, View, drawing
     from tactcad.solids.place import placed_shape
 
@@ -43,19 +44,7 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
     size = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}
     wide, high = size["front"][0] + size["left"][0], size["front"][1] + size["plan"][1]
     spare = APART + AROUND
-    choices = [_with_notes(paper, notes_of(design, scene), block) for paper in (A3, A3_UPRIGHT)]
-    fitting = [
-        (scale, choice)
-        for choice in choices
-        for _, _, (x0, y0, x1, y1) in [choice]
-        if (scale := largest_fitting(wide, high, (x1 - x0 - spare, y1 - y0 - spare)))
-    ]
-    if not fitting:
-        raise CheckFailure(
-            f"drawings: {block.number}: three views of {wide:.0f} x {high:.0f} mm in all do not fit A3 at "
-            f"{shown(ASSEMBLIES[-1])}; no drawing was written"
-        )
-    scale, (paper, items, (x0, y0, x1, y1)) = max(fitting, key=lambda pair: factor(pair[0]))
+    scale, paper, items, (x0, y0, x1, y1) = _largest(wide, high, spare, notes_of(design, scene), block)
     f = factor(scale)
     west, south = (x0 + x1 - f * wide - spare) / 2 + AROUND, (y0 + y1 - f * high - spare) / 2
     north = south + f * size["plan"][1] + APART
@@ -80,7 +69,30 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
     return Page(paper, shown(scale), tuple(items), "Assembly drawing")
 
 
-def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[Paper, list[Item], Box]:
+def _largest(
+    wide: float, high: float, spare: float, lines: Sequence[str], block: TitleBlock
+) -> tuple[tuple[int, int], Paper, list[Item], Box]:
+    """Scale, paper, the notes on it and where views of that size in all (mm of the assembly, and `spare` mm of paper) may
+    stand: the largest scale on A3, or the smallest larger paper on which it is at least LEAST."""
+    best: tuple[tuple[int, int], Paper, list[Item], Box] | None = None
+    for papers in ((A3, A3_UPRIGHT), (A2,), (A1,), (A0,)):
+        for paper in papers:
+            items, area = _with_notes(paper, lines, block)
+            x0, y0, x1, y1 = area
+            scale = largest_fitting(wide, high, (x1 - x0 - spare, y1 - y0 - spare))
+            if scale and (best is None or factor(scale) > factor(best[0])):
+                best = scale, paper, items, area
+        if best and factor(best[0]) >= LEAST:
+            return best
+    if best is None:
+        raise CheckFailure(
+            f"drawings: {block.number}: three views of {wide:.0f} x {high:.0f} mm in all do not fit A0 at "
+            f"{shown(ASSEMBLIES[-1])}; no drawing was written"
+        )
+    return best
+
+
+def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[list[Item], Box]:
     """The notes, on a lying sheet over the title block, on an upright one over its whole width; and where views may stand."""
     x0, y0, x1, y1 = paper.area
     lying = paper.width > paper.height
@@ -93,7 +105,6 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
     at = (x1 - WIDTH + MARGIN, y1 - MARGIN) if lying else (x0 + MARGIN, y0 + HEIGHT + MARGIN + high)
     left = (x0, y0, x1 - WIDTH, y1) if lying else (x0, at[1], x1, y1)
     return (
-        paper,
         [moved(t, *at) for t in texts],
         tuple(v + m for v, m in zip(left, (MARGIN, MARGIN, -MARGIN, -MARGIN))),
     )
@@ -107,7 +118,7 @@ def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[
     for side in sides:
         x = w if side == "right" else 0.0
         name, p, q = ("w", (0.0, h), (w, h)) if side == "top" else ("h", (x, 0.0), (x, h))
-        dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), sign="(", unit=")")
+        dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), auxiliary=True)
         items += stacked(
             [Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, {**values, "zero": 0.0}, 10.0
         )

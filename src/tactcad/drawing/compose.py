@@ -12,7 +12,7 @@ from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
 from .ink import CENTRE, THIN, Arc, Hatch, Item, Point, Sheet, Stroke, Text, box, moved, points_of
 from .layout import bounds, layout_faults
-from .paper import Paper, frame
+from .paper import A3, A4, Paper, frame
 from .plan import Box, Callout, Plan, View, seen
 from .scale import SERIES, factor, shown
 from .section_lines import bore_lines, letters, mark_plane
@@ -25,7 +25,7 @@ APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
 PLANE = 3.0  # more between a view and its dimensions where a cutting plane ends
-LARGEST = 200.0  # mm of paper: a view is not enlarged beyond
+LARGEST = 200.0  # mm of paper, on A4 and A3: a view is not enlarged beyond
 
 
 # Shares of the room that details may take, tried in turn.
@@ -50,7 +50,11 @@ class _Drawn:
 
 
 def compose(
-    plan: Plan, curves: Mapping[str, Sequence[Curve]], block: TitleBlock, papers: Sequence[Paper]
+    plan: Plan,
+    curves: Mapping[str, Sequence[Curve]],
+    block: TitleBlock,
+    papers: Sequence[Paper],
+    scales: Sequence[tuple[int, int]] = SERIES,
 ) -> Sheet:
     """The sheet at the largest preferred scale, and on the first paper, at which its layout is clean.
 
@@ -58,11 +62,12 @@ def compose(
     """
     width_, height_ = _main_size(plan)
     said: list[str] = []
-    for scale in SERIES:
-        if max(width_, height_) * factor(scale) > LARGEST:
-            continue
+    for scale in scales:
         details = SHRUNK if any(v.window for v in plan.views) else SHRUNK[:1]
         for paper, beside, shrunk in ((p, b, s) for p in papers for s in details for b in (True, False)):
+            if max(width_, height_) * factor(scale) > (LARGEST if paper in (A4, A3) else paper.width):
+                said.append(f"the views at {shown(scale)} do not fit {paper.name}")
+                continue
             if beside and paper.area[2] - paper.area[0] - WIDTH < NARROWEST:
                 continue
             sheet, faults = _attempt(plan, curves, block, paper, scale, beside, shrunk)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import isclose
 
 from tactcad.design.tree import Design
@@ -11,6 +12,9 @@ from tactcad.parts.description import Extrusion, Hole, Part, Vector
 
 from .measure import axis_of, size
 from .plan import Dimension, Values
+
+LEAST_ROW = 6  # equal holes in a line that count as a regular row
+EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a micrometre's thousandth
 
 
 @dataclass(frozen=True)
@@ -165,6 +169,21 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
     elif not _same_from_both_sides(h) and sum(a * e for a, e in zip(h.axis, eye_of[axis_of(h)])) > 0:
         lines.append("from the far side")
     return Group(tuple(some), tuple(lines), tuple(used))
+
+
+def regular_rows(called: Sequence[Group], k: int) -> list[list[Round]]:
+    """Rows of at least LEAST_ROW equal holes along z, evenly spaced along the part's axis k (0 or 1), in order."""
+    rows = []
+    for group in called:
+        lines: dict[float, list[Round]] = {}
+        for r in group.holes if group.axis[2] else ():
+            lines.setdefault(round(r.at[1 - k], 6), []).append(r)
+        for line in lines.values():
+            line.sort(key=lambda r: r.at[k])
+            steps = [b.at[k] - a.at[k] for a, b in pairwise(line)]
+            if len(line) >= LEAST_ROW and max(steps) - min(steps) < EVEN:
+                rows.append(line)
+    return rows
 
 
 def _entered(h: Hole) -> bool:

@@ -1,4 +1,4 @@
-"""Sheets of paper after ISO 5457:1999: sizes, frame, centring marks, zones; A4 upright, A3 lying by default."""
+"""Sheets of paper after ISO 5457:1999: sizes, frame, centring marks, zones; A4 upright, all others lying by default."""
 
 from __future__ import annotations
 
@@ -37,6 +37,9 @@ A4 = Paper("A4", 210.0, 297.0)
 A4_LYING = Paper("A4", 297.0, 210.0)
 A3 = Paper("A3", 420.0, 297.0)
 A3_UPRIGHT = Paper("A3", 297.0, 420.0)
+A2 = Paper("A2", 594.0, 420.0)
+A1 = Paper("A1", 841.0, 594.0)
+A0 = Paper("A0", 1189.0, 841.0)
 
 
 def frame(paper: Paper) -> list[Item]:
@@ -70,10 +73,10 @@ def frame(paper: Paper) -> list[Item]:
 
 def _zones(low: float, high: float, middle: float) -> list[tuple[float, float]]:
     """Fields of ZONE length either way from the middle; what is left over joins the outermost."""
-    half = max(
-        1, int((middle - low) / ZONE + 0.4)
-    )  # with these ISO 5457's 8 x 6 on A3 and 4 x 6 on A4 come out
-    upper = max(1, int((high - middle) / ZONE + 0.4))
-    inner = [middle + ZONE * i for i in range(1 - half, upper)]
+    # ISO 5457 counts them on the whole sheet: 8 x 6 on A3, 24 x 16 on A0. It has no turned sheets: there the filing
+    # margin counts, so that no outermost field is much shorter than the others.
+    turned = low == LEFT and 2 * middle == A4.height
+    half = int((middle - low) / ZONE + 0.4) if turned else round(middle / ZONE)
+    inner = [middle + ZONE * i for i in range(1 - half, round(middle / ZONE))]
     stops = [low, *inner, high]
     return list(zip(stops, stops[1:]))

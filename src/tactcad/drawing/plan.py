@@ -20,7 +20,8 @@ class Dimension:
 
     `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number shown, of
     a part modelled at `modelled` (deviation of the model from that number). `key` is the number of the
-    key characteristic that it states, 0 for none.
+    key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in parentheses, for
+    information.
     """
 
     name: str
@@ -32,6 +33,7 @@ class Dimension:
     fit: str = ""
     key: int = 0
     counted: bool = True
+    auxiliary: bool = False
 
     def value(self, values: Values) -> float:
         """mm or degrees. Raises ValueError where the rows differ: the features are not equal."""
@@ -44,7 +46,10 @@ class Dimension:
         """As it stands on the sheet: "4× ⌀3.4", "0.25 ±0.005", "⌀3.012 +0.006/0"."""
         count = f"{len(self.rows)}× " if len(self.rows) > 1 and self.counted else ""
         exact = self.limits is not None
-        return f"{count}{self.sign}{number(self.value(values), exact)}{self.unit}{self.tolerance}"
+        shown = number(self.value(values), exact)
+        if self.auxiliary:
+            shown = f"({shown})"
+        return f"{count}{self.sign}{shown}{self.unit}{self.tolerance}"
 
     @property
     def tolerance(self) -> str:
@@ -195,6 +200,26 @@ def seen(view: View, p: Vector) -> Point:
 
 
 @dataclass(frozen=True)
+class Breaks:
+    """What broken views leave out along an axis of the part (0 or 1): from where to where (mm of the part, ascending), and
+    the gap (mm) that stands for each."""
+
+    axis: int
+    left_out: tuple[tuple[float, float], ...]
+    gap: float
+
+    def squeezed(self, at: float) -> float:
+        """Where a coordinate comes to lie."""
+        return at - sum(
+            min(max(at - low, 0.0), high - low) * (1.0 - self.gap / (high - low))
+            for low, high in self.left_out
+        )
+
+    def shows(self, at: float) -> bool:
+        return not any(low < at < high for low, high in self.left_out)
+
+
+@dataclass(frozen=True)
 class Plan:
     """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
 
@@ -203,6 +228,7 @@ class Plan:
     conventions: tuple[Measure, ...]
     views: tuple[View, ...]
     notes: tuple[str, ...] = ()
+    breaks: Breaks | None = None
 
     @property
     def dimensions(self) -> tuple[Dimension, ...]:

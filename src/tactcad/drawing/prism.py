@@ -14,11 +14,12 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Part, Pocket, Vector
 
+from .broken import breaks_of
 from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline, widest
 from .contours import contours
-from .holes import Group, groups, rounds
+from .holes import Group, Round, groups, regular_rows, rounds
 from .ink import Point
-from .measure import Span, conventions, halfway, in_part, level, size
+from .measure import Difference, Level, Span, conventions, halfway, in_part, level, size
 from .plan import Characteristic, Datum, Dimension, Linear, Plan, View, characteristic, seen
 from .running import depth_running, face_running, filled, running_along
 from .section import section_of, section_view
@@ -28,8 +29,24 @@ FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 
 
-def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = True) -> Plan:
-    """The plan of any extruded part, with a section where it is of use and `cut` asks for it. Raises CheckFailure where a characteristic or a variable stays without dimension."""
+def prism_plan(
+    part: Part, design: Design, notes: Sequence[str], cut: bool = True, shortened: bool = False
+) -> Plan | None:
+    """The plan of any extruded part.
+
+    Parameters
+    ----------
+    cut
+        With a section, where it is of use.
+    shortened
+        With broken views, and regular rows of holes by their ends and their number; None where too little could be left
+        out.
+
+    Raises
+    ------
+    CheckFailure
+        Where a characteristic or a variable of the part stays without dimension.
+    """
     body = part.body
     assert isinstance(body, Extrusion)
     sketch = Sketch(part)
@@ -45,13 +62,23 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = Tru
     eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
     called = groups(found, sketch.values, eyes)
     limits = {c.name: c for c in part.characteristics}
-    front = _front_view(sketch, part, eye, up, called, limits)
+    breaks, rows = None, []
+    if shortened:
+        x0, y0, x1, y1 = part.body.outer.box
+        rows = regular_rows(called, 0 if x1 - x0 > y1 - y0 else 1)
+        breaks = breaks_of(part, found, {r.name for row in rows for r in row[2:-2]})
+        if breaks is None:
+            return None
+        notes = (*notes, "Views are broken; dimensions are those of the whole part")
+    front = _front_view(sketch, part, eye, up, called, limits, rows)
     views = [front]
     if below:
         views.append(
             _sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits)
         )
     section = section_of(part, found, front, below) if cut else None
+    if section and breaks and section.axis == breaks.axis and not breaks.shows(section.at):
+        section = None
     aside = [g for g in called if g.axis[0]]
     if aside or not below:
         side = side_view(sketch, part, front, called if aside else [], limits, thickness=not below)
@@ -62,7 +89,7 @@ def prism_plan(part: Part, design: Design, notes: Sequence[str], cut: bool = Tru
     if limits:
         raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
     closed(sketch)
-    return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes))
+    return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
 
 
 def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
@@ -91,6 +118,7 @@ def _front_view(
     up: Vector,
     called: Sequence[Group],
     limits: dict[str, Characteristic],
+    rows: Sequence[Sequence[Round]],
 ) -> View:
     view = View("front", eye, up, (0, 0, 0, 0))
     view = replace(view, box=view_box(view, part))
@@ -109,14 +137,21 @@ def _front_view(
     if disc:
         callouts.insert(0, round_outline(sketch, part))
         linears = _lands(sketch, view, part, limits)
+    along = 0 if rows and rows[0][0].at[1] == rows[0][1].at[1] else 1
+    repeated = {level(f"{r.name}.{'xy'[along]}") for row in rows for r in row[1:-1]}
+    repeated |= {level(f"{r.name}.{'xy'[1 - along]}") for row in rows for r in row[:-1]}
     runnings = []
     for k, side in ((0, "top"), (1, "right")):
         mine = [
             c
             for c in points
-            if c.level.names[0].endswith("xy"[k]) and "c" not in c.level.names[0].rsplit(".", 1)[1]
+            if c.level.names[0].endswith("xy"[k])
+            and "c" not in c.level.names[0].rsplit(".", 1)[1]
+            and c.level not in repeated
         ]
         runnings.append(running_along(sketch, view, side, k, mine, "outer" if disc else None))
+    if rows:
+        linears += _spaces(sketch, view, rows, along)
     callouts += radius_callouts(sketch, view, part)
     for k, index in ((0, 0), (1, 1)):
         rest = [c for c in points if c.level.names[0].rsplit(".", 1)[1].endswith("xy"[k])]
@@ -132,6 +167,30 @@ def _front_view(
         + (((seen(view, (*disc[0], 0.0)), 2 * disc[1]),) if disc else ()),
         threads=_threads(view, along_z),
     )
+
+
+def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int) -> list[Linear]:
+    """Number of equal spaces of regular rows along the part's axis k, and for information how wide one is."""
+    shown: dict[tuple, Linear] = {}
+    for row in rows:
+        places = [level(f"{r.name}.{'xy'[k]}") for r in row]
+        for a, b, c in zip(places, places[1:], places[2:]):
+            sketch.convention(Difference(Span(a, b), Span(b, c)))
+        beside = [level(f"{r.name}.{'xy'[1 - k]}") for r in row]
+        for a in beside[:-1]:
+            sketch.convention(Span(beside[-1], a))
+        count = len(row) - 1
+        ends = [Level(((places[n].names[0], 1 / count),)) for n in (0, -1)]
+        space = Dimension(
+            f"{row[0].label} spaces", (Span(*ends),), sign=f"{count} equal spaces ", auxiliary=True
+        )
+        p, q = (seen(view, r.at) for r in (row[0], row[-1]))
+        # rows beside each other that are spaced alike say it once
+        shown.setdefault(
+            (count, round(row[0].at[k], 6), round(row[-1].at[k], 6)),
+            Linear(space, "bottom" if k == 0 else "left", p, q),
+        )
+    return list(shown.values())
 
 
 def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:

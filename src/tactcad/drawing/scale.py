@@ -4,7 +4,7 @@ from __future__ import annotations
 
 # paper : part, the largest first
 SERIES = ((50, 1), (20, 1), (10, 1), (5, 1), (2, 1), (1, 1), (1, 2), (1, 5), (1, 10))
-ASSEMBLIES = (*SERIES, (1, 20), (1, 50))
+ASSEMBLIES = (*SERIES, (1, 20), (1, 50), (1, 100))
 
 
 def shown(scale: tuple[int, int]) -> str:

@@ -4,32 +4,36 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import cache
+from itertools import count
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Part, Vector
 
+from .broken import broken
 from .compose import Curve, NoPlace, compose
 from .element import element_plan
 from .gate import drawing_faults
 from .ink import Sheet, preliminary
 from .notes import MadeFrom, notes_of
-from .paper import A3, A4
+from .paper import A0, A1, A2, A3, A4, Paper
 from .plan import Plan, Section, View
 from .prism import prism_plan
+from .scale import SERIES, factor
 from .title import TitleBlock
 from .workers import end_with
 
 if TYPE_CHECKING:
     from .assembly_file import AssemblyOrder
 
-PARALLEL_FROM = 3  # drawings: fewer are not worth processes
+LEAST_WHOLE = 1 / 2  # scale: a long part comes out broken before it comes out smaller
+EVERY = 2.0  # s: nobody waits longer without a word
 
 
 @dataclass(frozen=True)
@@ -55,15 +59,32 @@ class Written:
     svg: bytes
 
 
-def part_plan(part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False) -> Plan:
-    """What the part's sheet shows; `spare` asks for less: an element's as that of a tall one, a prism's without section. Raises CheckFailure where the part cannot be drawn, or not fully dimensioned."""
+def part_plan(
+    part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
+) -> Plan | None:
+    """What a part's sheet shows.
+
+    Parameters
+    ----------
+    files
+        What the part is made from.
+    spare
+        Asks for less: of an element as of a tall one, of any other part without section.
+    shortened
+        Asks for broken views; None where these would leave out too little.
+
+    Raises
+    ------
+    CheckFailure
+        Where the part cannot be drawn, or not fully dimensioned.
+    """
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
     names = {s.name for s in part.body.outer}
     notes = notes_of(part, files)
     if {"pad_face", "stop_land"} <= names:
-        return element_plan(part, design, notes, spare)
-    return prism_plan(part, design, notes, not spare)
+        return None if shortened else element_plan(part, design, notes, spare)
+    return prism_plan(part, design, notes, not spare, shortened)
 
 
 def part_sheet(order: Order) -> Sheet:
@@ -83,19 +104,37 @@ def part_sheet(order: Order) -> Sheet:
         half, face = cut(shape, view)
         return [face, *projected(half, eye, view.right)]
 
-    def composed(plan: Plan) -> Sheet:
-        return compose(plan, {v.name: curves(v.eye, v.up, v.section) for v in plan.views}, title, (A4, A3))
+    title = title_of(order.design, order.part, order.draft)
+    for plan, papers, scales in _attempts(order):
+        drawn = {v.name: curves(v.eye, v.up, v.section) for v in plan.views}
+        try:
+            sheet = compose(*broken(plan, drawn), title, papers, scales)
+        except NoPlace as error:
+            refused = error
+        else:
+            return preliminary(sheet) if order.draft else sheet
+    raise refused
 
-    design, part = order.design, order.part
-    title = title_of(design, part, order.draft)
-    plan = part_plan(part, design, order.files)
-    try:
-        sheet = composed(plan)
-    except NoPlace:
+
+def _attempts(order: Order) -> Iterator[tuple[Plan, Sequence[Paper], Sequence[tuple[int, int]]]]:
+    """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them down to 1:2
+    before broken ones, and smaller only after these."""
+
+    def plans(shortened: bool = False) -> list[Plan]:
+        plan = part_plan(order.part, order.design, order.files, shortened=shortened)
+        if plan is None:
+            return []
         if all(view.window is None and view.section is None for view in plan.views):
-            raise
-        sheet = composed(part_plan(part, design, order.files, spare=True))
-    return preliminary(sheet) if order.draft else sheet
+            return [plan]
+        return [plan, part_plan(order.part, order.design, order.files, spare=True, shortened=shortened)]
+
+    small, whole, short = (A4, A3), plans(), plans(shortened=True)
+    large = [s for s in SERIES if factor(s) >= LEAST_WHOLE] if short else SERIES
+    yield from ((plan, small, large) for plan in whole)
+    yield from ((plan, small, SERIES) for plan in short)
+    if short:
+        yield from ((plan, small, SERIES) for plan in whole)
+    yield from ((plan, (paper,), SERIES) for paper in (A2, A1, A0) for plan in (*short, *whole))
 
 
 def title_of(design: Design, part: Part, draft: bool) -> TitleBlock:
@@ -140,21 +179,36 @@ def all_written(
 
     Raises CheckFailure for the first that cannot be drawn, or where a process was killed.
     """
+    if not orders:
+        return []
     cores = min(len(os.sched_getaffinity(0)), len(orders))
-    if cores < 2 or len(orders) < PARALLEL_FROM:
-        return [_said(make(order), n, orders, say) for n, order in enumerate(orders)]
-    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial)
+    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial).
+    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said meanwhile.
     with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
+        futures = [pool.submit(make, order) for order in orders]
         try:
-            return [_said(done, n, orders, say) for n, done in enumerate(pool.map(make, orders))]
+            made = [_waited(f, n, orders, say) for n, f in enumerate(futures)]
         except BrokenProcessPool as error:
             raise CheckFailure(
                 "drawings: a process that made them was killed; no drawing was written"
             ) from error
+        finally:
+            for future in futures:
+                future.cancel()
+    say(len(orders), len(orders), "done")
+    return made
 
 
-def _said(
-    done: Written, n: int, orders: Sequence[Order | AssemblyOrder], say: Callable[[int, int, str], None]
+def _waited(
+    future: Future[Written],
+    n: int,
+    orders: Sequence[Order | AssemblyOrder],
+    say: Callable[[int, int, str], None],
 ) -> Written:
-    say(n + 1, len(orders), f"drawing of {orders[n].name}")
-    return done
+    """The n-th drawing once it is there; meanwhile it is said every EVERY seconds that it is not."""
+    say(n, len(orders), f"drawing of {orders[n].name}")
+    for rounds in count(1):
+        if wait([future], EVERY).done:
+            break
+        say(n, len(orders), f"drawing of {orders[n].name} (for {rounds * EVERY:g} s)")
+    return future.result()

@@ -18,16 +18,17 @@ def windowed(curves: Sequence[Curve], window: Box) -> list[Curve]:
         if isinstance(curve, Arc) and all(_inside(p, window) for chord in curve.chords() for p in chord):
             kept.append(curve)
             continue
-        chords = _fine(curve) if isinstance(curve, Arc) else curve.chords()
+        chords = fine(curve) if isinstance(curve, Arc) else curve.chords()
         for chord in chords:
-            cut = _clipped(chord, window)
+            cut = clipped(chord, window)
             if cut:
                 kept.append(Stroke(cut, curve.line, curve.role))
                 ends += [p for p in cut if curve.role == "outline" and _on_edge(p, window)]
     return kept + _breaks(ends, window)
 
 
-def _fine(arc: Arc) -> list[tuple[Point, Point]]:
+def fine(arc: Arc) -> list[tuple[Point, Point]]:
+    """An arc as straight pieces to be clipped."""
     points = [arc.at(arc.start + arc.sweep * i / 64) for i in range(65)]
     return list(zip(points, points[1:]))
 
@@ -46,8 +47,8 @@ def _breaks(ends: Sequence[Point], window: Box) -> list[Curve]:
     return lines
 
 
-def _clipped(chord: tuple[Point, Point], window: Box) -> tuple[Point, Point] | None:
-    """Liang and Barsky's clipping of a straight piece."""
+def clipped(chord: tuple[Point, Point], window: Box) -> tuple[Point, Point] | None:
+    """What of a straight piece lies in a box (Liang and Barsky); None where nothing does."""
     (ax, ay), (bx, by) = chord
     dx, dy = bx - ax, by - ay
     t0, t1 = 0.0, 1.0

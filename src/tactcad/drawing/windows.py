@@ -14,6 +14,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from tactcad.account import under_way
+
 Polyline = tuple[tuple[float, float], ...]
 Lines = tuple[list[Polyline], list[Polyline]]  # sharp, smooth
 
@@ -31,9 +33,10 @@ def draw_in_windows(boxes: NDArray[np.float64], draw: Callable[[NDArray[np.intp]
     count = ceil(len(boxes) / PER_WINDOW)
     borders = [np.floor(middles[len(boxes) * k // count] * 1e3) / 1e3 + OFF_GRID for k in range(1, count)]
     sharp, smooth = [], []
-    for left, right in zip([-np.inf, *borders], [*borders, np.inf]):
+    for n, (left, right) in enumerate(zip([-np.inf, *borders], [*borders, np.inf]), start=1):
         if left == right:
             continue
+        under_way(f"strip {n} of {count}")
         for lines, kept in zip(draw(np.flatnonzero((low <= right) & (high >= left))), (sharp, smooth)):
             kept += [piece for line in lines for piece in clipped(line, axis, left, right)]
     return sharp, smooth

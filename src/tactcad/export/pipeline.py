@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from tactcad.account import listening
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 
@@ -184,7 +185,12 @@ def _write_products(
         data = cache.get(product.key)
         progress.step(n, len(products), f"{product.path} ({'kept' if data is not None else 'making'})")
         if data is None:
-            data = product.make()
+
+            def hear(how_far: str, n: int = n, path: str = product.path) -> None:
+                progress.step(n, len(products), f"{path} ({how_far})")
+
+            with listening(hear):
+                data = product.make()
             cache.put(product.key, data)
             made.append(product.path)
         path = folder / product.path

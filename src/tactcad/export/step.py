@@ -26,6 +26,7 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from tactcad.account import under_way
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.scenes.scene import Placement, Scene
@@ -63,7 +64,9 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
             p.designator,
         )
     shape_tool.UpdateAssemblies()
+    under_way("writing")
     data = _written(document, header)
+    under_way("reading back")
     _check_scene(data, scene, header.name)
     return data
 
