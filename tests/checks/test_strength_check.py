@@ -30,7 +30,7 @@ def test_a_stop_one_step_wider_passes_the_rated_deflection(name):
         wider = variant({"stop.gaps": {arm: round(gap + 0.005, 6)}}, name)
         failed = {f.part.split()[0] for f in check_strength(wider) if f.severity == "fail"}
         assert failed == {p.designator for p in layout.elements if p.arm == state.place.arm}
-        assert {b.path for b in broken_rules(wider)} == {f"stop.gaps.{arm}"}
+        assert {b.part for b in broken_rules(wider)} == {f"stop.gaps.{arm}"}
         assert broken_rules(variant({"stop.gaps": {arm: gap}}, name)) == []
 
 
@@ -112,8 +112,8 @@ def test_the_gap_follows_the_overload_force():
 
 def test_a_force_that_no_gap_can_save_the_hinge_from_is_refused_with_the_one_that_it_can():
     (found,) = broken_rules(variant({"rating.overload_force": 250.0}))
-    assert found.path == "rating.overload_force"
-    most = float(found.legal.split()[2])
+    assert found.part == "rating.overload_force"
+    most = float(found.limit.split()[2])
     assert broken_rules(variant({"rating.overload_force": 0.99 * most})) == []
     assert most > 0.8 * 250  # and it is near what it cannot
 
