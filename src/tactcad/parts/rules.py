@@ -244,6 +244,21 @@ def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
             )
 
 
+def friction_leaves_the_arm_free(layout: Layout) -> Iterator[Finding]:
+    """Friction mu F at the pad turns the arm back about its hinge with the lever H = pad_height + t/2; from
+    mu H = L on it does so as strongly as the force F itself turns it with the load arm L."""
+    d = layout.design
+    for p in layout.elements:
+        most = p.load_arm / (d.element.pad_height + p.hinge.t / 2)
+        if d.rating.friction >= most - SAME:
+            yield (
+                "rating.friction",
+                f"locks the arm of element {p.number}: it does not give way",
+                d.rating.friction,
+                f"less than load arm/(pad_height + hinge_thickness/2) = {most:.4g}",
+            )
+
+
 def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     for p in layout.elements:
@@ -683,6 +698,7 @@ RULES: dict[str, Rule] = {
         fillets_fit_slot,
         ledges_in_one_plane,
         slot_clears_pad,
+        friction_leaves_the_arm_free,
         pad_root_fits_pad,
         pad_stands_out_of_body,
         gauge_fits_face,
@@ -720,6 +736,8 @@ ASK_THE_GAP = frozenset(
         "roller_stays_on_pad",
     }
 )
-NO_GAP = frozenset({"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad"})
+NO_GAP = frozenset(
+    {"hinge_thinner_than_arm", "fillets_fit_slot", "slot_clears_pad", "friction_leaves_the_arm_free"}
+)
 # Rules on contours as drawn and turned, which only a design that keeps the rules before them is sure to have.
 ASK_THE_CONTOUR = frozenset({"slots_stay_open", "pressed_arms_clear_opposite_row", "no_slivers"})
