@@ -14,11 +14,28 @@ from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.overload import overloads
 from tactcad.parts.rules import broken_rules
+from tactcad.parts.stop_gap import stop_gap
 
 
 @pytest.mark.parametrize("name", names())
 def test_what_ships_holds(name):
     assert [f for f in check_strength(load(name)) if f.severity == "fail"] == []
+
+
+@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("friction", [0.05, 0.3, 0.6])
+def test_a_gap_that_was_derived_holds_with_friction_and_without_whatever_friction_there_is(name, friction):
+    """K L/(L - mu H): an arm that rubs is stiffer, its rated deflection smaller, and so is its gap. What the
+    design is rated for must hold on a slippery object too, at the gap that was cut."""
+    rough = variant({"rating.friction": friction}, name)
+    assert {b.part for b in broken_rules(rough)} <= {"calibration.travel"}  # another matter: it yields sooner
+    assert [f for f in check_strength(rough) if f.severity == "fail"] == []
+    layout = Layout(rough)
+    cut = {f"{p.arm:g}": stop_gap(layout, p) for p in layout.elements}
+    slippery = variant({"rating.friction": 0.0, "stop.gaps": cut}, name)
+    assert [f for f in check_strength(slippery) if f.severity == "fail"] == []
+    smooth = Layout(load(name))
+    assert all(cut[f"{p.arm:g}"] <= stop_gap(smooth, p) for p in smooth.elements)
 
 
 @pytest.mark.parametrize("name", names())

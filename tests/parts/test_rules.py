@@ -58,6 +58,9 @@ WITNESSES = {
         ({"element.hinge_length": 0.59}, "element.fillet_radius"),
         ({"element.override.4.fillet_radius": 0.6}, "element.override.4.fillet_radius"),
     ],
+    "friction_leaves_the_arm_free": [
+        ({"rating.friction": 0.8, "element.pad_height": 4.0, "holes.height": 5.0}, "rating.friction")
+    ],
     "ledges_in_one_plane": [
         (
             {**TWO_SIDED, "array.row_arms": [[4, 4]], "element.override.2.arm_height": 2.7},

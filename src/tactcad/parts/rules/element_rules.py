@@ -118,6 +118,22 @@ def slot_clears_pad(layout: Layout) -> Iterator[Finding]:
 
 
 @rule(after="override_names_element")
+def friction_leaves_the_arm_free(layout: Layout) -> Iterator[Finding]:
+    """Friction mu F at the pad turns the arm back about its hinge with the lever H = pad_height + t/2; from
+    mu H = L on it does so as strongly as the force F itself turns it with the load arm L."""
+    d = layout.design
+    for p in layout.elements:
+        most = p.load_arm / (d.element.pad_height + p.hinge.t / 2)
+        if d.rating.friction >= most - SAME:
+            yield wrong(
+                "rating.friction",
+                f"locks the arm of element {p.number}: it does not give way",
+                d.rating.friction,
+                f"less than load arm/(pad_height + hinge_thickness/2) = {most:.4g}",
+            )
+
+
+@rule(after="override_names_element")
 def pad_root_fits_pad(layout: Layout) -> Iterator[Finding]:
     e = layout.design.element
     yield from at_most(
