@@ -28,7 +28,8 @@ from tactcad.drawing.paper import A3, A4
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.scale import SERIES
-from tactcad.drawing.sheets import Order, all_written, part_sheet, title_of, written
+from tactcad.drawing.sheets import Order, part_sheet, title_of, written
+from tactcad.drawing.workers import all_written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
 from tactcad.export.pipeline import export
 from tactcad.parts.description import Characteristic, Extrusion, Material, Part
@@ -169,7 +170,7 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
 def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     """Five sheets from two processes of this one, and two of them from fresh processes with other hash seeds."""
     some = list(orders.values())[:5]
-    side_by_side = all_written(some)
+    side_by_side = all_written(some, written)
     assert [written(order) for order in some[:2]] == side_by_side[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
@@ -233,7 +234,7 @@ def test_a_missing_font_stops_the_export_before_anything_is_written(monkeypatch,
 def test_a_killed_process_stops_the_export(monkeypatch, orders):
     monkeypatch.setattr(sheets, "part_sheet", lambda order: os._exit(9))
     with pytest.raises(CheckFailure, match="killed"):
-        all_written(list(orders.values()))
+        all_written(list(orders.values()), written)
 
 
 CHILD = """
@@ -320,5 +321,7 @@ def test_sheets_of_other_designs_are_clean(name):
         for p in make_scene(design, s).parts
         if p.process not in ("bought", "reference")
     }
-    made = all_written([Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()])
+    made = all_written(
+        [Order(design, p, to_bytes(build(p).wrapped), (DXF,)) for p in parts.values()], written
+    )
     assert len(made) == len(parts)

@@ -115,9 +115,10 @@ def test_colours_read_back_through_the_kernel(macro_scene, assembly, tmp_path):
     from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
     from OCP.STEPCAFControl import STEPCAFControl_Reader
     from OCP.TCollection import TCollection_ExtendedString
-    from OCP.TDF import TDF_LabelSequence
     from OCP.TDocStd import TDocStd_Document
     from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+    from tactcad.solids.occt import TDF_LabelSequence
 
     path = tmp_path / "a.step"
     path.write_bytes(assembly)

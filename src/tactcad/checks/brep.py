@@ -13,12 +13,13 @@ from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.solids.explore import subshapes
 from tactcad.solids.measure import measure
+from tactcad.solids.occt import as_edge
 from tactcad.solids.step import read_step, write_step
 
 VOLUME_AGREES = 1e-6
@@ -105,7 +106,7 @@ def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float
     sums = GProp_GProps()
     if kind == TopAbs_FACE:
         BRepGProp.SurfaceProperties_s(sub, sums)
-    elif BRep_Tool.Degenerated_s(TopoDS.Edge_s(sub)):
+    elif BRep_Tool.Degenerated_s(as_edge(sub)):
         return inf, (0.0, 0.0, 0.0)
     else:
         BRepGProp.LinearProperties_s(sub, sums)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.drawing.extent import projected_box
 from tactcad.scenes.scene import Scene
 
 from .assembly_notes import notes_of
 from .dimension_lines import stacked
+from .extent import projected_box
 from .ink import Item, moved
 from .measure import Span, level
 from .page import MARGIN, Page, edges, fewer
@@ -32,13 +32,14 @@ Box = tuple[float, float, float, float]
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
     """Front, plan below it, view from the left to its right."""
-    from tactcad.drawing.picture import EXACT_UP_TO, View, drawing
     from tactcad.solids.place import placed_shape
 
+    from .picture import EXACT_UP_TO, Viewpoint, drawing
+
     views = {
-        "front": View("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
-        "plan": View("plan", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
-        "left": View("left", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        "front": Viewpoint("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)),
+        "plan": Viewpoint("plan", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)),
+        "left": Viewpoint("left", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     }
     boxes = {name: projected_box(scene.placements, v.right, v.eye) for name, v in views.items()}
     size = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}

@@ -18,7 +18,7 @@ from .balloons import height
 from .fonts import em
 from .gate import pdf_runs
 from .ink import Sheet
-from .sheets import Written
+from .workers import Written
 
 BETWEEN = 10.0  # of the sheets of one SVG file, mm
 

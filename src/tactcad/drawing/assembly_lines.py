@@ -9,11 +9,11 @@ from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape
 from OCP.TopoDS import TopoDS_Shape
 
-from tactcad.drawing.picture import View, polylines
-from tactcad.drawing.windows import Polyline
+from .picture import Viewpoint, polylines
+from .windows import Polyline
 
 
-def seen_of_each(shapes: Sequence[TopoDS_Shape], view: View) -> list[list[Polyline]]:
+def seen_of_each(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> list[list[Polyline]]:
     """Visible sharp edges of each shape in the picture plane (mm), by exact hidden-line removal.
 
     The lines are those of picture.drawing, in the same order in every process. The kernel hides shapes

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from tactcad.design.tree import Design
-from tactcad.drawing.guide import page_path, torque
 from tactcad.parts.layout import Layout
 from tactcad.scenes.scene import Scene
+
+from .guide import page_path, torque
 
 LONGEST_ROW = 8  # elements named on the sheet
 COPLANAR = "Coplanar pads"  # the step that decides whether the array measures what it should

@@ -12,13 +12,14 @@ from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.picture import on_curve
+from tactcad.solids.occt import as_face, as_wire
 
 from .hidden_lines import CHORD
 from .ink import Hatch, Point
+from .picture import on_curve
 from .plan import View, seen
 
 AROUND = 1.0  # mm: the box that is kept stands out of the part
@@ -51,7 +52,7 @@ def _faces(shape: TopoDS_Shape, k: int, at: float) -> list[TopoDS_Face]:
     found = []
     explorer = TopExp_Explorer(shape, TopAbs_FACE)
     while explorer.More():
-        face = TopoDS.Face_s(explorer.Current())
+        face = as_face(explorer.Current())
         surface = BRepAdaptor_Surface(face)
         if surface.GetType() == GeomAbs_Plane:
             plane = surface.Plane()
@@ -69,7 +70,7 @@ def _wires(face: TopoDS_Face) -> list[TopoDS_Wire]:
     found = []
     explorer = TopExp_Explorer(face, TopAbs_WIRE)
     while explorer.More():
-        found.append(TopoDS.Wire_s(explorer.Current()))
+        found.append(as_wire(explorer.Current()))
         explorer.Next()
     return found
 

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from math import dist
 from typing import TYPE_CHECKING
 
-from tactcad.drawing.windows import Polyline
-
 from . import balloons, parts_list
 from .apart import Piece
 from .fonts import width
@@ -17,11 +15,12 @@ from .page import MARGIN, Page, edges
 from .paper import A3, A3_UPRIGHT, A4, A4_LYING, Paper
 from .scale import SERIES, factor, shown
 from .title import HEIGHT, WIDTH
+from .windows import Polyline
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from tactcad.drawing.picture import View
+    from .picture import Viewpoint
 
 RIM = 2 * balloons.RADIUS + 8.0  # around an exploded view, for its balloons
 MOST_NUMBERED = 45  # items in one view; more would not find places around it
@@ -50,7 +49,7 @@ class Exploded:
 
 
 def seen_of_pieces(
-    pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: View
+    pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint
 ) -> list[list[Polyline]]:
     """Visible lines of each piece (mm, picture plane) as the pieces stand."""
     from .assembly_lines import seen_of_each
@@ -58,7 +57,7 @@ def seen_of_pieces(
     return seen_of_each([_solid(piece, shapes) for piece in pieces], eye)
 
 
-def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: View) -> list[float]:
+def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint) -> list[float]:
     """What is seen of each piece where nothing stands before it: length of its lines, mm."""
     from .assembly_lines import seen_of_each
 
@@ -76,8 +75,9 @@ def alike(piece: Piece) -> tuple:
 
 
 def _solid(piece: Piece, shapes: Mapping[str, TopoDS_Shape]) -> TopoDS_Shape:
-    from tactcad.drawing.picture import compound
     from tactcad.solids.place import placed_shape
+
+    from .picture import compound
 
     some = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in piece.placements]
     return some[0] if len(some) == 1 else compound(some)

@@ -12,12 +12,13 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 
-from tactcad.drawing.picture import exact, on_curve
 from tactcad.parts.description import Vector
+from tactcad.solids.occt import as_edge
 
 from .ink import HIDDEN, VISIBLE, Arc, LineType, Point, Role, Stroke
+from .picture import exact, on_curve
 
 CHORD = 0.001  # mm of the part: what is neither line nor circle is drawn as chords this close
 SAME = 1e-4  # mm: edges nearer than this are one
@@ -45,7 +46,7 @@ def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role
         BRepLib.BuildCurves3d_s(compound)
         explorer = TopExp_Explorer(compound, TopAbs_EDGE)
         while explorer.More():
-            curve = _curve(BRepAdaptor_Curve(TopoDS.Edge_s(explorer.Current())), line, role)
+            curve = _curve(BRepAdaptor_Curve(as_edge(explorer.Current())), line, role)
             if curve:
                 found.append(curve)
             explorer.Next()

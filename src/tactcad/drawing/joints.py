@@ -12,9 +12,10 @@ from itertools import product
 
 import numpy as np
 
-from tactcad.drawing.extent import part_box, placed
 from tactcad.parts.description import Revolution
 from tactcad.scenes.scene import Contact, Placement
+
+from .extent import part_box, placed
 
 TOUCH = 0.01  # mm: boxes that overlap by no more meet face to face
 

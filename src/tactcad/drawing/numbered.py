@@ -9,7 +9,6 @@ from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.guide import exploded
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Placement, Scene
 
@@ -25,6 +24,7 @@ from .exploded import (
     room,
     seen_of_pieces,
 )
+from .guide import exploded
 from .ink import Item, Stroke, Text
 from .joints import box_of
 from .page import EDGE, MARGIN, Page, fewer
@@ -57,7 +57,7 @@ def numbered_pages(
     A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show follows in
     further views, and where an exploded view would be too large or too crowded the parts stand side by side.
     """
-    from tactcad.drawing.picture import ABOVE
+    from .picture import ABOVE
 
     item = {row.part_no: row.item for row in rows if row.has_solid}
     pages: list[Page] = []
@@ -117,7 +117,7 @@ def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
 
 def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
     """The unit exploded; what is hardly seen is pulled out farther, as long as that shows more."""
-    from tactcad.drawing.picture import ABOVE
+    from .picture import ABOVE
 
     if not unit.pieces:
         pieces = [Piece((p,)) for p in fewer(exploded(unit.scene))]
@@ -169,8 +169,9 @@ def _family_pages(
     left: Sequence[Placement], item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape], block: TitleBlock
 ) -> list[Page]:
     """One of each part; the title block has the commonest scale of a page, parts at others say so."""
-    from tactcad.drawing.picture import ABOVE, drawing
     from tactcad.solids.place import placed_shape
+
+    from .picture import ABOVE, drawing
 
     first = {item[p.part.part_no]: p for p in reversed(left)}
     own = {

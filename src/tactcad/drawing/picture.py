@@ -22,12 +22,13 @@ from OCP.HLRAlgo import HLRAlgo_Projector
 from OCP.HLRBRep import HLRBRep_Algo, HLRBRep_HLRToShape, HLRBRep_PolyAlgo, HLRBRep_PolyHLRToShape
 from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 
 from tactcad.account import making
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import ModelFile, Vector
 from tactcad.scenes.scene import Placement
+from tactcad.solids.occt import as_edge
 
 from .extent import projected_box
 from .windows import Lines, Polyline, draw_in_windows
@@ -46,7 +47,7 @@ SAME_EXTENT = 0.05  # mm between the picture's extent and the one projected from
 
 
 @dataclass(frozen=True)
-class View:
+class Viewpoint:
     """Eye direction (from the object to the eye) and the direction that points up in the picture."""
 
     name: str
@@ -61,13 +62,13 @@ class View:
         return (r[0] / size, r[1] / size, r[2] / size)
 
 
-ABOVE = View("above", (1.0, -1.4, 1.0), (0.0, 0.0, 1.0))
-BELOW = View("below", (1.0, -1.4, -1.0), (0.0, 0.0, 1.0))
-FRONT = View("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
-BOTTOM = View("bottom", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+ABOVE = Viewpoint("above", (1.0, -1.4, 1.0), (0.0, 0.0, 1.0))
+BELOW = Viewpoint("below", (1.0, -1.4, -1.0), (0.0, 0.0, 1.0))
+FRONT = Viewpoint("front", (0.0, -1.0, 0.0), (0.0, 0.0, 1.0))
+BOTTOM = Viewpoint("bottom", (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 # a part's own frame: contour in x, y, thickness along z
-SIDE = View("side", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
-OBLIQUE = View("oblique", (0.7, 0.5, 1.4), (0.0, 1.0, 0.0))
+SIDE = Viewpoint("side", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
+OBLIQUE = Viewpoint("oblique", (0.7, 0.5, 1.4), (0.0, 1.0, 0.0))
 VIEWS = {view.name: view for view in (ABOVE, BELOW, FRONT, BOTTOM, SIDE, OBLIQUE)}
 
 
@@ -85,7 +86,7 @@ class Drawing:
         return (min(xs), min(ys), max(xs), max(ys))
 
 
-def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
+def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
     """What is seen of the placed shapes from the view's eye, in canonical order.
 
     Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles, window by window.
@@ -103,7 +104,7 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: View) -> Drawing:
     return Drawing(tuple(sorted(sharp)), tuple(sorted(smooth)))
 
 
-def _boxes(shapes: Sequence[TopoDS_Shape], view: View) -> np.ndarray:
+def _boxes(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> np.ndarray:
     """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm; nothing of a shape is outside."""
     right, eye = np.array(view.right), np.array(view.eye) / np.linalg.norm(view.eye)
     plane = np.stack([right, np.cross(eye, right)], axis=1)
@@ -183,7 +184,7 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
     return "\n".join(lines).encode()
 
 
-def check_picture(data: bytes, placements: Sequence[Placement], view: View) -> None:
+def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint) -> None:
     """Raise CheckFailure unless the written picture spans what the placements' descriptions project to.
 
     Where models from files stand among them it spans the others at least, and all boxes at most.
@@ -202,7 +203,7 @@ def check_picture(data: bytes, placements: Sequence[Placement], view: View) -> N
             raise CheckFailure(f"picture {view.name}: {name} {got:.3f} mm drawn, {meant} mm expected")
 
 
-def _span(placements: Sequence[Placement], view: View) -> tuple[float, float]:
+def _span(placements: Sequence[Placement], view: Viewpoint) -> tuple[float, float]:
     x0, y0, x1, y1 = projected_box(placements, view.right, view.eye)
     return (x1 - x0, y1 - y0)
 
@@ -214,7 +215,7 @@ def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
     BRepLib.BuildCurves3d_s(compound)
     explorer, lines = TopExp_Explorer(compound, TopAbs_EDGE), []
     while explorer.More():
-        lines.append(_polyline(BRepAdaptor_Curve(TopoDS.Edge_s(explorer.Current()))))
+        lines.append(_polyline(BRepAdaptor_Curve(as_edge(explorer.Current()))))
         explorer.Next()
     return [line for line in lines if len(line) > 1]
 

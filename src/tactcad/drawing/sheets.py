@@ -1,16 +1,10 @@
-"""Part sheets of a design: a plan, its views, a clean layout, and the written PDF and SVG, in parallel on all cores."""
+"""Part sheets of a design: a plan, its views, a clean layout, and the written PDF and SVG."""
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import count
-from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
@@ -27,13 +21,9 @@ from .plan import Plan, Section, View
 from .prism import prism_plan
 from .scale import SERIES, factor
 from .title import TitleBlock
-from .workers import end_with
-
-if TYPE_CHECKING:
-    from .assembly_file import AssemblyOrder
+from .workers import Written
 
 LEAST_WHOLE = 1 / 2  # scale: a long part comes out broken before it comes out smaller
-EVERY = 2.0  # s: nobody waits longer without a word
 
 
 @dataclass(frozen=True)
@@ -49,14 +39,6 @@ class Order:
     @property
     def name(self) -> str:
         return self.part.part_no
-
-
-@dataclass(frozen=True)
-class Written:
-    """A drawing."""
-
-    pdf: bytes
-    svg: bytes
 
 
 def part_plan(
@@ -168,47 +150,3 @@ def written(order: Order) -> Written:
     if wrong:
         raise CheckFailure(f"drawings: {order.part.part_no}: {'; '.join(wrong)}; no drawing was written")
     return Written(pdf, svg_bytes(sheet))
-
-
-def all_written(
-    orders: Sequence[Order | AssemblyOrder],
-    make: Callable[..., Written] = written,
-    say: Callable[[int, int, str], None] = lambda *_: None,
-) -> list[Written]:
-    """What `make` makes of every order, in their order; side by side on the machine's cores where it pays.
-
-    Raises CheckFailure for the first that cannot be drawn, or where a process was killed.
-    """
-    if not orders:
-        return []
-    cores = min(len(os.sched_getaffinity(0)), len(orders))
-    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial).
-    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said meanwhile.
-    with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
-        futures = [pool.submit(make, order) for order in orders]
-        try:
-            made = [_waited(f, n, orders, say) for n, f in enumerate(futures)]
-        except BrokenProcessPool as error:
-            raise CheckFailure(
-                "drawings: a process that made them was killed; no drawing was written"
-            ) from error
-        finally:
-            for future in futures:
-                future.cancel()
-    say(len(orders), len(orders), "done")
-    return made
-
-
-def _waited(
-    future: Future[Written],
-    n: int,
-    orders: Sequence[Order | AssemblyOrder],
-    say: Callable[[int, int, str], None],
-) -> Written:
-    """The n-th drawing once it is there; meanwhile it is said every EVERY seconds that it is not."""
-    say(n, len(orders), f"drawing of {orders[n].name}")
-    for rounds in count(1):
-        if wait([future], EVERY).done:
-            break
-        say(n, len(orders), f"drawing of {orders[n].name} (for {rounds * EVERY:g} s)")
-    return future.result()

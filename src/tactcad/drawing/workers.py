@@ -1,13 +1,38 @@
-"""Processes that help an export end with it, however it ends."""
+"""Drawings made side by side on the machine's cores, by processes that end with the export, however it ends."""
 
 from __future__ import annotations
 
 import ctypes
+import multiprocessing
 import os
 import signal
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from dataclasses import dataclass
+from itertools import count
+from typing import Protocol
+
+from tactcad.design.messages import CheckFailure
 
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2)
+EVERY = 2.0  # s: nobody waits longer without a word
+
+
+@dataclass(frozen=True)
+class Written:
+    """A drawing."""
+
+    pdf: bytes
+    svg: bytes
+
+
+class Named(Protocol):
+    """What a drawing is made of: it knows what it is called."""
+
+    @property
+    def name(self) -> str: ...
 
 
 def end_with(parent: int) -> None:
@@ -20,3 +45,44 @@ def end_with(parent: int) -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before
         os._exit(1)
+
+
+def all_written(
+    orders: Sequence[Named],
+    make: Callable[..., Written],
+    say: Callable[[int, int, str], None] = lambda *_: None,
+) -> list[Written]:
+    """What `make` makes of every order, in their order; side by side on the machine's cores where it pays.
+
+    Raises CheckFailure for the first that cannot be drawn, or where a process was killed.
+    """
+    if not orders:
+        return []
+    cores = min(len(os.sched_getaffinity(0)), len(orders))
+    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial).
+    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said meanwhile.
+    with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
+        futures = [pool.submit(make, order) for order in orders]
+        try:
+            made = [_waited(f, n, orders, say) for n, f in enumerate(futures)]
+        except BrokenProcessPool as error:
+            raise CheckFailure(
+                "drawings: a process that made them was killed; no drawing was written"
+            ) from error
+        finally:
+            for future in futures:
+                future.cancel()
+    say(len(orders), len(orders), "done")
+    return made
+
+
+def _waited(
+    future: Future[Written], n: int, orders: Sequence[Named], say: Callable[[int, int, str], None]
+) -> Written:
+    """The n-th drawing once it is there; meanwhile it is said every EVERY seconds that it is not."""
+    say(n, len(orders), f"drawing of {orders[n].name}")
+    for rounds in count(1):
+        if wait([future], EVERY).done:
+            break
+        say(n, len(orders), f"drawing of {orders[n].name} (for {rounds * EVERY:g} s)")
+    return future.result()

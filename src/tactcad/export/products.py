@@ -24,8 +24,8 @@ from .step_text import Header
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from tactcad.drawing.picture import View
-    from tactcad.drawing.sheets import Written
+    from tactcad.drawing.picture import Viewpoint
+    from tactcad.drawing.workers import Written
 
 
 @dataclass(frozen=True)
@@ -247,7 +247,8 @@ def _drawings(
     draft: bool,
 ) -> dict[str, Written]:
     from tactcad.drawing.notes import MadeFrom
-    from tactcad.drawing.sheets import Order, all_written
+    from tactcad.drawing.sheets import Order, written
+    from tactcad.drawing.workers import all_written
     from tactcad.solids.bytes import to_bytes
 
     from .manifest import sha256_of
@@ -259,7 +260,7 @@ def _drawings(
             for s in _made_from(part, sources)
         ]
         orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
-    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, say=say))}
+    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, written, say))}
 
 
 def assembly_products(
@@ -303,7 +304,7 @@ def _assembly_drawings(
     design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
 ) -> dict[str, Written]:
     from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
-    from tactcad.drawing.sheets import all_written
+    from tactcad.drawing.workers import all_written
     from tactcad.scenes.bom import bom_rows
     from tactcad.solids.bytes import to_bytes
 
@@ -381,7 +382,7 @@ def _picture(
     from tactcad.parts.library.screws import for_pictures
     from tactcad.solids.place import placed_shape
 
-    eye: View = picture.VIEWS[view]
+    eye: Viewpoint = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
         return picture.drawing(

@@ -19,7 +19,7 @@ from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
-from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
@@ -30,6 +30,7 @@ from tactcad.account import under_way
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.scenes.scene import Placement, Scene
+from tactcad.solids.occt import TDF_LabelSequence
 from tactcad.solids.place import location
 from tactcad.solids.step import set_up_writer, silence
 

@@ -8,9 +8,10 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Shape
 
 from .explore import subshapes
+from .occt import as_face
 
 
 def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.ndarray, np.ndarray]:
@@ -24,7 +25,7 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
     points, faces, offset = [], [], 0
     for face in subshapes(shape, TopAbs_FACE):
         where = TopLoc_Location()
-        mesh = BRep_Tool.Triangulation_s(TopoDS.Face_s(face), where)
+        mesh = BRep_Tool.Triangulation_s(as_face(face), where)
         if mesh is None:
             raise ValueError("the kernel could not mesh a face")
         t = where.Transformation()

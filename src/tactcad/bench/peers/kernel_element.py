@@ -15,7 +15,6 @@ from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-from OCP.TopoDS import TopoDS
 
 
 def edge(segment):
@@ -39,7 +38,9 @@ def wire(chain):
 def build(job):
     maker = BRepBuilderAPI_MakeFace(wire(job["outer"]))
     for opening in job["openings"]:
-        maker.Add(TopoDS.Wire_s(wire(opening).Reversed()))
+        hole = wire(opening)
+        hole.Reverse()
+        maker.Add(hole)
     return BRepPrimAPI_MakePrism(maker.Face(), gp_Vec(0, 0, job["thickness"])).Shape()
 
 
