@@ -1,0 +1,18 @@
+"""Names of the kernel's binding that OCP 8 has elsewhere than OCP 7.9: whoever needs one takes it from here."""
+
+from __future__ import annotations
+
+from OCP.TopoDS import TopoDS
+
+try:
+    from OCP.collections import TDF_LabelSequence, TopTools_IndexedMapOfShape
+except ImportError:  # OCP 7.9
+    from OCP.TDF import TDF_LabelSequence
+    from OCP.TopTools import TopTools_IndexedMapOfShape
+
+__all__ = ["TDF_LabelSequence", "TopTools_IndexedMapOfShape", "as_edge", "as_face", "as_wire"]
+
+# OCP 7.9 marks static functions by _s where OCP 8 does not.
+as_edge, as_face, as_wire = (
+    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind) for kind in ("Edge", "Face", "Wire")
+)
