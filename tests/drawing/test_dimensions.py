@@ -15,7 +15,19 @@ from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.measure import Radius, Slope, Span, level, variables
+from tactcad.drawing.measure import (
+    OUTER,
+    PLACES,
+    THICKNESS,
+    Owner,
+    Quantity,
+    Radius,
+    Slope,
+    Span,
+    Spot,
+    level,
+    variables,
+)
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.plan import Dimension, number
 from tactcad.drawing.prism import prism_plan
@@ -160,9 +172,9 @@ def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):
         assert abs(off[worst]) < 5e-3, (plan.part.part_no, worst, off[worst])
 
 
-def _axis(name: str) -> str:
-    last = name.rsplit(".", 1)[-1]
-    return last[-1] if last in ("x", "y", "cx", "cy") else ""
+def _axis(variable) -> str:
+    """ "x" or "y" of what moves with the part, "" of a size."""
+    return str(variable.quantity) if variable.quantity in PLACES[:2] else ""
 
 
 def test_the_rank_sees_a_missing_and_a_repeated_dimension():
@@ -251,7 +263,9 @@ def test_features_shown_as_equal_have_to_be_equal():
         *(Hole("h", (x, 8.0, 10.0), (0, 0, -1), d, 10.0, True) for x, d in ((5.0, 3.0), (15.0, 3.1)))
     )
     values = variables(part)
-    wrong = Dimension("both", tuple(Span(level("thickness"), level(f"hole{k}.d")) for k in (0, 1)))
+    wrong = Dimension(
+        "both", tuple(Span(level(THICKNESS), level(Owner("hole", k).size(Quantity.DIAMETER))) for k in (0, 1))
+    )
     with pytest.raises(ValueError, match="shown as equal"):
         wrong.text(values)
 
@@ -285,13 +299,9 @@ def test_numbers_are_as_short_as_they_can_be(value, exact, text):
 
 
 def test_radius_and_slope_measure_what_they_say():
-    values = {
-        "outer.0.x": 3.0,
-        "outer.0.y": 4.0,
-        "outer.0.cx": 0.0,
-        "outer.0.cy": 0.0,
-        "outer.1.x": 4.0,
-        "outer.1.y": 5.0,
-    }
-    assert Radius("outer", 0).of(values) == 5.0
-    assert Slope("outer.0", "outer.1").of(values) == pytest.approx(45.0)
+    start, centre, end = Spot(OUTER, 0), Spot(OUTER, 0, centre=True), Spot(OUTER, 1)
+    at = {start: (3.0, 4.0), centre: (0.0, 0.0), end: (4.0, 5.0)}
+    values = {point.place(k): xy[k] for point, xy in at.items() for k in (0, 1)}
+    assert Radius(OUTER, 0).of(values) == 5.0
+    assert Slope(start, end).of(values) == pytest.approx(45.0)
+    assert str(centre.place(1)) == "outer.0.cy"

@@ -13,7 +13,7 @@ from .assembly_notes import notes_of
 from .dimension_lines import stacked
 from .extent import projected_box
 from .ink import Item, moved
-from .measure import Span, level
+from .measure import WHOLE
 from .page import MARGIN, Page, edges, fewer
 from .paper import A0, A1, A2, A3, A3_UPRIGHT, Paper
 from .plan import Dimension, Linear
@@ -114,13 +114,12 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
 def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
     """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in parentheses."""
     w, h = size
-    values = {"w": round(w, 1), "h": round(h, 1)}
+    wide, high = WHOLE.place(0), WHOLE.place(1)
+    values = {wide: round(w, 1), high: round(h, 1)}
     items: list[Item] = []
     for side in sides:
         x = w if side == "right" else 0.0
-        name, p, q = ("w", (0.0, h), (w, h)) if side == "top" else ("h", (x, 0.0), (x, h))
-        dimension = Dimension(f"overall {name}", (Span(level("zero"), level(name)),), auxiliary=True)
-        items += stacked(
-            [Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, {**values, "zero": 0.0}, 10.0
-        )
+        overall, p, q = (wide, (0.0, h), (w, h)) if side == "top" else (high, (x, 0.0), (x, h))
+        dimension = Dimension(f"overall {overall}", (size(overall),), auxiliary=True)
+        items += stacked([Linear(dimension, side, p, q)], side, (0.0, 0.0, w * f, h * f), f, values, 10.0)
     return items

@@ -16,6 +16,7 @@ from .callouts import widest
 from .contours import contours
 from .holes import Round
 from .ink import THIN, Arc, Hatch, Point, Stroke
+from .measure import Owner
 from .plan import Breaks, Callout, Datum, Plan, View
 from .window import clipped, fine
 
@@ -30,7 +31,7 @@ GAP = 1 / 40  # between two break lines, of the length that is shown: 2 to 5 mm 
 FAR = 1e9  # mm: beyond any part
 
 
-def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[str]) -> Breaks | None:
+def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) -> Breaks | None:
     """What a broken view of a part leaves out.
 
     Parameters
@@ -40,7 +41,7 @@ def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[str]) -> B
     holes
         Every round hole of the part.
     regular
-        Names of holes that need not be shown, because they repeat what is shown.
+        Holes that need not be shown, because they repeat what is shown.
 
     Returns
     -------
@@ -65,12 +66,12 @@ def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[str]) -> B
 
 
 def _features(
-    part: Part, holes: Sequence[Round], regular: Collection[str], axis: int
+    part: Part, holes: Sequence[Round], regular: Collection[Owner], axis: int
 ) -> list[tuple[float, float]]:
     """From where to where along an axis there is more than edges parallel to it."""
     extents = []
-    for name, contour in contours(part):
-        if contour.as_circle() and any(hole.name == name for hole in holes):
+    for owner, contour in contours(part):
+        if contour.as_circle() and any(hole.owner == owner for hole in holes):
             continue
         for s in contour:
             start, end = sorted((s.start[axis], s.end[axis]))
@@ -81,7 +82,7 @@ def _features(
             else:
                 extents.append((start, end))
     for r in holes:
-        if r.name in regular:
+        if r.owner in regular:
             continue
         half = 0.0 if r.axis[axis] else widest(r.hole) / 2
         deep = r.at[axis] + r.axis[axis] * (r.hole.depth + drill_point_height(r.hole.diameter))

@@ -11,7 +11,22 @@ from tactcad.parts.description import Hole, Part, Pocket
 from .contours import contours
 from .holes import Group
 from .ink import Point
-from .measure import Difference, Offset, Radius, Slope, Span, Width, halfway, in_part, level, size
+from .measure import (
+    OUTER,
+    Difference,
+    Offset,
+    Owner,
+    Quantity,
+    Radius,
+    Slope,
+    Span,
+    Spot,
+    Width,
+    halfway,
+    in_part,
+    level,
+    size,
+)
 from .plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 
@@ -19,7 +34,7 @@ from .sketch import ALIKE, Sketch, edge_level
 def round_outline(sketch: Sketch, part: Part) -> Callout:
     """Outside diameter of a disc; its openings about the same axis are in line with it."""
     centre, r = part.body.outer.as_circle()
-    d = sketch.must(Dimension("outside", (size("outer.d"),), "⌀"))
+    d = sketch.must(Dimension("outside", (size(OUTER.size(Quantity.DIAMETER)),), "⌀"))
     return Callout((d.text(sketch.values),), ((centre, r),), (d,))
 
 
@@ -57,12 +72,14 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
             used.append(sketch.must(d))
             return d.text(sketch.values)
 
-        for name, c in ((f"pocket{k}", f.contour), *((f"island{k}.{i}", c) for i, c in enumerate(f.island))):
-            if c.as_circle() and not (name.startswith("pocket") and _is_outline(part, f)):
-                lines.append(say(Dimension(f"{f.name} diameter", (size(f"{name}.d"),), "⌀")))
+        pocket = Owner("pocket", k)
+        for owner, c in ((pocket, f.contour), *((Owner("island", k, i), c) for i, c in enumerate(f.island))):
+            diameter = owner.size(Quantity.DIAMETER)
+            if c.as_circle() and not (owner == pocket and _is_outline(part, f)):
+                lines.append(say(Dimension(f"{f.name} diameter", (size(diameter),), "⌀")))
             elif c.as_circle():
-                sketch.convention(Span(level("outer.d"), level(f"{name}.d")))
-        depth = say(Dimension(f"{f.name} depth", (size(f"pocket{k}.depth"),), "↧"))
+                sketch.convention(Span(level(OUTER.size(Quantity.DIAMETER)), level(diameter)))
+        depth = say(Dimension(f"{f.name} depth", (size(pocket.size(Quantity.DEPTH)),), "↧"))
         text = " / ".join(lines)
         label = f.name.replace("_", " ")
         if f.island:
@@ -88,18 +105,15 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
     sides = [i for i, s in enumerate(contour) if isinstance(s, Line)]
     if len(sides) < 6 or len(sides) % 2:
         return None
-    name, n = f"pocket{k}", len(contour)
-    x, y = (
-        halfway(*(edge_level(sketch, "outer", a, v) for v in part.body.outer.box[i::2]))
-        for i, a in enumerate("xy")
-    )
-    offsets = [Offset(f"{name}.{i}", f"{name}.{(i + 1) % n}", x, y) for i in sides]
+    pocket, n = Owner("pocket", k), len(contour)
+    x, y = (halfway(*(edge_level(sketch, OUTER, i, v) for v in part.body.outer.box[i::2])) for i in (0, 1))
+    offsets = [Offset(Spot(pocket, i), Spot(pocket, (i + 1) % n), x, y) for i in sides]
     measured = [abs(o.of(sketch.values)) for o in offsets]
     if max(measured) - min(measured) > ALIKE:
         return None
     for i, offset in zip(sides, offsets):
         if min(abs(a - b) for a, b in zip(contour.segments[i].start, contour.segments[i].end)) > ALIKE:
-            sketch.convention(Slope(f"{name}.{i}", f"{name}.{(i + 1) % n}"))
+            sketch.convention(Slope(offset.start, offset.end))
         if offset is not offsets[0]:
             sketch.convention(Difference(offset, offsets[0]))
     half = len(sides) // 2
@@ -113,7 +127,7 @@ def _is_outline(part: Part, f: Pocket) -> bool:
 def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
     """Radii that are not determined yet, equal ones of a contour together."""
     callouts = []
-    for name, contour in contours(part):
+    for owner, contour in contours(part):
         if contour.as_circle():
             continue
         kinds: dict[float, list[int]] = {}
@@ -121,10 +135,10 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
             if isinstance(s, Arc):
                 kinds.setdefault(round(s.radius, 6), []).append(i)
         for indices in kinds.values():
-            rows = [Radius(name, i) for i in indices]
+            rows = [Radius(owner, i) for i in indices]
             new = [i for i, row in zip(indices, rows) if sketch.account.takes(row)]
             if new:
-                d = Dimension(f"{name} radius", tuple(Radius(name, i) for i in new), "R")
+                d = Dimension(f"{owner} radius", tuple(Radius(owner, i) for i in new), "R")
                 callouts.append(radius_callout(sketch, view, d, [contour.segments[i] for i in new]))
     return callouts
 

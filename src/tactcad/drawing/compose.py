@@ -12,6 +12,7 @@ from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
 from .ink import CENTRE, THIN, Arc, Hatch, Item, Point, Sheet, Stroke, Text, box, moved, points_of
 from .layout import bounds, layout_faults
+from .measure import Values
 from .paper import A3, A4, Paper, frame
 from .plan import Box, Callout, Plan, View, seen
 from .scale import SERIES, factor, shown
@@ -174,11 +175,7 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
 
 
 def _drawn(
-    view: View,
-    curves: Sequence[Curve],
-    scale: tuple[int, int],
-    values: dict[str, float],
-    spread: Mapping[str, float],
+    view: View, curves: Sequence[Curve], scale: tuple[int, int], values: Values, spread: Mapping[str, float]
 ) -> _Drawn:
     """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting plane."""
     f = factor(scale)

@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 
 from tactcad.contour import Arc, Contour, Line
 from tactcad.design.tree import Design
-from tactcad.parts.description import Characteristic, Part
+from tactcad.parts.description import Part
 
 from .callouts import hole_callout, radius_callout
-from .holes import groups, rounds
+from .holes import Group, Round, groups, rounds
 from .ink import Point
-from .measure import Level, Slope, Span, conventions, halfway, level
-from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View, characteristic
-from .prism import FRONT, key_number, side_view
+from .measure import OUTER, THICKNESS, Level, Radius, Slope, Span, Spot, conventions, halfway, level, size
+from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View
+from .prism import FRONT, side_view
 from .sketch import ALIKE, Sketch, closed, view_box
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
@@ -52,10 +52,10 @@ class Outline:
         return self.contour.segments[self.index[name]]
 
     def x(self, name: str) -> Level:
-        return level(f"outer.{self.index[name]}.x")
+        return level(Spot(OUTER, self.index[name]).place(0))
 
     def y(self, name: str) -> Level:
-        return level(f"outer.{self.index[name]}.y")
+        return level(Spot(OUTER, self.index[name]).place(1))
 
     def start(self, name: str) -> Point:
         return self.segment(name).start
@@ -63,15 +63,15 @@ class Outline:
     def end(self, name: str) -> Point:
         return self.segment(name).end
 
-    def point(self, name: str, end: bool) -> str:
-        """Name of a segment's start or end among the variables."""
-        return f"outer.{(self.index[name] + end) % len(self.contour)}"
+    def point(self, name: str, end: bool) -> Spot:
+        """A segment's start or end."""
+        return Spot(OUTER, (self.index[name] + end) % len(self.contour))
 
     def corner(self, before: str, after: str) -> Corner:
         """The corner between two edges, of which fillets may have used up one."""
-        name = self.point(before, True) if before in self else self.point(after, False)
+        point = self.point(before, True) if before in self else self.point(after, False)
         at = self.end(before) if before in self else self.start(after)
-        return Corner(level(f"{name}.x"), level(f"{name}.y"), at)
+        return Corner(level(point.place(0)), level(point.place(1)), at)
 
     def arcs(self, names: Sequence[str]) -> list[str]:
         return [n for n in names if n in self and isinstance(self.segment(n), Arc)]
@@ -84,29 +84,19 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
     """
     o = Outline(part.body.outer)
     sketch = Sketch(part)
-    for row in conventions("outer", o.contour):
+    for row in conventions(OUTER, o.contour):
         sketch.convention(row)
     called = groups(rounds(part, design), sketch.values, {2: FRONT[0]})
     holes = [r for g in called for r in g.holes]
     dowel = next(r for r in holes if r.label == "dowel hole")
     for r in holes:
         if r is not dowel:
-            sketch.convention(Span(level(f"{dowel.name}.y"), level(f"{r.name}.y")))
-    limits = {c.name: c for c in part.characteristics}
-    hinge, left = _hinge_view(sketch, part, design, o, limits, tall)
-    arm = _arm_view(sketch, part, design, o, limits, *left)
-    front = _front_view(sketch, part, o, called, dowel, limits)
-    thickness = Characteristic(
-        "thickness",
-        part.body.thickness,
-        part.body.thickness + design.tolerance.sheet_thickness,
-        part.body.thickness - design.tolerance.sheet_thickness,
-    )
-    edge = replace(
-        side_view(sketch, part, front, [], {"thickness": thickness}, True), hidden=False, datums=()
-    )
-    if limits:
-        raise ValueError(f"{part.part_no}: no dimension states {', '.join(limits)}")
+            sketch.convention(Span(level(dowel.owner.place(1)), level(r.owner.place(1))))
+    hinge, left = _hinge_view(sketch, part, design, o, tall)
+    arm = _arm_view(sketch, part, design, o, *left)
+    front = _front_view(sketch, part, o, called, dowel)
+    thickness = _within((size(THICKNESS),), "thickness", design.tolerance.sheet_thickness)
+    edge = replace(side_view(sketch, part, front, [], thickness), hidden=False, datums=())
     closed(sketch)
     return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
 
@@ -116,21 +106,14 @@ def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
     return Dimension(name, rows, limits=(tolerance, -tolerance))
 
 
-def _key(sketch: Sketch, part: Part, limits: dict[str, Characteristic], name: str, row: Span) -> Dimension:
-    c = limits.pop(name)
-    return sketch.must(characteristic(c, (row,), key_number(part, c)))
-
-
-def _front_view(
-    sketch: Sketch, part: Part, o: Outline, called: Sequence, dowel, limits: dict[str, Characteristic]
-) -> View:
+def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group], dowel: Round) -> View:
     view = View("front", *FRONT, (0, 0, 0, 0))
     view = replace(view, box=view_box(view, part))
-    x, at = level(f"{dowel.name}.x"), dowel.at[:2]
+    x, at = level(dowel.owner.place(0)), dowel.at[:2]
     top = o.start("clamp_edge")  # upper corner of the rear body, at the clamp edge
     linears = []
     for r in sorted((r for g in called for r in g.holes if r is not dowel), key=lambda r: r.at[0]):
-        ends = (x, level(f"{r.name}.x"))
+        ends = (x, level(r.owner.place(0)))
         row = Span(*ends) if r.at[0] > at[0] else Span(*reversed(ends))
         linears.append(
             Linear(sketch.must(Dimension(f"{r.label} from dowel hole", (row,))), "top", at, r.at[:2])
@@ -151,13 +134,8 @@ def _front_view(
     ):
         row = Span(o.y(face), o.y(other))
         linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", step.at, q))
-    pad = _key(
-        sketch,
-        part,
-        limits,
-        "pad height over the dowel hole's centre",
-        Span(o.y("pad_face"), level(f"{dowel.name}.y")),
-    )
+    over = (Span(o.y("pad_face"), level(dowel.owner.place(1))),)
+    pad = sketch.must(sketch.stating("pad height over the dowel hole's centre", over))
     linears.append(Linear(pad, "left", o.start("pad_face"), at))
     callouts = [replace(hole_callout(sketch, view, g), datum="B" if dowel in g.holes else "") for g in called]
     callouts += _radii(sketch, view, o, ("ledge_root", "recess_root"))
@@ -173,18 +151,16 @@ def _front_view(
 
 def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list[Callout]:
     """Fillets by name, equal ones together; none for a full round, whose width says it."""
-    from .measure import Radius
-
     kinds: dict[float, list[str]] = {}
     for n in o.arcs(names):
         kinds.setdefault(round(o.segment(n).radius, 6), []).append(n)
     callouts = []
     for some in kinds.values():
-        new = [n for n in some if sketch.account.takes(Radius("outer", o.index[n]))]
+        new = [n for n in some if sketch.account.takes(Radius(OUTER, o.index[n]))]
         if new:
             d = Dimension(
                 " and ".join(n.replace("_", " ") for n in new),
-                tuple(Radius("outer", o.index[n]) for n in new),
+                tuple(Radius(OUTER, o.index[n]) for n in new),
                 "R",
             )
             callouts.append(radius_callout(sketch, view, d, [o.segment(n) for n in new]))
@@ -197,7 +173,7 @@ def _slot(o: Outline) -> tuple[Corner, Corner]:
 
 
 def _hinge_view(
-    sketch: Sketch, part: Part, design: Design, o: Outline, limits: dict[str, Characteristic], tall: bool
+    sketch: Sketch, part: Part, design: Design, o: Outline, tall: bool
 ) -> tuple[View, tuple[list[Linear], list[Callout]]]:
     """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the thickness alone, and
     leaves the other dimensions and callouts, which are returned, to the arm's view."""
@@ -224,7 +200,7 @@ def _hinge_view(
     linears, across, callouts = [], [], []
     near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
     floor, floor_y = _floor(o, "slot_floor", "slot_")
-    web = _key(sketch, part, limits, "hinge thickness", Span(near, floor))
+    web = sketch.must(sketch.stating("hinge thickness", (Span(near, floor),)))
     across.append(Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1])))
     length = sketch.must(_within((Span(arm.x, body.x),), "slot length", t.hinge_length))
     along = Linear(length, "top", (xa, back), (xb, ledge))
@@ -304,18 +280,14 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
     i, s = o.index[arc], o.segment(arc)
     half = 0.5 if (s.end[0] > s.start[0]) == slot.startswith("front") else -0.5
     up = slot.startswith("front")
-    ends = ((f"outer.{i}.x", -half), (f"{o.point(arc, True)}.x", half))
-    return Level(((f"outer.{i}.cy", 1.0), *ends)), s.centre[1] + (s.radius if up else -s.radius)
+    ends = ((Spot(OUTER, i).place(0), -half), (o.point(arc, True).place(0), half))
+    return Level(((Spot(OUTER, i, centre=True).place(1), 1.0), *ends)), s.centre[1] + (
+        s.radius if up else -s.radius
+    )
 
 
 def _arm_view(
-    sketch: Sketch,
-    part: Part,
-    design: Design,
-    o: Outline,
-    limits: dict[str, Characteristic],
-    more: Sequence[Linear],
-    called: Sequence[Callout],
+    sketch: Sketch, part: Part, design: Design, o: Outline, more: Sequence[Linear], called: Sequence[Callout]
 ) -> View:
     """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view has left to it."""
     slot, body = _slot(o)
@@ -329,10 +301,10 @@ def _arm_view(
     tip_x = o.x("tip")
     middle = (xa + xb) / 2
     arm = sketch.must(_within((Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
-    length = sketch.must(Dimension("pad length", (Span(tip_x, level(f"{o.point('pad_face', True)}.x")),)))
+    length = sketch.must(Dimension("pad length", (Span(tip_x, level(o.point("pad_face", True).place(0))),)))
     height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
-    lands = sketch.must(Dimension("stop land", (Span(tip_x, level(f"{o.point('stop_land', False)}.x")),)))
-    gap = _key(sketch, part, limits, "stop gap", Span(o.y("stop_land"), body.y))
+    lands = sketch.must(Dimension("stop land", (Span(tip_x, level(o.point("stop_land", False).place(0))),)))
+    gap = sketch.must(sketch.stating("stop gap", (Span(o.y("stop_land"), body.y),)))
     linears = (
         Linear(lands, "top", land.end, land.start),
         Linear(arm, "top", land.end, (middle, max(ledge, back) + margin / 2)),

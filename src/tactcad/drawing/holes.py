@@ -10,8 +10,8 @@ from math import isclose
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Hole, Part, Vector
 
-from .measure import axis_of, size
-from .plan import Dimension, Values
+from .measure import Owner, Quantity, Values, axis_of, size
+from .plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
 EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a micrometre's thousandth
@@ -19,9 +19,9 @@ EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a m
 
 @dataclass(frozen=True)
 class Round:
-    """One round hole: its name among the variables, middle on its face, direction, and what is made there."""
+    """One round hole: what its variables belong to, middle on its face, direction, and what is made there."""
 
-    name: str
+    owner: Owner
     label: str
     at: Vector
     axis: Vector
@@ -48,10 +48,10 @@ def rounds(part: Part, design: Design) -> list[Round]:
                 True,
                 tolerance=f"+{upper:g}/0" if upper else "",
             )
-            found.append(Round(f"opening{i}", label.replace("_", " "), hole.at, hole.axis, hole))
+            found.append(Round(Owner("opening", i), label.replace("_", " "), hole.at, hole.axis, hole))
     for k, f in enumerate(part.features):
         if isinstance(f, Hole):
-            found.append(Round(f"hole{k}", f.name.replace("_", " "), f.at, f.axis, f))
+            found.append(Round(Owner("hole", k), f.name.replace("_", " "), f.at, f.axis, f))
     return found
 
 
@@ -122,10 +122,9 @@ def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]
 
 def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vector]) -> Group:
     h, label = some[0].hole, some[0].label
-    names = [r.name for r in some]
 
-    def dimension(what: str, sign: str, **more: object) -> Dimension:
-        rows = tuple(size(f"{n}.{what}") for n in names)
+    def dimension(what: Quantity, sign: str, **more: object) -> Dimension:
+        rows = tuple(size(r.owner.size(what)) for r in some)
         return Dimension(f"{label} {what}", rows, sign, **more)
 
     limits, modelled, words = _tolerance(h.tolerance)
@@ -134,21 +133,29 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
         # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
         modelled = round(h.diameter - round(h.diameter, 1), 9)
     bore = dimension(
-        "d", "⌀", limits=limits, modelled=modelled, fit=fit, counted=not h.thread and not _entered(h)
+        Quantity.DIAMETER,
+        "⌀",
+        limits=limits,
+        modelled=modelled,
+        fit=fit,
+        counted=not h.thread and not _entered(h),
     )
     used = [bore]
-    depth = None if h.through else dimension("depth", "↧", counted=False)
+    depth = None if h.through else dimension(Quantity.DEPTH, "↧", counted=False)
     ending = " through" if depth is None else f" {depth.text(values)}"
     cone = ", point 118°" if h.drill_point else ""
     used += [depth] if depth else []
     count = f"{len(some)}× " if len(some) > 1 else ""
     lines: list[str] = []
     if h.counterbore:
-        wide, deep = dimension("wide", "⌀", counted=False), dimension("deep", "↧", counted=False)
+        wide, deep = (
+            dimension(Quantity.WIDE, "⌀", counted=False),
+            dimension(Quantity.DEEP, "↧", counted=False),
+        )
         used += [wide, deep]
         wider = f"{wide.text(values)} {deep.text(values)}"
     if h.thread:
-        thread = None if h.thread_depth >= h.depth else dimension("thread", "↧", counted=False)
+        thread = None if h.thread_depth >= h.depth else dimension(Quantity.THREAD, "↧", counted=False)
         used += [thread] if thread else []
         if h.counterbore:
             lines += [

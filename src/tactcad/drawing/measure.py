@@ -4,14 +4,15 @@ A dimension takes its value from these variables. Together with the conventions 
 drawn tangent are tangent, features on one extension line are in line) the dimensions of a sheet have to determine all
 variables but the part's place on the paper; `Determined` keeps the account.
 
-Names: outer.3.x is the start of the outline's segment 3, outer.3.cx its arc's centre; a contour that is one circle has
-.x .y .d alone; opening0, pocket2, island2.0 likewise; hole4.x .y .d .depth .wide .deep .thread of feature 4.
+The start of each of a contour's segments has x and y, an arc's centre too; a contour that is one circle has x, y and a
+diameter alone. Holes have the places across their axis, and their sizes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from math import atan2, degrees, hypot
 
 import numpy as np
@@ -19,28 +20,99 @@ import numpy as np
 from tactcad.contour import Arc, Contour, Line
 from tactcad.parts.description import Extrusion, Hole, Part, Pocket
 
-Values = Mapping[str, float]
-
 STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth at this size
 INDEPENDENT = 1e-6  # share of a row's length that must be new
+
+
+class Quantity(StrEnum):
+    """What a variable measures, mm."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    DIAMETER = "d"
+    DEPTH = "depth"
+    WIDE = "wide"  # diameter of a counterbore
+    DEEP = "deep"  # its depth
+    THREAD = "thread"  # depth of full thread
+    THICKNESS = "thickness"
+
+
+PLACES = (Quantity.X, Quantity.Y, Quantity.Z)
+
+
+@dataclass(frozen=True)
+class Owner:
+    """A contour or hole that variables belong to: which of its kind, and which island of a pocket."""
+
+    kind: str
+    number: int | None = None
+    island: int | None = None
+
+    def __str__(self) -> str:
+        return self.kind + ".".join(str(n) for n in (self.number, self.island) if n is not None)
+
+    def place(self, k: int) -> Variable:
+        """Coordinate k (0, 1, 2) of a hole or a circle."""
+        return Variable(self, PLACES[k])
+
+    def size(self, quantity: Quantity) -> Variable:
+        return Variable(self, quantity)
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A point of a contour: where a segment starts, or the centre of its arc."""
+
+    contour: Owner
+    segment: int
+    centre: bool = False
+
+    def place(self, k: int) -> Variable:
+        """Coordinate k (0 or 1)."""
+        return Variable(self, PLACES[k])
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One number that the part is described by."""
+
+    of: Owner | Spot
+    quantity: Quantity
+
+    def __str__(self) -> str:
+        """As in "outer.3.cx": variables are put in order by it."""
+        if isinstance(self.of, Spot):
+            return f"{self.of.contour}.{self.of.segment}.{'c' if self.of.centre else ''}{self.quantity}"
+        return f"{self.of}.{self.quantity}".removeprefix(".")
+
+    @property
+    def contour(self) -> Owner:
+        """What it belongs to in the end."""
+        return self.of.contour if isinstance(self.of, Spot) else self.of
+
+
+WHOLE, OUTER = Owner(""), Owner("outer")
+THICKNESS = WHOLE.size(Quantity.THICKNESS)
+Values = Mapping[Variable, float]
 
 
 @dataclass(frozen=True)
 class Level:
     """A coordinate along one axis, mm: the sum of coefficient x variable."""
 
-    terms: tuple[tuple[str, float], ...] = ()
+    terms: tuple[tuple[Variable, float], ...] = ()
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return tuple(name for name, _ in self.terms)
 
     def of(self, values: Values) -> float:
         return sum(c * values[name] for name, c in self.terms)
 
 
-def level(name: str) -> Level:
-    return Level(((name, 1.0),))
+def level(variable: Variable) -> Level:
+    return Level(((variable, 1.0),))
 
 
 def halfway(a: Level, b: Level) -> Level:
@@ -55,29 +127,28 @@ class Span:
     b: Level
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
         return self.b.of(values) - self.a.of(values)
 
 
-def size(name: str) -> Span:
+def size(variable: Variable) -> Span:
     """A variable that is a size by itself: a diameter, a depth."""
-    return Span(Level(), level(name))
+    return Span(Level(), level(variable))
 
 
 @dataclass(frozen=True)
 class Radius:
     """Radius of segment i of a contour, from its centre to its start, mm."""
 
-    contour: str
+    contour: Owner
     i: int
 
     @property
-    def names(self) -> tuple[str, ...]:
-        p = f"{self.contour}.{self.i}"
-        return (f"{p}.x", f"{p}.y", f"{p}.cx", f"{p}.cy")
+    def names(self) -> tuple[Variable, ...]:
+        return (*_xy(Spot(self.contour, self.i)), *_xy(Spot(self.contour, self.i, True)))
 
     def of(self, values: Values) -> float:
         x, y, cx, cy = (values[n] for n in self.names)
@@ -88,12 +159,12 @@ class Radius:
 class Slope:
     """Direction of a line from start to end, degrees from the x axis."""
 
-    start: str  # names without .x and .y
-    end: str
+    start: Spot
+    end: Spot
 
     @property
-    def names(self) -> tuple[str, ...]:
-        return (f"{self.start}.x", f"{self.start}.y", f"{self.end}.x", f"{self.end}.y")
+    def names(self) -> tuple[Variable, ...]:
+        return (*_xy(self.start), *_xy(self.end))
 
     def of(self, values: Values) -> float:
         x0, y0, x1, y1 = (values[n] for n in self.names)
@@ -104,11 +175,11 @@ class Slope:
 class Distance:
     """From one point to another, mm."""
 
-    a: str
-    b: str
+    a: Spot
+    b: Spot
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return (*_xy(self.a), *_xy(self.b))
 
     def of(self, values: Values) -> float:
@@ -124,7 +195,7 @@ class Difference:
     b: Measure
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
@@ -132,14 +203,14 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Across:
+class CrossProduct:
     """Cross product of two directions, each from point to point: 0 where they are parallel."""
 
-    points: tuple[str, str, str, str]
+    points: tuple[Spot, Spot, Spot, Spot]
     along: bool = False  # the scalar product instead: 0 where they are at right angles
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return tuple(n for p in self.points for n in _xy(p))
 
     def of(self, values: Values) -> float:
@@ -152,13 +223,13 @@ class Across:
 class Offset:
     """Distance of a point, given by its levels, from the line through two points, mm; positive on the line's left."""
 
-    start: str
-    end: str
+    start: Spot
+    end: Spot
     x: Level
     y: Level
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return (*_xy(self.start), *_xy(self.end), *self.x.names, *self.y.names)
 
     def of(self, values: Values) -> float:
@@ -175,62 +246,62 @@ class Width:
     b: Offset
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def names(self) -> tuple[Variable, ...]:
         return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
         return abs(self.a.of(values)) + abs(self.b.of(values))
 
 
-Measure = Span | Offset | Width | Radius | Slope | Distance | Difference | Across
+Measure = Span | Offset | Width | Radius | Slope | Distance | Difference | CrossProduct
 
 
-def _xy(point: str) -> tuple[str, str]:
-    """Names of a point's coordinates; a name that ends in .c means an arc's centre."""
-    return (f"{point}x", f"{point}y") if point.endswith(".c") else (f"{point}.x", f"{point}.y")
+def _xy(point: Spot) -> tuple[Variable, Variable]:
+    return (point.place(0), point.place(1))
 
 
-def variables(part: Part) -> dict[str, float]:
+def variables(part: Part) -> dict[Variable, float]:
     """Every variable of an extruded part with its value (mm)."""
     body = part.body
     if not isinstance(body, Extrusion):
         raise TypeError(f"{part.part_no} is not an extrusion: its sheet is not written yet")
-    values: dict[str, float] = {"thickness": body.thickness}
-    _add_contour(values, "outer", body.outer)
+    values = {THICKNESS: body.thickness}
+    _add_contour(values, OUTER, body.outer)
     for i, opening in enumerate(body.openings):
-        _add_contour(values, f"opening{i}", opening)
+        _add_contour(values, Owner("opening", i), opening)
     for k, feature in enumerate(part.features):
         if isinstance(feature, Hole):
             values |= _hole(k, feature)
         else:
-            values[f"pocket{k}.depth"] = feature.depth
-            _add_contour(values, f"pocket{k}", in_part(feature, feature.contour))
+            pocket = Owner("pocket", k)
+            values[pocket.size(Quantity.DEPTH)] = feature.depth
+            _add_contour(values, pocket, in_part(feature, feature.contour))
             for i, island in enumerate(feature.island):
-                _add_contour(values, f"island{k}.{i}", in_part(feature, island))
+                _add_contour(values, Owner("island", k, i), in_part(feature, island))
     return values
 
 
-def _add_contour(values: dict[str, float], name: str, contour: Contour) -> None:
+def _add_contour(values: dict[Variable, float], owner: Owner, contour: Contour) -> None:
     if circle := contour.as_circle():
         (x, y), r = circle
-        values |= {f"{name}.x": x, f"{name}.y": y, f"{name}.d": 2 * r}
+        values |= {owner.place(0): x, owner.place(1): y, owner.size(Quantity.DIAMETER): 2 * r}
         return
     for i, s in enumerate(contour):
-        values[f"{name}.{i}.x"], values[f"{name}.{i}.y"] = s.start
+        values |= zip(_xy(Spot(owner, i)), s.start)
         if isinstance(s, Arc):
-            values[f"{name}.{i}.cx"], values[f"{name}.{i}.cy"] = s.centre
+            values |= zip(_xy(Spot(owner, i, True)), s.centre)
 
 
-def _hole(k: int, hole: Hole) -> dict[str, float]:
-    name = f"hole{k}"
-    values = {f"{name}.{'xyz'[i]}": hole.at[i] for i in range(3) if i != axis_of(hole)}
-    values[f"{name}.d"] = hole.diameter
+def _hole(k: int, hole: Hole) -> dict[Variable, float]:
+    owner = Owner("hole", k)
+    values = {owner.place(i): hole.at[i] for i in range(3) if i != axis_of(hole)}
+    values[owner.size(Quantity.DIAMETER)] = hole.diameter
     if not hole.through:
-        values[f"{name}.depth"] = hole.depth
+        values[owner.size(Quantity.DEPTH)] = hole.depth
     if hole.counterbore:
-        values[f"{name}.wide"], values[f"{name}.deep"] = hole.counterbore
+        values |= zip((owner.size(Quantity.WIDE), owner.size(Quantity.DEEP)), hole.counterbore)
     if hole.thread and hole.thread_depth < hole.depth:
-        values[f"{name}.thread"] = hole.thread_depth
+        values[owner.size(Quantity.THREAD)] = hole.thread_depth
     return values
 
 
@@ -267,35 +338,36 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
     )
 
 
-def conventions(name: str, contour: Contour) -> list[Measure]:
+def conventions(owner: Owner, contour: Contour) -> list[Measure]:
     """What a drawn contour says by itself: level and upright lines, arcs about their centre, tangent joints."""
     if contour.as_circle():
         return []
     count = len(contour)
     rows: list[Measure] = []
     for i, s in enumerate(contour):
-        here, there = f"{name}.{i}", f"{name}.{(i + 1) % count}"
+        start, end, centre = Spot(owner, i), Spot(owner, (i + 1) % count), Spot(owner, i, True)
         if isinstance(s, Line):
-            for axis, k in (("y", 1), ("x", 0)):
+            for k in (1, 0):
                 if abs(s.start[k] - s.end[k]) < 1e-9:
-                    rows.append(Span(level(f"{here}.{axis}"), level(f"{there}.{axis}")))
+                    rows.append(Span(level(start.place(k)), level(end.place(k))))
         else:
-            rows.append(Difference(Distance(f"{here}", f"{here}.c"), Distance(f"{there}", f"{here}.c")))
-    return rows + [row for i in range(count) if (row := _tangent(name, contour, i))]
+            rows.append(Difference(Distance(start, centre), Distance(end, centre)))
+    return rows + [row for i in range(count) if (row := _tangent(owner, contour, i))]
 
 
-def _tangent(name: str, contour: Contour, i: int) -> Measure | None:
+def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
     """That segment i runs smoothly out of the one before it, if it does."""
     before, after = contour.segments[i - 1], contour.segments[i]
     if isinstance(before, Line) and isinstance(after, Line) or not _smooth(before, after):
         return None
     count = len(contour)
-    p, q, r = f"{name}.{(i - 1) % count}", f"{name}.{i}", f"{name}.{(i + 1) % count}"
+    p, q, r = (Spot(owner, n % count) for n in (i - 1, i, i + 1))
+    centre_before, centre_after = Spot(owner, p.segment, True), Spot(owner, i, True)
     if isinstance(before, Line):
-        return Across((p, q, q, f"{q}.c"), along=True)
+        return CrossProduct((p, q, q, centre_after), along=True)
     if isinstance(after, Line):
-        return Across((q, r, q, f"{p}.c"), along=True)
-    return Across((q, f"{p}.c", q, f"{q}.c"))
+        return CrossProduct((q, r, q, centre_before), along=True)
+    return CrossProduct((q, centre_before, q, centre_after))
 
 
 def _smooth(before: Line | Arc, after: Line | Arc) -> bool:
@@ -309,7 +381,7 @@ def _smooth(before: Line | Arc, after: Line | Arc) -> bool:
 class Determined:
     """Which combinations of variables are determined so far: an orthonormal basis of the rows' gradients."""
 
-    values: dict[str, float]
+    values: dict[Variable, float]
 
     def __post_init__(self) -> None:
         self.columns = {name: i for i, name in enumerate(self.values)}
@@ -332,7 +404,7 @@ class Determined:
         return True
 
 
-def gradient(row: Measure, values: Values, columns: Mapping[str, int]) -> np.ndarray:
+def gradient(row: Measure, values: Values, columns: Mapping[Variable, int]) -> np.ndarray:
     """Derivatives of a measure by all variables, shape (len(columns),)."""
     result = np.zeros(len(columns))
     moved = dict(values)

@@ -8,7 +8,7 @@ from typing import Literal
 from tactcad.parts.description import Characteristic, Part, Vector
 
 from .ink import Point
-from .measure import Measure, Values
+from .measure import Measure, Values, Variable
 
 Side = Literal["top", "bottom", "left", "right"]
 Box = tuple[float, float, float, float]
@@ -21,7 +21,7 @@ class Dimension:
     `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number shown, of
     a part modelled at `modelled` (deviation of the model from that number). `key` is the number of the
     key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in parentheses, for
-    information.
+    information. `characteristic` is the part's own that it states.
     """
 
     name: str
@@ -34,6 +34,7 @@ class Dimension:
     key: int = 0
     counted: bool = True
     auxiliary: bool = False
+    characteristic: Characteristic | None = None
 
     def value(self, values: Values) -> float:
         """mm or degrees. Raises ValueError where the rows differ: the features are not equal."""
@@ -72,12 +73,6 @@ def number(value: float, exact: bool = False) -> str:
 
 def _signed(value: float) -> str:
     return f"{'+' if value > 0 else ''}{number(value, True)}"
-
-
-def characteristic(c: Characteristic, rows: tuple[Measure, ...], key: int = 0, sign: str = "") -> Dimension:
-    """The dimension that states a characteristic of the part, with its limits."""
-    limits = (c.upper - c.nominal, c.lower - c.nominal)
-    return Dimension(c.name, rows, sign, limits=limits, key=key)
 
 
 @dataclass(frozen=True)
@@ -224,7 +219,7 @@ class Plan:
     """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
 
     part: Part
-    values: dict[str, float]
+    values: dict[Variable, float]
     conventions: tuple[Measure, ...]
     views: tuple[View, ...]
     notes: tuple[str, ...] = ()

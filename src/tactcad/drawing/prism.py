@@ -19,8 +19,22 @@ from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outl
 from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds
 from .ink import Point
-from .measure import Difference, Level, Span, conventions, halfway, in_part, level, size
-from .plan import Characteristic, Datum, Dimension, Linear, Plan, View, characteristic, seen
+from .measure import (
+    OUTER,
+    PLACES,
+    THICKNESS,
+    Difference,
+    Level,
+    Owner,
+    Span,
+    Spot,
+    conventions,
+    halfway,
+    in_part,
+    level,
+    size,
+)
+from .plan import Datum, Dimension, Linear, Plan, View, seen
 from .running import depth_running, face_running, filled, running_along
 from .section import section_of, section_view
 from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_box
@@ -61,33 +75,28 @@ def prism_plan(
     below = _below_eye(found, up)
     eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
     called = groups(found, sketch.values, eyes)
-    limits = {c.name: c for c in part.characteristics}
     breaks, rows = None, []
     if shortened:
         x0, y0, x1, y1 = part.body.outer.box
         rows = regular_rows(called, 0 if x1 - x0 > y1 - y0 else 1)
-        breaks = breaks_of(part, found, {r.name for row in rows for r in row[2:-2]})
+        breaks = breaks_of(part, found, {r.owner for row in rows for r in row[2:-2]})
         if breaks is None:
             return None
         notes = (*notes, "Views are broken; dimensions are those of the whole part")
-    front = _front_view(sketch, part, eye, up, called, limits, rows)
+    front = _front_view(sketch, part, eye, up, called, rows)
     views = [front]
     if below:
-        views.append(
-            _sunk_view(sketch, part, front, "below" if below == up else "above", below, called, limits)
-        )
+        views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called))
     section = section_of(part, found, front, below) if cut else None
     if section and breaks and section.axis == breaks.axis and not breaks.shows(section.at):
         section = None
     aside = [g for g in called if g.axis[0]]
     if aside or not below:
-        side = side_view(sketch, part, front, called if aside else [], limits, thickness=not below)
+        side = side_view(sketch, part, front, called if aside else [])
         views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
     if section and (below or section.axis == 1):
         view = section_view(front, below, section)
         views.append(replace(view, box=view_box(view, part)))
-    if limits:
-        raise CheckFailure(f"drawings: {part.part_no}: no dimension states {', '.join(limits)}")
     closed(sketch)
     return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
 
@@ -117,7 +126,6 @@ def _front_view(
     eye: Vector,
     up: Vector,
     called: Sequence[Group],
-    limits: dict[str, Characteristic],
     rows: Sequence[Sequence[Round]],
 ) -> View:
     view = View("front", eye, up, (0, 0, 0, 0))
@@ -127,7 +135,7 @@ def _front_view(
     callouts += pocket_callouts(sketch, view, part)
     points = [c for name, contour in contours(part) for c in _coordinates(name, contour)]
     points += [
-        Coordinate(f"{r.label} {'xy'[k]}", level(f"{r.name}.{'xy'[k]}"), r.at)
+        Coordinate(f"{r.label} {'xy'[k]}", r.owner.place(k), r.at)
         for g in along_z
         for r in g.holes
         for k in (0, 1)
@@ -136,25 +144,23 @@ def _front_view(
     linears: list[Linear] = []
     if disc:
         callouts.insert(0, round_outline(sketch, part))
-        linears = _lands(sketch, view, part, limits)
+        linears = _lands(sketch, view, part)
     along = 0 if rows and rows[0][0].at[1] == rows[0][1].at[1] else 1
-    repeated = {level(f"{r.name}.{'xy'[along]}") for row in rows for r in row[1:-1]}
-    repeated |= {level(f"{r.name}.{'xy'[1 - along]}") for row in rows for r in row[:-1]}
+    repeated = {r.owner.place(along) for row in rows for r in row[1:-1]}
+    repeated |= {r.owner.place(1 - along) for row in rows for r in row[:-1]}
     runnings = []
     for k, side in ((0, "top"), (1, "right")):
         mine = [
             c
             for c in points
-            if c.level.names[0].endswith("xy"[k])
-            and "c" not in c.level.names[0].rsplit(".", 1)[1]
-            and c.level not in repeated
+            if c.variable.quantity == PLACES[k] and not _is_centre(c) and c.variable not in repeated
         ]
         runnings.append(running_along(sketch, view, side, k, mine, "outer" if disc else None))
     if rows:
         linears += _spaces(sketch, view, rows, along)
     callouts += radius_callouts(sketch, view, part)
     for k, index in ((0, 0), (1, 1)):
-        rest = [c for c in points if c.level.names[0].rsplit(".", 1)[1].endswith("xy"[k])]
+        rest = [c for c in points if c.variable.quantity == PLACES[k]]
         runnings[index] = filled(sketch, view, runnings[index], k, rest)
     datums = () if disc else _datums(view, part.body.outer)
     return replace(
@@ -173,10 +179,10 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
     """Number of equal spaces of regular rows along the part's axis k, and for information how wide one is."""
     shown: dict[tuple, Linear] = {}
     for row in rows:
-        places = [level(f"{r.name}.{'xy'[k]}") for r in row]
+        places = [level(r.owner.place(k)) for r in row]
         for a, b, c in zip(places, places[1:], places[2:]):
             sketch.convention(Difference(Span(a, b), Span(b, c)))
-        beside = [level(f"{r.name}.{'xy'[1 - k]}") for r in row]
+        beside = [level(r.owner.place(1 - k)) for r in row]
         for a in beside[:-1]:
             sketch.convention(Span(beside[-1], a))
         count = len(row) - 1
@@ -204,27 +210,32 @@ def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
     return tuple(found)
 
 
-def _coordinates(name: str, contour: Contour) -> list[Coordinate]:
+def _is_centre(c: Coordinate) -> bool:
+    return isinstance(c.variable.of, Spot) and c.variable.of.centre
+
+
+def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
     """Coordinates of a contour that may carry a dimension: edges first, then corners, then arcs' centres."""
     if circle := contour.as_circle():
         at = (*circle[0], 0.0)
-        return [Coordinate(f"{name} {a}", level(f"{name}.{a}"), at) for a in "xy"]
+        return [Coordinate(f"{owner} {a}", owner.place(k), at) for k, a in enumerate("xy")]
     edges, corners, centres = [], [], []
     for i, s in enumerate(contour):
-        label = s.name or f"{name} {i}"
+        label = s.name or f"{owner} {i}"
+        start, centre = Spot(owner, i), Spot(owner, i, centre=True)
         if isinstance(s, Line):
-            for k, a in ((0, "x"), (1, "y")):
+            for k in (0, 1):
                 if abs(s.start[k] - s.end[k]) < 1e-9:
-                    edges.append(Coordinate(label, level(f"{name}.{i}.{a}"), (*s.start, 0.0), (*s.end, 0.0)))
+                    edges.append(Coordinate(label, start.place(k), (*s.start, 0.0), (*s.end, 0.0)))
         else:
-            centres += [
-                Coordinate(f"{label} centre", level(f"{name}.{i}.c{a}"), (*s.centre, 0.0)) for a in "xy"
-            ]
-        corners += [Coordinate(f"{label} start", level(f"{name}.{i}.{a}"), (*s.start, 0.0)) for a in "xy"]
+            centres += [Coordinate(f"{label} centre", centre.place(k), (*s.centre, 0.0)) for k in (0, 1)]
+        corners += [
+            Coordinate(f"{label} start", start.place(k), (*s.start, 0.0), corner=True) for k in (0, 1)
+        ]
     return edges + corners + centres
 
 
-def _lands(sketch: Sketch, view: View, part: Part, limits: dict[str, Characteristic]) -> list[Linear]:
+def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
     """Length and width of a rectangular land left standing in the middle of a disc, on its centre lines."""
     linears = []
     for k, f in enumerate(part.features):
@@ -233,14 +244,12 @@ def _lands(sketch: Sketch, view: View, part: Part, limits: dict[str, Characteris
                 continue
             x0, y0, x1, y1 = in_part(f, island).box
             for axis, low, high, side, p, q in (
-                ("x", x0, x1, "top", (x0, y1), (x1, y1)),
-                ("y", y0, y1, "right", (x1, y0), (x1, y1)),
+                (0, x0, x1, "top", (x0, y1), (x1, y1)),
+                (1, y0, y1, "right", (x1, y0), (x1, y1)),
             ):
-                a, b = (edge_level(sketch, f"island{k}.{i}", axis, v) for v in (low, high))
-                sketch.convention(Span(halfway(a, b), level(f"outer.{axis}")))
-                given = limits.pop(f"{f.name.removeprefix('around_')} along {axis}", None)
-                name = f"{f.name} along {axis}"
-                d = characteristic(given, (Span(a, b),)) if given else Dimension(name, (Span(a, b),))
+                a, b = (edge_level(sketch, Owner("island", k, i), axis, v) for v in (low, high))
+                sketch.convention(Span(halfway(a, b), level(OUTER.place(axis))))
+                d = sketch.stating(f"{f.name.removeprefix('around_')} along {'xy'[axis]}", (Span(a, b),))
                 linears.append(Linear(sketch.must(d), side, seen(view, (*p, 0.0)), seen(view, (*q, 0.0))))
     return linears
 
@@ -249,13 +258,7 @@ def _lands(sketch: Sketch, view: View, part: Part, limits: dict[str, Characteris
 
 
 def _sunk_view(
-    sketch: Sketch,
-    part: Part,
-    front: View,
-    name: str,
-    eye: Vector,
-    called: Sequence[Group],
-    limits: dict[str, Characteristic],
+    sketch: Sketch, part: Part, front: View, name: str, eye: Vector, called: Sequence[Group]
 ) -> View:
     """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of them."""
     sign = 1.0 if name == "below" else -1.0
@@ -270,7 +273,7 @@ def _sunk_view(
         callouts=tuple(callouts),
         runnings=(
             face_running(sketch, view, part, side, 0, mine),
-            depth_running(sketch, view, part, "left", mine, limits),
+            depth_running(sketch, view, part, "left", mine),
         ),
         centres=tuple((seen(view, r.at), widest(r.hole)) for g in mine for r in g.holes),
         datums=_underside(view, part),
@@ -289,12 +292,7 @@ def _threads(view: View, called: Sequence[Group]) -> tuple[tuple[Point, float], 
 
 
 def side_view(
-    sketch: Sketch,
-    part: Part,
-    front: View,
-    called: Sequence[Group],
-    limits: dict[str, Characteristic],
-    thickness: bool,
+    sketch: Sketch, part: Part, front: View, called: Sequence[Group], thickness: Dimension | None = None
 ) -> View:
     """The view from the left, beside the front view: thickness, and holes of the x faces."""
     view = View("right", tuple(-r for r in front.right), front.up, (0, 0, 0, 0))
@@ -302,19 +300,9 @@ def side_view(
     mine = [g for g in called if g.axis[0]]
     if mine:
         raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")
-    given = limits.pop("thickness", None)
-    rows = (size("thickness"),)
-    d = sketch.must(
-        characteristic(given, rows, key_number(part, given)) if given else Dimension("thickness", rows)
-    )
+    d = sketch.must(thickness or sketch.stating("thickness", (size(THICKNESS),)))
     x0, y0, x1, y1 = view.box
     return replace(view, linears=(Linear(d, "bottom", (x0, y0), (x1, y0)),), datums=_underside(view, part))
-
-
-def key_number(part: Part, c: Characteristic | None) -> int:
-    """Number of a key characteristic on the sheet: its place among the part's; 0 for one that is not key."""
-    keys = [k for k in part.characteristics if k.key]
-    return keys.index(c) + 1 if c in keys else 0
 
 
 def _underside(view: View, part: Part) -> tuple[Datum, ...]:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactcad.parts.description import Characteristic, Part
+from tactcad.parts.description import Part
 
 from .holes import Group
 from .ink import Point
-from .measure import Level, Span, level
-from .plan import Dimension, Running, View, characteristic, seen
+from .measure import OUTER, THICKNESS, Span
+from .plan import Dimension, Running, View, seen
 from .sketch import ALIKE, Coordinate, Sketch
+
+# Characteristics of parts that are a hole's height over the underside, by the hole's label.
+HEIGHTS = {"axle": "axles over the underside"}
 
 
 def running_along(
@@ -21,13 +24,13 @@ def running_along(
         return Running(side, ())
     axis = view.right if k == 0 else view.up
     way = axis[k] or 1.0
-    corners = [c for c in points if not c.name.endswith(" start")]
-    edges = [c for c in corners if c.level.names[0].startswith("outer")]
-    origin = min(edges or corners, key=lambda c: way * c.at[k])
+    features = [c for c in points if not c.corner]
+    edges = [c for c in features if c.variable.contour == OUTER]
+    origin = min(edges or features, key=lambda c: way * c.at[k])
     sketch.known[k].append(origin)
     stops: list[tuple[Dimension | None, Point]] = [(None, _foot(view, side, origin))]
     # the outline first: what is centred on it follows from it
-    for c in sorted(corners, key=lambda c: (c not in edges, round(way * c.at[k], 6), c.level.names)):
+    for c in sorted(features, key=lambda c: (c not in edges, round(way * c.at[k], 6), str(c.variable))):
         stop = _stop(sketch, view, side, k, c, origin, way)
         if stop:
             stops.append(stop)
@@ -42,9 +45,10 @@ def _stop(
     c: Coordinate,
     origin: Coordinate,
     way: float,
-    limits: Characteristic | None = None,
+    stated: str = "",
 ) -> tuple[Dimension, Point] | None:
-    """One more dimension from the origin, unless the coordinate is in line with one that has it, or follows from it."""
+    """One more dimension from the origin, unless the coordinate is in line with one that has it, or follows from it. `stated` names the
+    part's characteristic that it is."""
     if c is origin:
         return None
     same = next((o for o in sketch.known[k] if abs(o.at[k] - c.at[k]) < ALIKE), None)
@@ -53,7 +57,7 @@ def _stop(
             sketch.convention(Span(same.level, c.level))
         return None
     row = Span(origin.level, c.level) if way > 0 else Span(c.level, origin.level)
-    d = characteristic(limits, (row,)) if limits else Dimension(c.name, (row,))
+    d = sketch.stating(stated, (row,), plain=c.name)
     if not sketch.new(d):
         return None
     sketch.known[k].append(c)
@@ -91,8 +95,8 @@ def face_running(
     stops: list[tuple[Dimension | None, Point]] = [(None, _corner(view, part, origin, k))]
     known = sketch.known[k]
     sketch.known[k] = [origin]
-    for r in sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[k], r.name)):
-        c = Coordinate(f"{r.label} {'xyz'[k]}", level(f"{r.name}.{'xyz'[k]}"), r.at)
+    for r in sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[k], str(r.owner))):
+        c = Coordinate(f"{r.label} {'xyz'[k]}", r.owner.place(k), r.at)
         stop = _stop(sketch, view, side, k, c, origin, way)
         if stop:
             stops.append(stop)
@@ -106,32 +110,19 @@ def _corner(view: View, part: Part, c: Coordinate, k: int) -> Point:
     return (min(max(u, u0), u1), v0 if v < v0 else v1 if v > v1 else v)
 
 
-def depth_running(
-    sketch: Sketch,
-    view: View,
-    part: Part,
-    side: str,
-    called: Sequence[Group],
-    limits: dict[str, Characteristic],
-) -> Running:
+def depth_running(sketch: Sketch, view: View, part: Part, side: str, called: Sequence[Group]) -> Running:
     """Holes of a side face across the thickness, from the face z = 0, and the thickness itself."""
     t = part.body.thickness
     x0 = part.body.outer.box[0]
-    origin = Coordinate("underside", Level(), (x0, 0.0, 0.0))
-    upper = Coordinate("thickness", level("thickness"), (x0, 0.0, t))
+    origin = Coordinate("underside", None, (x0, 0.0, 0.0))
+    upper = Coordinate("thickness", THICKNESS, (x0, 0.0, t))
     # z = 0 may be the upper edge of the view: the numbers still count from it
     stops: list[tuple[Dimension | None, Point]] = [(None, seen(view, origin.at))]
     sketch.known[2] = [origin]
-    spots = [
-        (f"{r.label} z", Coordinate(f"{r.label} z", level(f"{r.name}.z"), r.at))
-        for g in called
-        for r in g.holes
-    ]
-    for label, c in [*sorted(spots, key=lambda s: (s[1].at[2], s[1].level.names)), ("thickness", upper)]:
-        wanted = {"axle z": "axles over the underside", "thickness": "thickness"}.get(label)
-        given = limits.get(wanted) if wanted else None
-        stop = _stop(sketch, view, side, 2, c, origin, 1.0, given)
+    holes = sorted((r for g in called for r in g.holes), key=lambda r: (r.at[2], str(r.owner)))
+    heights = [(Coordinate(f"{r.label} z", r.owner.place(2), r.at), HEIGHTS.get(r.label, "")) for r in holes]
+    for c, stated in [*heights, (upper, "thickness")]:
+        stop = _stop(sketch, view, side, 2, c, origin, 1.0, stated)
         if stop:
-            limits.pop(wanted, None) if given else None
             stops.append(stop)
     return Running(side, tuple(stops))

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
 
-from .measure import Determined, Level, Measure, level, variables
+from .measure import Determined, Level, Measure, Owner, Spot, Variable, level, variables
 from .plan import Dimension, View, seen
 
 ALIKE = 1e-6  # mm: coordinates nearer than this are one
@@ -15,12 +16,18 @@ ALIKE = 1e-6  # mm: coordinates nearer than this are one
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's other end."""
+    """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's other end; whether
+    it is a mere corner between edges. None is the coordinate 0."""
 
     name: str
-    level: Level
+    variable: Variable | None
     at: Vector
     other: Vector | None = None
+    corner: bool = False
+
+    @property
+    def level(self) -> Level:
+        return level(self.variable) if self.variable else Level()
 
 
 class Sketch:
@@ -32,6 +39,7 @@ class Sketch:
         self.account = Determined(self.values)
         self.conventions: list[Measure] = []
         self.known: dict[int, list[Coordinate]] = {0: [], 1: [], 2: []}
+        self.unstated = {c.name: c for c in part.characteristics}
 
     def convention(self, row: Measure) -> None:
         self.conventions.append(row)
@@ -41,9 +49,21 @@ class Sketch:
         """Whether a dimension says something new with every one of its rows; if so it is taken up."""
         before = self.account.basis
         if all([self.account.takes(row) for row in dimension.rows]):
+            if dimension.characteristic:
+                del self.unstated[dimension.characteristic.name]
             return True
         self.account.basis = before
         return False
+
+    def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
+        """The dimension that states the characteristic of that name; a plain one where the part has none, or it is stated."""
+        c = self.unstated.get(name)
+        if c is None:
+            return Dimension(plain or name, rows)
+        keys = [k for k in self.part.characteristics if k.key]
+        number = keys.index(c) + 1 if c in keys else 0
+        limits = (c.upper - c.nominal, c.lower - c.nominal)
+        return Dimension(c.name, rows, limits=limits, key=number, characteristic=c)
 
     def must(self, dimension: Dimension) -> Dimension:
         """A dimension that has to be new. Raises CheckFailure where it repeats what is said already."""
@@ -53,7 +73,11 @@ class Sketch:
 
 
 def closed(sketch: Sketch) -> None:
-    """Raise CheckFailure unless everything but the place on the paper is determined."""
+    """Raise CheckFailure unless every characteristic is stated, and everything but the place on the paper determined."""
+    if sketch.unstated:
+        raise CheckFailure(
+            f"drawings: {sketch.part.part_no}: no dimension states {', '.join(sketch.unstated)}"
+        )
     missing = len(sketch.values) - 2 - sketch.account.rank
     if missing:
         raise CheckFailure(f"drawings: {sketch.part.part_no}: {missing} dimensions are missing")
@@ -66,11 +90,7 @@ def view_box(view: View, part: Part) -> tuple[float, float, float, float]:
     return (min(us), min(vs), max(us), max(vs))
 
 
-def edge_level(sketch: Sketch, name: str, axis: str, value: float) -> Level:
-    """The level of a contour's edge at a value along an axis."""
-    found = [
-        n
-        for n, v in sketch.values.items()
-        if n.startswith(f"{name}.") and n.endswith(f".{axis}") and abs(v - value) < ALIKE
-    ]
-    return level(found[0])
+def edge_level(sketch: Sketch, contour: Owner, k: int, value: float) -> Level:
+    """The level of a contour's edge at a value along axis k (0 or 1)."""
+    starts = (Spot(contour, i).place(k) for i in count())
+    return level(next(v for v in starts if abs(sketch.values[v] - value) < ALIKE))
