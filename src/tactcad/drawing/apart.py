@@ -1,8 +1,10 @@
-"""Exploded views by calculation: how far each piece of a sub-assembly moves so that all stand clear of each other.
+"""Exploded views by calculation: how far each piece of a sub-assembly moves so that all stand clear of each
+other.
 
-Along each axis the pieces' shifts u solve a linear program. A joint asks u[upper] - u[lower] >= length of the way out + gap; across
-its axis its pieces want to stay together. Minimised is the sum of what joints have too much, and, far more dearly, of
-what tears pieces apart sideways. Pieces whose boxes overlap thereafter get a joint of their own, and it is solved again.
+Along each axis the pieces' shifts u solve a linear program. A joint asks u[upper] - u[lower] >= length of the
+way out + gap; across its axis its pieces want to stay together. Minimised is the sum of what joints have too
+much, and, far more dearly, of what tears pieces apart sideways. Pieces whose boxes overlap thereafter get a
+joint of their own, and it is solved again.
 """
 
 from __future__ import annotations
@@ -27,8 +29,8 @@ SLACK, TORN, BROKEN = (
 
 @dataclass(frozen=True)
 class Piece:
-    """What stays together in a view: a part, equal parts that lie on each other, or a sub-assembly under the letter of
-    its own view."""
+    """What stays together in a view: a part, equal parts that lie on each other, or a sub-assembly under the
+    letter of its own view."""
 
     placements: tuple[Placement, ...]
     letter: str = ""
@@ -60,7 +62,8 @@ def pieces_of(scene: Scene, placements: Sequence[Placement]) -> list[Piece]:
 
 
 def pulled_apart(scene: Scene, pieces: Sequence[Piece], gap: float, more: Mapping[int, float]) -> list[Piece]:
-    """The pieces of a scene moved apart by `gap` mm at least along their joints; by `more` (by a piece's index) in its own."""
+    """The pieces of a scene moved apart by `gap` mm at least along their joints; by `more` (by a piece's
+    index) in its own."""
     owner = {p.designator: n for n, piece in enumerate(pieces) for p in piece.placements}
     boxes = {p.designator: box_of(p) for p in scene.placements}
     joints = joints_of(scene.placements, scene.contacts)
@@ -93,7 +96,7 @@ def _kept_together(
 ) -> list[tuple[int, int, int]]:
     """Pieces that move alike along an axis: equal parts of a step that leave alike."""
     at = {p.designator: p for p in scene.placements}
-    found = []
+    pairs = []
     step = {d: n for n, s in enumerate(scene.steps) for d in s.designators}
     alike: dict[tuple, int] = {}
     for j in joints:
@@ -102,8 +105,8 @@ def _kept_together(
                 key = (at[name].part.part_no, step.get(name), j.axis, up)
                 first = alike.setdefault(key, owner[name])
                 if first != owner[name]:
-                    found.append((first, owner[name], j.axis))
-    return found
+                    pairs.append((first, owner[name], j.axis))
+    return pairs
 
 
 def _solved(
@@ -136,17 +139,18 @@ def _solved(
         for sign, r in ((1.0, m + 2 * t), (-1.0, m + 2 * t + 1)):
             rows[r, [i, k, n + m + t]] = sign, -sign, -1.0
     free = [(0.0, 0.0)] + [(-1e4, 1e4)] * (n - 1) + [(0.0, None)] * (m + q)
-    found = linprog(
+    solution = linprog(
         cost, A_ub=rows if len(rows) else None, b_ub=most if len(rows) else None, bounds=free, method="highs"
     )
-    return np.round(found.x[:n], 6)
+    return np.round(solution.x[:n], 6)
 
 
 def _overlapping(
     pieces: Sequence[Piece], boxes: Mapping[str, Box], shifts: np.ndarray
 ) -> list[tuple[Placement, Placement]]:
-    """A pair of parts for each two pieces of which boxes overlap where they stand now, the earlier part first."""
-    found = []
+    """A pair of parts for each two pieces of which boxes overlap where they stand now, the earlier part
+    first."""
+    overlaps = []
     for i, k in combinations(range(len(pieces)), 2):
         for a in pieces[i].placements:
             for b in pieces[k].placements:
@@ -154,19 +158,20 @@ def _overlapping(
                 if (
                     np.minimum(p[1], q[1]) - np.maximum(p[0], q[0]) > TOUCH
                 ).all() and a.part.part_no != b.part.part_no:
-                    found.append((a, b))
+                    overlaps.append((a, b))
                     break
             else:
                 continue
             break
-    return found
+    return overlaps
 
 
 def _sorted_out(
     a: Placement, b: Placement, boxes: Mapping[str, Box], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
-    """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as they are assembled,
-    where one lies beyond the other; else the later one goes on along its own axis, the way that it came off."""
+    """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as
+    they are assembled, where one lies beyond the other; else the later one goes on along its own axis, the
+    way that it came off."""
     ends = owner[a.designator], owner[b.designator]
     for j in joints:
         if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):

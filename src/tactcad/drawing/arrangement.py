@@ -73,8 +73,9 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
 def _largest(
     wide: float, high: float, spare: float, lines: Sequence[str], block: TitleBlock
 ) -> tuple[tuple[int, int], Paper, list[Item], Box]:
-    """Scale, paper, the notes on it and where views of that size in all (mm of the assembly, and `spare` mm of paper) may
-    stand: the largest scale on A3, or the smallest larger paper on which it is at least LEAST."""
+    """Scale, paper, the notes on it and where views of that size in all (mm of the assembly, and `spare` mm
+    of paper) may stand: the largest scale on A3, or the smallest larger paper on which it is at least
+    LEAST."""
     best: tuple[tuple[int, int], Paper, list[Item], Box] | None = None
     for papers in ((A3, A3_UPRIGHT), (A2,), (A1,), (A0,)):
         for paper in papers:
@@ -94,7 +95,8 @@ def _largest(
 
 
 def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[list[Item], Box]:
-    """The notes, on a lying sheet over the title block, on an upright one over its whole width; and where views may stand."""
+    """The notes, on a lying sheet over the title block, on an upright one over its whole width; and where
+    views may stand."""
     x0, y0, x1, y1 = paper.area
     lying = paper.width > paper.height
     room = (WIDTH if lying else x1 - x0) - 2 * MARGIN
@@ -112,7 +114,8 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
 
 
 def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
-    """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in parentheses."""
+    """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in
+    parentheses."""
     w, h = size
     wide, high = WHOLE.place(0), WHOLE.place(1)
     values = {wide: round(w, 1), high: round(h, 1)}

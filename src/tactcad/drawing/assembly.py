@@ -31,7 +31,8 @@ def assembly_sheets(
     shapes: Mapping[str, TopoDS_Shape],
     draft: bool = False,
 ) -> list[Sheet]:
-    """All sheets of the scene, their layout clean. `shapes` by part number, `rows` the scene's bill of materials.
+    """All sheets of the scene, their layout clean. `shapes` by part number, `rows` the scene's bill of
+    materials.
 
     Raises CheckFailure where the scene is larger than the sheet at 1:50, or a view leaves no clean layout.
     """
@@ -89,12 +90,12 @@ def _list_pages(list_: parts_list.Laid) -> list[Page]:
         columns = parts_list.columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])
         if len(columns) == 1:
             break
-    found = []
+    pages = []
     for n in range(0, len(columns), len(lefts)):
         items = [
             item
             for x, rows in zip(lefts, columns[n : n + len(lefts)])
             for item in parts_list.drawn(list_, rows, (x, paper.area[3]))[0]
         ]
-        found.append(Page(paper, "", tuple(items), "Parts list"))
-    return found
+        pages.append(Page(paper, "", tuple(items), "Parts list"))
+    return pages

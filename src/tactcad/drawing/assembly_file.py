@@ -1,4 +1,5 @@
-"""The assembly drawing of a scene as PDF and SVG, read back and compared with the scene and its bill of materials."""
+"""The assembly drawing of a scene as PDF and SVG, read back and compared with the scene and its bill of
+materials."""
 
 from __future__ import annotations
 
@@ -25,7 +26,8 @@ BETWEEN = 10.0  # of the sheets of one SVG file, mm
 
 @dataclass(frozen=True)
 class AssemblyOrder:
-    """One scene to draw: its bill of materials, and every part's solid as the kernel's text, by part number."""
+    """One scene to draw: its bill of materials, and every part's solid as the kernel's text, by part
+    number."""
 
     design: Design
     scene: Scene
@@ -39,7 +41,8 @@ class AssemblyOrder:
 
 
 def assembly_written(order: AssemblyOrder) -> Written:
-    """All sheets of the scene. Raises CheckFailure where they cannot be drawn, or do not hold when read back."""
+    """All sheets of the scene. Raises CheckFailure where they cannot be drawn, or do not hold when read
+    back."""
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
     from .pdf import pdf_bytes
@@ -78,8 +81,8 @@ def stacked_svg(sheets: Sequence[Sheet]) -> bytes:
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
-    """What is wrong with an assembly's PDF: number, revision and sheet count on every page, an item that has a solid without
-    balloon, a row of the bill of materials that is not in the parts list."""
+    """What is wrong with an assembly's PDF: number, revision and sheet count on every page, an item that has
+    a solid without balloon, a row of the bill of materials that is not in the parts list."""
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):
@@ -109,16 +112,16 @@ def _ballooned(pdf: bytes) -> list[int]:
     """Numbers that stand in balloons, told from others by the size of their letters."""
     from pypdf import PdfReader
 
-    found: list[int] = []
+    numbers: list[int] = []
 
     def take(text: str, _matrix: object, _text_matrix: object, _font: object, size: float) -> None:
         number = text.strip()
         if number.isdecimal() and isclose(size, em(height(number)), rel_tol=1e-3):
-            found.append(int(number))
+            numbers.append(int(number))
 
     for page in PdfReader(io.BytesIO(pdf)).pages:
         page.extract_text(visitor_text=take)
-    return found
+    return numbers
 
 
 def _without_spaces(text: str) -> str:

@@ -17,7 +17,8 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
     lines = []
     if scene.steps:
         lines.append(
-            f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} (tactcad export --guide)"
+            f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} "
+            "(tactcad export --guide)"
         )
     lines += _rows(design, scene)
     if torques := _torques(scene, "ISO4762-"):
@@ -32,7 +33,8 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
             )
     lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
     lines.append(
-        "Dimensions in parentheses are for information; in the front view x points to the right, y away from the viewer"
+        "Dimensions in parentheses are for information; "
+        "in the front view x points to the right, y away from the viewer"
     )
     return tuple(lines)
 
@@ -52,10 +54,10 @@ def _rows(design: Design, scene: Scene) -> list[str]:
 
 def _torques(scene: Scene, standard: str) -> str:
     """ "M3 0.55 N·m, M4 1.2 N·m" of the screws of that standard placed."""
-    found = {}
+    torques = {}
     for part in scene.parts:
         if part.part_no.startswith(standard) and (tight := torque(part)):
-            found[part.part_no.split("-")[1].split("x")[0]] = tight
+            torques[part.part_no.split("-")[1].split("x")[0]] = tight
     return ", ".join(
-        f"{thread} {value:g} N·m" for thread, value in sorted(found.items(), key=lambda pair: pair[1])
+        f"{thread} {value:g} N·m" for thread, value in sorted(torques.items(), key=lambda pair: pair[1])
     )

@@ -1,9 +1,9 @@
 """Item numbers in balloons around a view (ISO 6433:2012): where each stands and where its leader ends.
 
-Each balloon takes a place of a square grid, outside the parts' outlines and clear of every line. The
-places and the leaders' ends are those whose leaders are shortest in all: of such leaders no two cross, for exchanging their
-places would shorten them (the assignment problem, by scipy). What the shortest solution still has
-against it, such as a leader close to another balloon, is forbidden and the next best is tried.
+Each balloon takes a place of a square grid, outside the parts' outlines and clear of every line. The places
+and the leaders' ends are those whose leaders are shortest in all: of such leaders no two cross, for
+exchanging their places would shorten them (the assignment problem, by scipy). What the shortest solution
+still has against it, such as a leader close to another balloon, is forbidden and the next best is tried.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ FORBIDDEN = 1e6
 
 @dataclass(frozen=True)
 class Balloon:
-    """An item number, or the letter of a sub-assembly's own view; the middle of its circle, and the point where its leader ends;
-    mm of paper."""
+    """An item number, or the letter of a sub-assembly's own view; the middle of its circle, and the point
+    where its leader ends; mm of paper."""
 
     item: int | str
     centre: Point
@@ -91,12 +91,12 @@ def _places(lines: Sequence[Polyline], area: Box) -> list[Point]:
     outside = (regions == regions[0, 0])[1:-1, 1:-1]
     # distance to what is drawn or lies inside an outline
     room = ndimage.distance_transform_edt(outside) * CELL
-    found = []
+    places = []
     for x in np.arange(x0 + RADIUS + 1.0, x1 - RADIUS - 1.0 + 1e-9, PITCH):
         for y in np.arange(y0 + RADIUS + 1.0, y1 - RADIUS - 1.0 + 1e-9, PITCH):
             if room[int((x - x0) / CELL), int((y - y0) / CELL)] >= RADIUS + CLEAR:
-                found.append((round(float(x), 3), round(float(y), 3)))
-    return found
+                places.append((round(float(x), 3), round(float(y), 3)))
+    return places
 
 
 def _tips(
@@ -135,7 +135,8 @@ def _without_faults(
     tips: Sequence[Sequence[Point]],
     places: Sequence[Point],
 ) -> list[Balloon] | None:
-    """The shortest solution that has no faults; of two leaders that disturb each other the longer may not be used again."""
+    """The shortest solution that has no faults; of two leaders that disturb each other the longer may not be
+    used again."""
     from scipy.optimize import linear_sum_assignment
 
     cost = np.array([own.min(axis=1) for own in lengths])
@@ -156,8 +157,8 @@ def _without_faults(
 
 
 def faults(balloons: Sequence[Balloon]) -> list[tuple[int, int]]:
-    """Pairs (by index) of balloons whose leaders cross or run closer than APART, or of which one's leader comes
-    too close to the other's circle."""
+    """Pairs (by index) of balloons whose leaders cross or run closer than APART, or of which one's leader
+    comes too close to the other's circle."""
     return [
         (i, k)
         for (i, a), (k, b) in combinations(enumerate(balloons), 2)

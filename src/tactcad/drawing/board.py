@@ -14,25 +14,8 @@ from .plan import Box, Callout, Datum
 
 STEP = 1.7 * HEIGHT  # between lines of a callout
 SHELF = 3.0  # of the leader beside the text
-REACHES = (
-    7.0,
-    9.0,
-    11.0,
-    14.0,
-    17.0,
-    20.0,
-    24.0,
-    28.0,
-    33.0,
-    38.0,
-    44.0,
-    50.0,
-    58.0,
-    66.0,
-    75.0,
-    85.0,
-    95.0,
-)  # of leaders
+# Lengths of leaders tried, mm.
+REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 66.0, 75.0, 85.0, 95.0)
 MOST_TARGETS = 12  # of equal features tried for the leader
 # What a leader pays for crossing: it may pass extension and centre lines, hardly the part, no dimension line.
 CROSSING = {
@@ -96,7 +79,8 @@ class Board:
         ]
 
     def callout(self, c: Callout, scale: float, origin: Point) -> bool:
-        """Place a callout of a view at the cheapest free place, its leader at whichever of the targets; False where there is none."""
+        """Place a callout of a view at the cheapest free place, its leader at whichever of the targets; False
+        where there is none."""
         best: tuple[float, list[Item]] | None = None
         ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
         for reach in REACHES:
@@ -149,7 +133,8 @@ class Board:
         return False
 
     def _tried(self, c: Callout, tip: Point, angle: float, reach: float) -> tuple[list[Item], float]:
-        """The callout's items with a leader in this direction and of this length, and their cost; none where they do not fit."""
+        """The callout's items with a leader in this direction and of this length, and their cost; none where
+        they do not fit."""
         elbow = polar(tip, reach, angle)
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
@@ -225,14 +210,16 @@ class Board:
 
 
 def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, float, float]]:
-    """Points of the n-th target that a leader may end at, the directions (degrees) in which it leaves them, and what they cost."""
+    """Points of the n-th target that a leader may end at, the directions (degrees) in which it leaves them,
+    and what they cost."""
     (x, y), radius = c.targets[n]
     centre = (origin[0] + x * scale, origin[1] + y * scale)
     if not c.spans:
         return [(polar(centre, radius * scale, 15.0 * i), 15.0 * i, 0.0) for i in range(24)]
     start, end = c.spans[n]
     sweep = (end - start) % 360.0 or 360.0
-    # in line with the arc's centre, from within or from outside; near its ends it reads as the edge that joins it
+    # in line with the arc's centre, from within or from outside; near its ends it reads as the edge that
+    # joins it
     normals = [
         (start + sweep * share, AT_END * abs(2 * share - 1))
         for share in (0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9, 0.04, 0.96)

@@ -1,6 +1,7 @@
 """Broken views (ISO 128-3) of long parts: what is left out of them, and a plan's views and curves without it.
 
-Dimensions keep the whole part's values, and their lines run unbroken (ISO 129-1): only places on the paper move.
+Dimensions keep the whole part's values, and their lines run unbroken (ISO 129-1): only places on the paper
+move.
 """
 
 from __future__ import annotations
@@ -216,12 +217,12 @@ class _Squeezed:
 
 def _crossings(curve: Stroke | Arc, k: int, at: float) -> list[float]:
     """Where straight pieces of a curve cross a coordinate of the paper's axis k: their other coordinate."""
-    found = []
+    crossings = []
     for a, b in curve.chords():
         if (a[k] - at) * (b[k] - at) < 0:
             share = (at - a[k]) / (b[k] - a[k])
-            found.append(a[1 - k] + share * (b[1 - k] - a[1 - k]))
-    return found
+            crossings.append(a[1 - k] + share * (b[1 - k] - a[1 - k]))
+    return crossings
 
 
 def _cut_off(loop: Sequence[Point], band: tuple[float, float, float, float]) -> tuple[Point, ...]:

@@ -1,4 +1,5 @@
-"""Callouts of a plan: holes, pockets and grooves, radii, and a disc's outside, each with where its leader may point."""
+"""Callouts of a plan: holes, pockets and grooves, radii, and a disc's outside, each with where its leader may
+point."""
 
 from __future__ import annotations
 
@@ -46,7 +47,8 @@ def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
 
 
 def _to_outside(view: View, p: Point) -> float:
-    """Way from a point of the view to the nearest side of its box, mm: leaders are shortest from where it is small."""
+    """Way from a point of the view to the nearest side of its box, mm: leaders are shortest from where it is
+    small."""
     u0, v0, u1, v1 = view.box
     return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
 
@@ -64,9 +66,8 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
         lines, used = [], []
         if flats := _regular(sketch, part, k, in_part(f, f.contour)):
             used.append(sketch.must(flats))
-            lines.append(
-                f"{sum(isinstance(s, Line) for s in f.contour)} sides, {flats.text(sketch.values)} across flats"
-            )
+            sides = sum(isinstance(s, Line) for s in f.contour)
+            lines.append(f"{sides} sides, {flats.text(sketch.values)} across flats")
 
         def say(d: Dimension, used: list = used) -> str:
             used.append(sketch.must(d))

@@ -1,4 +1,5 @@
-"""From a plan to a finished sheet: paper and scale are the first of the preferred ones at which everything fits."""
+"""From a plan to a finished sheet: paper and scale are the first of the preferred ones at which everything
+fits."""
 
 from __future__ import annotations
 
@@ -77,7 +78,8 @@ def compose(
             said.append(f"{paper.name} {shown(scale)}: {faults[0]}")
     nearest = [line for line in said if "do not fit" not in line] or said[-1:]
     raise NoPlace(
-        f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on {', '.join(p.name for p in papers)} at "
+        f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on "
+        f"{', '.join(p.name for p in papers)} at "
         f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join(nearest[:6])}; no drawing was written"
     )
 
@@ -177,7 +179,8 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
 def _drawn(
     view: View, curves: Sequence[Curve], scale: tuple[int, int], values: Values, spread: Mapping[str, float]
 ) -> _Drawn:
-    """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting plane."""
+    """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting
+    plane."""
     f = factor(scale)
     if view.window:
         curves = windowed(curves, view.window)
@@ -225,7 +228,8 @@ def _detail_scale(view: View, shrunk: float) -> tuple[int, int]:
 
 
 def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Point] | None:
-    """First-angle places: the first view, `right` beside it, `below` and `above` it; None where they do not fit."""
+    """First-angle places: the first view, `right` beside it, `below` and `above` it; None where they do not
+    fit."""
     boxes = {d.view.name: d.box for d in drawn}
     front = drawn[0].view.name
     shifts: dict[str, Point] = {front: (0.0, 0.0)}
@@ -249,12 +253,13 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
 
 
 def _middle_spot(board: Board, wanted: Box) -> Point | None:
-    """Shift to the middle of the area above the title block, with room for callouts around; None where it does not fit."""
+    """Shift to the middle of the area above the title block, with room for callouts around; None where it
+    does not fit."""
     x0, y0, x1, y1 = board.area
     y0 = max([y0, *(kept[3] for kept in board.kept)])
     spot = ((x0 + x1 - wanted[0] - wanted[2]) / 2, (y0 + y1 - wanted[1] - wanted[3]) / 2)
-    there = _with_margin(_shifted(wanted, spot), APART)
-    return spot if there[0] >= x0 and there[1] >= y0 and there[2] <= x1 and there[3] <= y1 else None
+    around = _with_margin(_shifted(wanted, spot), APART)
+    return spot if around[0] >= x0 and around[1] >= y0 and around[2] <= x1 and around[3] <= y1 else None
 
 
 def _view_box(d: _Drawn) -> Box:

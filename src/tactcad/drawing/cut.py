@@ -11,10 +11,10 @@ from OCP.BRepTools import BRepTools_WireExplorer
 from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
-from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 
 from tactcad.design.messages import CheckFailure
+from tactcad.solids.explore import subshapes
 from tactcad.solids.occt import as_face, as_wire
 
 from .hidden_lines import CHORD
@@ -27,7 +27,8 @@ SAME = 1e-7  # mm: the kernel's own tolerance
 
 
 def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
-    """What lies behind the plane of the view's section, and its cut face in the view's plane (mm of the part).
+    """What lies behind the plane of the view's section, and its cut face in the view's plane (mm of the
+    part).
 
     Raises CheckFailure where the plane misses the part.
     """
@@ -39,7 +40,9 @@ def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
     (low if view.eye[k] < 0 else high)[k] = at
     kept = BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
     half = BRepAlgoAPI_Common(shape, kept).Shape()
-    loops = [_loop(wire, view) for face in _faces(half, k, at) for wire in _wires(face)]
+    loops = [
+        _loop(as_wire(wire), view) for face in _faces(half, k, at) for wire in subshapes(face, TopAbs_WIRE)
+    ]
     if not loops:
         raise CheckFailure(
             f"drawings: the section at {'xy'[k]} = {at:g} mm cuts nothing; no drawing was written"
@@ -49,30 +52,16 @@ def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
 
 def _faces(shape: TopoDS_Shape, k: int, at: float) -> list[TopoDS_Face]:
     """Faces in the plane across axis k."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_FACE)
-    while explorer.More():
-        face = as_face(explorer.Current())
+    faces = []
+    for face in map(as_face, subshapes(shape, TopAbs_FACE)):
         surface = BRepAdaptor_Surface(face)
         if surface.GetType() == GeomAbs_Plane:
             plane = surface.Plane()
             # OCC counts coordinates from 1
-            if (
-                abs(abs(plane.Axis().Direction().Coord(k + 1)) - 1.0) < SAME
-                and abs(plane.Location().Coord(k + 1) - at) < SAME
-            ):
-                found.append(face)
-        explorer.Next()
-    return found
-
-
-def _wires(face: TopoDS_Face) -> list[TopoDS_Wire]:
-    found = []
-    explorer = TopExp_Explorer(face, TopAbs_WIRE)
-    while explorer.More():
-        found.append(as_wire(explorer.Current()))
-        explorer.Next()
-    return found
+            off = abs(plane.Location().Coord(k + 1) - at)
+            if abs(abs(plane.Axis().Direction().Coord(k + 1)) - 1.0) < SAME and off < SAME:
+                faces.append(face)
+    return faces
 
 
 def _loop(wire: TopoDS_Wire, view: View) -> tuple[Point, ...]:

@@ -87,11 +87,12 @@ def boxed_width(text: str, key: int) -> float:
 def stacked(
     linears: Sequence[Linear], side: Side, box: Box, scale: float, values: Values, start: float
 ) -> list[Item]:
-    """The dimensions on one side of a view, the short ones nearest to it, from the offset `start` outwards."""
+    """The dimensions on one side of a view, the short ones nearest to it, from the offset `start`
+    outwards."""
     mine = [d for d in linears if d.side == side]
     if not mine:
         return []
-    there = placer(side, box)
+    on_paper = placer(side, box)
     spots = []
     for d in mine:
         (a, oa), (b, ob) = (local(side, box, (p[0] * scale, p[1] * scale)) for p in (d.p, d.q))
@@ -104,7 +105,8 @@ def stacked(
     for n, (_, a, b, oa, ob, d) in enumerate(spots):
         text, key = d.dimension.text(values), d.dimension.key
         length = boxed_width(text, key)
-        # extension lines that pass this dimension on their way out: its own, and those of what stands outside it
+        # extension lines that pass this dimension on their way out: its own, and those of what stands outside
+        # it
         feet = [s for spot in spots[n:] for s in spot[1:3]]
         ends = (box[0], box[2]) if side in ("top", "bottom") else (box[1], box[3])
         number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, ends), length)
@@ -114,8 +116,8 @@ def stacked(
             )
         tracks[number].taken.append(_interval(a, b, t0, length, inside))
         o = tracks[number].offset
-        items += _one(there, side, o, a, b, oa, ob, t0, t0 + length, inside)
-        items += _text_on(there, side, o, t0, text, key)
+        items += _one(on_paper, side, o, a, b, oa, ob, t0, t0 + length, inside)
+        items += _text_on(on_paper, side, o, t0, text, key)
     return items
 
 
@@ -144,8 +146,9 @@ def _first_free(
 def _text_places(
     a: float, b: float, length: float, feet: Sequence[float], ends: tuple[float, float]
 ) -> list[tuple[float, bool]]:
-    """Where the text may start, and whether the arrows stand inside; the best first: between the extension lines, then
-    beside them within the `ends` of the view, where no other side's dimensions stand, then anywhere."""
+    """Where the text may start, and whether the arrows stand inside; the best first: between the extension
+    lines, then beside them within the `ends` of the view, where no other side's dimensions stand, then
+    anywhere."""
     room = b - a
     inside = room >= 2 * ARROW + 1.5
     tail = 2.0 if inside else TAIL + 1.0
@@ -165,7 +168,7 @@ def _text_places(
 
 
 def _one(
-    there: Callable[[float, float], Point],
+    on_paper: Callable[[float, float], Point],
     side: Side,
     o: float,
     a: float,
@@ -178,23 +181,26 @@ def _one(
 ) -> list[Item]:
     """Extension lines, dimension line and arrows of one dimension."""
     items: list[Item] = [
-        segment(there(s, min(os + GAP, o - 1.0)), there(s, o + OVERSHOOT), THIN, "extension")
+        segment(on_paper(s, min(os + GAP, o - 1.0)), on_paper(s, o + OVERSHOOT), THIN, "extension")
         for s, os in ((a, oa), (b, ob))
     ]
     low, high = min(a, t0), max(b, t1)
     if inside:
-        items += [arrow(there(a, o), there(b, o), ARROW), arrow(there(b, o), there(a, o), ARROW)]
+        items += [arrow(on_paper(a, o), on_paper(b, o), ARROW), arrow(on_paper(b, o), on_paper(a, o), ARROW)]
     else:
         low, high = min(a - TAIL, t0), max(b + TAIL, t1)
-        items += [arrow(there(a, o), there(a - 1, o), ARROW), arrow(there(b, o), there(b + 1, o), ARROW)]
-    return [*items, segment(there(low, o), there(high, o))]
+        items += [
+            arrow(on_paper(a, o), on_paper(a - 1, o), ARROW),
+            arrow(on_paper(b, o), on_paper(b + 1, o), ARROW),
+        ]
+    return [*items, segment(on_paper(low, o), on_paper(high, o))]
 
 
 def _text_on(
-    there: Callable[[float, float], Point], side: Side, o: float, t0: float, text: str, key: int
+    on_paper: Callable[[float, float], Point], side: Side, o: float, t0: float, text: str, key: int
 ) -> list[Item]:
     """The text above its dimension line, read from below or from the right."""
-    x, y = there(t0, o)
+    x, y = on_paper(t0, o)
     below = -ink_box(text, HEIGHT)[1]  # parentheses reach below the line of writing, down to the arrow heads
     lift = max(ABOVE + (PAD - 0.2 if key else 0.0), below + CLEAR_OF_ARROW)
     upright = side in ("left", "right")
@@ -204,49 +210,51 @@ def _text_on(
 
 
 def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST - 2.0) -> list[Item]:
-    """Dimensions from one origin: one dimension line with an arrow at every stop, `o` from the box, texts in line with the extension."""
-    there = placer(r.side, box)
+    """Dimensions from one origin: one dimension line with an arrow at every stop, `o` from the box, texts in
+    line with the extension."""
+    on_paper = placer(r.side, box)
     stops = sorted(
         ((*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops), key=lambda stop: stop[0]
     )
     origin = next(s for s, _, d in stops if d is None)
     places = _spread([s for s, _, _ in stops], LABELS)
-    items: list[Item] = [segment(there(stops[0][0], o), there(stops[-1][0], o))]
+    items: list[Item] = [segment(on_paper(stops[0][0], o), on_paper(stops[-1][0], o))]
     for n, ((s, foot, d), label) in enumerate(zip(stops, places)):
         bend = o + (3.0 if abs(label - s) < 1e-6 else 2.0)
-        items.append(segment(there(s, foot + GAP), there(s, bend), THIN, "extension"))
+        items.append(segment(on_paper(s, foot + GAP), on_paper(s, bend), THIN, "extension"))
         if abs(label - s) > 1e-6:
-            items.append(segment(there(s, bend), there(label, bend + 4.0), THIN, "extension"))
+            items.append(segment(on_paper(s, bend), on_paper(label, bend + 4.0), THIN, "extension"))
         else:
-            items.append(segment(there(s, bend), there(s, bend + 4.0), THIN, "extension"))
-        items += _stop(there, stops, n, origin, o)
-        items.append(_label(there, r.side, label, o + 8.0, "0" if d is None else d.text(values)))
+            items.append(segment(on_paper(s, bend), on_paper(s, bend + 4.0), THIN, "extension"))
+        items += _stop(on_paper, stops, n, origin, o)
+        items.append(_label(on_paper, r.side, label, o + 8.0, "0" if d is None else d.text(values)))
     return items
 
 
 def _stop(
-    there: Callable[[float, float], Point], stops: Sequence[tuple], n: int, origin: float, o: float
+    on_paper: Callable[[float, float], Point], stops: Sequence[tuple], n: int, origin: float, o: float
 ) -> list[Item]:
     """Circle at the origin, arrow at a stop, a dot where its neighbour leaves no room for one."""
     s = stops[n][0]
     if abs(s - origin) < 1e-9:
-        return [Arc(there(s, o), 1.0, line=THIN, role="symbol")]
+        return [Arc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
     inner = stops[n - 1][0] if s > origin else stops[n + 1][0]
     if abs(s - inner) < ARROW + 1.2:
-        x, y = there(s, o)
+        x, y = on_paper(s, o)
         return [Fill(tuple(polar((x, y), 0.6, a) for a in range(0, 360, 30)))]
-    return [arrow(there(s, o), there(inner, o), ARROW)]
+    return [arrow(on_paper(s, o), on_paper(inner, o), ARROW)]
 
 
-def _label(there: Callable[[float, float], Point], side: Side, s: float, o: float, text: str) -> Text:
-    x, y = there(s, o)
+def _label(on_paper: Callable[[float, float], Point], side: Side, s: float, o: float, text: str) -> Text:
+    x, y = on_paper(s, o)
     if side in ("top", "bottom"):
         return Text((x + HEIGHT / 2, y), text, HEIGHT, "start" if side == "top" else "end", 90.0)
     return Text((x, y - HEIGHT / 2), text, HEIGHT, "end" if side == "left" else "start")
 
 
 def _spread(wanted: Sequence[float], least: float) -> list[float]:
-    """Places nearest to the wanted ones (ascending) that keep their distance: groups that touch move as one."""
+    """Places nearest to the wanted ones (ascending) that keep their distance: groups that touch move as
+    one."""
     groups: list[list[float]] = []  # sum of (wanted - own offset), count
     for n, s in enumerate(wanted):
         groups.append([s - n * least, 1.0])

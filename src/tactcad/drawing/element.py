@@ -1,7 +1,9 @@
-"""The plan of a sensing element: the whole side view, the arm enlarged (X), the hinge enlarged (Z), and the edge.
+"""The plan of a sensing element: the whole side view, the arm enlarged (X), the hinge enlarged (Z), and the
+edge.
 
-Heights count from the flat face (datum A) and, for the clamp, from the dowel hole (datum B), which is also where lengths of
-the rear body count from; lengths of the arm count from its tip, as the arm length itself does.
+Heights count from the flat face (datum A) and, for the clamp, from the dowel hole (datum B), which is also
+where lengths of the rear body count from; lengths of the arm count from its tip, as the arm length itself
+does.
 """
 
 from __future__ import annotations
@@ -78,7 +80,8 @@ class Outline:
 
 
 def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> Plan:
-    """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand with the arm.
+    """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
+    with the arm.
 
     Raises CheckFailure where a dimension is missing or given twice.
     """
@@ -175,8 +178,8 @@ def _slot(o: Outline) -> tuple[Corner, Corner]:
 def _hinge_view(
     sketch: Sketch, part: Part, design: Design, o: Outline, tall: bool
 ) -> tuple[View, tuple[list[Linear], list[Callout]]]:
-    """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the thickness alone, and
-    leaves the other dimensions and callouts, which are returned, to the arm's view."""
+    """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the
+    thickness alone, and leaves the other dimensions and callouts, which are returned, to the arm's view."""
     arm, body = _slot(o)
     (xa, back), (xb, ledge) = arm.at, body.at
     t = design.tolerance
@@ -244,7 +247,8 @@ def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> tuple[f
 def _heights(
     sketch: Sketch, tolerance: float, o: Outline, arm: Corner, body: Corner, near: Level
 ) -> list[Linear]:
-    """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the right."""
+    """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
+    right."""
     flat = o.start("flat_face")
     height = sketch.must(_within((Span(o.y("flat_face"), arm.y),), "arm height", tolerance))
     one = "body_face" not in o
@@ -273,7 +277,8 @@ def part_box(part: Part) -> tuple[float, float, float, float]:
 
 
 def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
-    """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's side."""
+    """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's
+    side."""
     if face in o:
         return o.y(face), o.start(face)[1]
     arc = next(n for n in (f"{slot}body_fillet", f"{slot}arm_fillet") if n in o)

@@ -89,8 +89,8 @@ def exploded_view(
     item: Mapping[str, int],
     well: Container[int] | None = None,
 ) -> Exploded:
-    """All that is seen, labelled: sub-assemblies by letter first, then items by number. Leaders go to all pieces, or to
-    those (by index) that are seen `well`."""
+    """All that is seen, labelled: sub-assemblies by letter first, then items by number. Leaders go to all
+    pieces, or to those (by index) that are seen `well`."""
     own: dict[Label, list[Polyline]] = {}
     for n, (piece, some) in enumerate(zip(pieces, seen)):
         if some and (well is None or n in well):
@@ -106,9 +106,9 @@ def length(lines: Sequence[Polyline]) -> float:
 def exploded_page(
     view: Exploded, heading: Sequence[str], list_: parts_list.Laid | None, small: bool = False
 ) -> tuple[Page, bool] | None:
-    """The view at the largest scale at which its balloons find places, and whether the parts list stands beside it, which
-    it does where that costs no scale. Where A4 is allowed (`small`) it is taken if that costs none either. None where the
-    balloons find no place."""
+    """The view at the largest scale at which its balloons find places, and whether the parts list stands
+    beside it, which it does where that costs no scale. Where A4 is allowed (`small`) it is taken if that
+    costs none either. None where the balloons find no place."""
     bx0, by0, bx1, by1 = view.box
     choices = [
         *([(A3, True)] if list_ else []),
@@ -128,10 +128,10 @@ def exploded_page(
             texts, taken = _heading(heading, area)
             if any(_reaches(e.points, taken) for e in drawn):
                 continue
-            found = balloons.place(own, [*(e.points for e in drawn), _outline(taken)], area)
-            if not found:
+            placed = balloons.place(own, [*(e.points for e in drawn), _outline(taken)], area)
+            if not placed:
                 continue
-            items: list[Item] = [*drawn, *balloons.drawn(found), *texts]
+            items: list[Item] = [*drawn, *balloons.drawn(placed), *texts]
             if with_list:
                 items += parts_list.drawn(
                     list_, range(len(list_.cells)), (paper.area[2] - WIDTH, paper.area[3])
@@ -142,7 +142,8 @@ def exploded_page(
 
 
 def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
-    """The view's title, and smaller below it what is to be known, in the upper left corner; and the room that they take."""
+    """The view's title, and smaller below it what is to be known, in the upper left corner; and the room that
+    they take."""
     x, y = area[0] + MARGIN, area[3] - MARGIN - 3.5
     sizes = [3.5] + [2.5] * (len(lines) - 1)
     texts: list[Item] = [
@@ -163,7 +164,8 @@ def _reaches(line: Polyline, b: Box) -> bool:
 
 
 def room(paper: Paper, with_list: bool) -> Box:
-    """Where an exploded view may stand: left of the list, else left of or over the title block, whichever is larger."""
+    """Where an exploded view may stand: left of the list, else left of or over the title block, whichever is
+    larger."""
     x0, y0, x1, y1 = paper.area
     beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
     if with_list or (beside[2] - beside[0]) * (beside[3] - beside[1]) > (over[2] - over[0]) * (

@@ -1,5 +1,6 @@
-"""One of each part beside the next, each at a scale of its own that fills the sheet: the last resort, where an exploded view would
-be too large or too crowded. Its item number stands above a part, its scale below it."""
+"""One of each part beside the next, each at a scale of its own that fills the sheet: the last resort, where
+an exploded view would be too large or too crowded. Its item number stands above a part, its scale below
+it."""
 
 from __future__ import annotations
 
@@ -29,25 +30,26 @@ class Shown:
 
 
 def pages(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]] | None:
-    """The parts by number, no larger on the paper than fits one page, or on as many as they need; None where a part is too large
-    for the smallest scale."""
-    found = None
+    """The parts by number, no larger on the paper than fits one page, or on as many as they need; None where
+    a part is too large for the smallest scale."""
+    best = None
     for size in SIZES:
         scales = {}
         for item, lines in own.items():
             x0, y0, x1, y1 = _box(lines)
             scales[item] = largest_fitting(x1 - x0, y1 - y0, (size, size))
         if None not in scales.values() and (laid := _laid(own, scales, area)):
-            found = laid
+            best = laid
             if len(laid) == 1:
                 break
-    return found
+    return best
 
 
 def _laid(
     own: Mapping[int, Sequence[Polyline]], scales: Mapping[int, tuple[int, int]], area: Box
 ) -> list[list[Shown]] | None:
-    """The parts in rows from the left, the rows below each other; None where one is too large for the area."""
+    """The parts in rows from the left, the rows below each other; None where one is too large for the
+    area."""
     x0, y0, x1, y1 = area
     cells = {item: _cell(lines, factor(scales[item])) for item, lines in own.items()}
     if any(w > x1 - x0 or h > y1 - y0 for w, h in cells.values()):
@@ -57,19 +59,19 @@ def _laid(
         if rows[-1] and sum(cells[n][0] for n in rows[-1]) + w > x1 - x0:
             rows.append([])
         rows[-1].append(item)
-    found: list[list[Shown]] = [[]]
+    filled: list[list[Shown]] = [[]]
     top = y1
     for row in rows:
         high = max(cells[item][1] for item in row)
         if top - high < y0:
-            found.append([])
+            filled.append([])
             top = y1
         x = x0
         for item in row:
-            found[-1].append(_shown(item, own[item], scales[item], (x, top - high)))
+            filled[-1].append(_shown(item, own[item], scales[item], (x, top - high)))
             x += cells[item][0]
         top -= high
-    return found
+    return filled
 
 
 def _cell(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
@@ -98,7 +100,8 @@ def _box(lines: Sequence[Polyline]) -> Box:
 def _shown(
     item: int, lines: Sequence[Polyline], scale: tuple[int, int], corner: tuple[float, float]
 ) -> Shown:
-    """A part whose cell has its lower left corner there; the leader goes straight down to its topmost point."""
+    """A part whose cell has its lower left corner there; the leader goes straight down to its topmost
+    point."""
     f = factor(scale)
     left, right = _sides(lines, f)
     dx, dy = corner[0] + GAP / 2 - left, corner[1] + GAP / 2 + BELOW - f * _box(lines)[1]

@@ -45,7 +45,8 @@ def drawing_faults(data: bytes, sheet: Sheet, part: Part, revision: str) -> list
 
 
 def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:
-    """Key characteristics that do not stand exactly once, framed with their number, or not with the model's value."""
+    """Key characteristics that do not stand exactly once, framed with their number, or not with the model's
+    value."""
     wrong, shown = [], []
     for n, c in enumerate(keys, start=1):
         at = [i for i, run in enumerate(runs) if run == f"K{n}"]

@@ -1,4 +1,5 @@
-"""Assembly guide of a scene: an exploded view, the steps with their parts and torques. All of it read off the scene."""
+"""Assembly guide of a scene: an exploded view, the steps with their parts and torques. All of it read off the
+scene."""
 
 from __future__ import annotations
 
@@ -13,11 +14,13 @@ from tactcad.scenes.scene import Placement, Scene, Step
 
 _SCREW = re.compile(r"ISO(4762|4026)-(M[\d.]+)x")
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
+body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; \
+padding: 0 1rem; }
 h1 { font-size: 1.6rem; margin-bottom: 0; } h2 { font-size: 1.2rem; margin: 2.5rem 0 .3rem; }
 img { max-width: 100%; max-height: 34rem; display: block; margin: 1rem auto; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; }
-th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid #d5dae0; vertical-align: top; }
+th, td { text-align: left; padding: .25rem .6rem .25rem 0; border-bottom: 1px solid #d5dae0; \
+vertical-align: top; }
 td.n { text-align: right; } .note { color: #556; font-size: .9rem; } .new { color: #0b62c4; }
 @media print { section { break-inside: avoid; } }
 """
@@ -71,7 +74,8 @@ def page(design: Design, scene: Scene) -> bytes:
     title = f"{d.title}: {scene.name}"
     body = [
         f"<h1>{escape(title)}</h1>",
-        f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}, {escape(d.organisation)}. '
+        f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}, '
+        f"{escape(d.organisation)}. "
         "Made from the scene; parts as in its bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
     ]

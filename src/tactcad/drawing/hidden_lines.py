@@ -1,4 +1,5 @@
-"""Views of a part's solid from the kernel's exact hidden-line removal: visible and hidden edges as lines and arcs."""
+"""Views of a part's solid from the kernel's exact hidden-line removal: visible and hidden edges as lines and
+arcs."""
 
 from __future__ import annotations
 
@@ -27,7 +28,8 @@ Curve = Stroke | Arc
 
 
 def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Curve]:
-    """Visible edges, then hidden ones that no visible one covers, in the view's plane (mm of the part), sorted.
+    """Visible edges, then hidden ones that no visible one covers, in the view's plane (mm of the part),
+    sorted.
 
     Edges between tangent faces are left out, as ISO 128-3 lets.
     """
@@ -39,7 +41,7 @@ def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Curve]:
 
 
 def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role) -> list[Curve]:
-    found: list[Curve] = []
+    curves: list[Curve] = []
     for compound in compounds:
         if compound is None or compound.IsNull():
             continue
@@ -48,9 +50,9 @@ def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role
         while explorer.More():
             curve = _curve(BRepAdaptor_Curve(as_edge(explorer.Current())), line, role)
             if curve:
-                found.append(curve)
+                curves.append(curve)
             explorer.Next()
-    return found
+    return curves
 
 
 def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Curve | None:

@@ -1,4 +1,5 @@
-"""Round holes as a drawing sees them: grouped by what one callout can say, with the dimensions in its text."""
+"""Round holes as a drawing sees them: grouped by what one callout can say, with the dimensions in its
+text."""
 
 from __future__ import annotations
 
@@ -32,7 +33,7 @@ def rounds(part: Part, design: Design) -> list[Round]:
     """Round openings and holes of an extruded part."""
     body = part.body
     assert isinstance(body, Extrusion)
-    found = []
+    holes = []
     for i, opening in enumerate(body.openings):
         if circle := opening.as_circle():
             (x, y), r = circle
@@ -48,11 +49,11 @@ def rounds(part: Part, design: Design) -> list[Round]:
                 True,
                 tolerance=f"+{upper:g}/0" if upper else "",
             )
-            found.append(Round(Owner("opening", i), label.replace("_", " "), hole.at, hole.axis, hole))
+            holes.append(Round(Owner("opening", i), label.replace("_", " "), hole.at, hole.axis, hole))
     for k, f in enumerate(part.features):
         if isinstance(f, Hole):
-            found.append(Round(Owner("hole", k), f.name.replace("_", " "), f.at, f.axis, f))
-    return found
+            holes.append(Round(Owner("hole", k), f.name.replace("_", " "), f.at, f.axis, f))
+    return holes
 
 
 @dataclass(frozen=True)
@@ -68,10 +69,11 @@ class Group:
         return self.holes[0].axis
 
 
-def groups(found: Sequence[Round], values: Values, eye_of: dict[int, Vector]) -> list[Group]:
-    """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as circles."""
+def groups(holes: Sequence[Round], values: Values, eye_of: dict[int, Vector]) -> list[Group]:
+    """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as
+    circles."""
     kinds: dict[tuple, list[Round]] = {}
-    for r in found:
+    for r in holes:
         h = r.hole
         side = h.axis if not _same_from_both_sides(h) else tuple(abs(a) for a in h.axis)
         kinds.setdefault((side, _spec(h)), []).append(r)
@@ -130,7 +132,8 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
     limits, modelled, words = _tolerance(h.tolerance)
     fit, _, remark = words.partition(", ")
     if fit:
-        # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
+        # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre
+        # away
         modelled = round(h.diameter - round(h.diameter, 1), 9)
     bore = dimension(
         Quantity.DIAMETER,
@@ -179,7 +182,8 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
 
 
 def regular_rows(called: Sequence[Group], k: int) -> list[list[Round]]:
-    """Rows of at least LEAST_ROW equal holes along z, evenly spaced along the part's axis k (0 or 1), in order."""
+    """Rows of at least LEAST_ROW equal holes along z, evenly spaced along the part's axis k (0 or 1), in
+    order."""
     rows = []
     for group in called:
         lines: dict[float, list[Round]] = {}
@@ -199,7 +203,8 @@ def _entered(h: Hole) -> bool:
 
 
 def _tolerance(text: str) -> tuple[tuple[float, float] | None, float, str]:
-    """Limits, how far the model lies from the number shown (it is made at the middle of them), or a fit in words."""
+    """Limits, how far the model lies from the number shown (it is made at the middle of them), or a fit in
+    words."""
     upper, slash, lower = text.partition("/")
     try:
         limits = (float(upper), float(lower))

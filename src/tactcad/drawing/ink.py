@@ -14,7 +14,8 @@ from .fonts import ink_box, width
 
 Point = tuple[float, float]
 
-# What a line or text is for. Texts of the part and of the paper alike may not touch any line; a watermark may.
+# What a line or text is for. Texts of the part and of the paper alike may not touch any line; a watermark
+# may.
 Role = Literal[
     "outline",
     "hidden",
@@ -107,8 +108,8 @@ class Fill:
 
 @dataclass(frozen=True)
 class Text:
-    """One line of text: `height` of its capitals in mm, turned by `angle` degrees about `at`, which is on the baseline
-    at its start, middle or end."""
+    """One line of text: `height` of its capitals in mm, turned by `angle` degrees about `at`, which is on the
+    baseline at its start, middle or end."""
 
     at: Point
     text: str
@@ -144,7 +145,8 @@ class Text:
 
 @dataclass(frozen=True)
 class Hatch:
-    """A cut face between closed polygons (holes among them, by even and odd), hatched at 45 degrees (ISO 128-50)."""
+    """A cut face between closed polygons (holes among them, by even and odd), hatched at 45 degrees (ISO
+    128-50)."""
 
     loops: tuple[tuple[Point, ...], ...]
     line: LineType = THIN
@@ -169,14 +171,14 @@ class Hatch:
             for k in range(ceil(min(a, b)), ceil(max(a, b))):
                 share = (k - a) / (b - a)
                 met.setdefault(k, []).append(ax + ay + share * (bx + by - ax - ay))
-        found = []
+        lines = []
         for k, places in sorted(met.items()):
             places.sort()
-            found += [
+            lines += [
                 tuple(((w - k * step) / 2, (w + k * step) / 2) for w in ends)
                 for ends in zip(places[::2], places[1::2])
             ]
-        return tuple(found)
+        return tuple(lines)
 
     def outlines(self) -> list[tuple[Point, Point]]:
         """Sides of the polygons."""
@@ -258,16 +260,16 @@ def arrow(tip: Point, towards: Point, length: float = 2.5, role: Role = "dimensi
 def moved(item: Item, dx: float, dy: float) -> Item:
     """The same item elsewhere."""
 
-    def there(p: Point) -> Point:
+    def shifted(p: Point) -> Point:
         return (p[0] + dx, p[1] + dy)
 
     if isinstance(item, Arc):
-        return replace(item, centre=there(item.centre))
+        return replace(item, centre=shifted(item.centre))
     if isinstance(item, Text):
-        return replace(item, at=there(item.at))
+        return replace(item, at=shifted(item.at))
     if isinstance(item, Hatch):
-        return replace(item, loops=tuple(tuple(there(p) for p in loop) for loop in item.loops))
-    return replace(item, points=tuple(there(p) for p in item.points))
+        return replace(item, loops=tuple(tuple(shifted(p) for p in loop) for loop in item.loops))
+    return replace(item, points=tuple(shifted(p) for p in item.points))
 
 
 def preliminary(sheet: Sheet) -> Sheet:

@@ -1,7 +1,7 @@
 """How placed parts come off each other: read off a scene's contacts and the parts' boxes, without a kernel.
 
-A screw leaves its thread along its own axis, on the side of its head; so does whatever is turned and stands in a hole. Other parts
-leave where their faces meet, or else the shortest way out of each other's boxes.
+A screw leaves its thread along its own axis, on the side of its head; so does whatever is turned and stands
+in a hole. Other parts leave where their faces meet, or else the shortest way out of each other's boxes.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> l
         if c.kind == "thread"
         and (way := _out_of_thread(at[c.first], boxes[c.first], boxes[c.second])) is not None
     }
-    found = []
+    joints = []
     for c in contacts:
         if at[c.first].part.part_no == at[c.second].part.part_no:
             continue
@@ -58,8 +58,8 @@ def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> l
         else:
             axis, sign = way_off(at[c.first], at[c.second], boxes)
             pair = (c.first, c.second)
-        found.append(Joint(*(pair if sign > 0 else pair[::-1]), axis))
-    return found
+        joints.append(Joint(*(pair if sign > 0 else pair[::-1]), axis))
+    return joints
 
 
 def way_off(first: Placement, second: Placement, boxes: Mapping[str, Box]) -> tuple[int, int]:

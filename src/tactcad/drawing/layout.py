@@ -13,7 +13,8 @@ from math import hypot
 from .ink import Arc, Fill, Hatch, Item, Point, Sheet, Stroke, Text, points_of
 from .paper import LEFT, OTHER
 
-# Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's width.
+# Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's
+# width.
 BETWEEN_TEXTS = 0.5
 BESIDE_LINE = 0.25
 # Lines that meet nearer to their ends than this touch there on purpose (mm of paper).
@@ -34,7 +35,8 @@ class _Drawn:
 
 
 def layout_faults(sheet: Sheet) -> list[str]:
-    """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension lines across others."""
+    """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension
+    lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
     drawn = list(_pieces(sheet.items))
     return [
@@ -100,7 +102,8 @@ def _outside(sheet: Sheet) -> Iterator[str]:
         x0, y0, x1, y1 = bounds(points_of(item))
         if x0 < inside[0] or y0 < inside[1] or x1 > inside[2] or y1 > inside[3]:
             what = f"text {item.text!r}" if isinstance(item, Text) else f"a line ({item.role})"
-            yield f"{what} at {_shown((x0, y0))} lies outside the {'paper' if item.role == 'frame' else 'frame'}"
+            beyond = "paper" if item.role == "frame" else "frame"
+            yield f"{what} at {_shown((x0, y0))} lies outside the {beyond}"
 
 
 def _dimension_lines(drawn: Sequence[_Drawn]) -> Iterator[str]:
@@ -110,7 +113,8 @@ def _dimension_lines(drawn: Sequence[_Drawn]) -> Iterator[str]:
     for line in lines:
         for other in others:
             if other.item != line.item and crossing(line.ends, other.ends):
-                yield f"dimension line at {_shown(line.ends[0])} crosses a line ({other.role}) at {_shown(other.ends[0])}"
+                ends = [_shown(p.ends[0]) for p in (line, other)]
+                yield f"dimension line at {ends[0]} crosses a line ({other.role}) at {ends[1]}"
                 break
 
 

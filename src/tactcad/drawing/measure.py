@@ -1,11 +1,12 @@
-"""A part's coordinates and sizes as named variables, and what dimensions and drawing conventions say about them.
+"""A part's coordinates and sizes as named variables, and what dimensions and drawing conventions say about
+them.
 
-A dimension takes its value from these variables. Together with the conventions (lines drawn level are level, arcs
-drawn tangent are tangent, features on one extension line are in line) the dimensions of a sheet have to determine all
-variables but the part's place on the paper; `Determined` keeps the account.
+A dimension takes its value from these variables. Together with the conventions (lines drawn level are level,
+arcs drawn tangent are tangent, features on one extension line are in line) the dimensions of a sheet have to
+determine all variables but the part's place on the paper; `Determined` keeps the account.
 
-The start of each of a contour's segments has x and y, an arc's centre too; a contour that is one circle has x, y and a
-diameter alone. Holes have the places across their axis, and their sizes.
+The start of each of a contour's segments has x and y, an arc's centre too; a contour that is one circle has
+x, y and a diameter alone. Holes have the places across their axis, and their sizes.
 """
 
 from __future__ import annotations
@@ -221,7 +222,8 @@ class CrossProduct:
 
 @dataclass(frozen=True)
 class Offset:
-    """Distance of a point, given by its levels, from the line through two points, mm; positive on the line's left."""
+    """Distance of a point, given by its levels, from the line through two points, mm; positive on the line's
+    left."""
 
     start: Spot
     end: Spot
@@ -320,7 +322,7 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
     (ux, uy, _), sign = pocket.x_axis, pocket.axis[2]
     vx, vy = -uy * sign, ux * sign  # y_axis = axis x x_axis
 
-    def there(p: tuple[float, float]) -> tuple[float, float]:
+    def in_frame(p: tuple[float, float]) -> tuple[float, float]:
         # rounded to a picometre: turning may leave 1e-17 where a coordinate is 0
         return (
             round(pocket.at[0] + p[0] * ux + p[1] * vx, 12),
@@ -330,16 +332,17 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
     turned = ux * vy - uy * vx < 0
     return Contour(
         tuple(
-            Line(there(s.start), there(s.end), s.name)
+            Line(in_frame(s.start), in_frame(s.end), s.name)
             if isinstance(s, Line)
-            else Arc(there(s.start), there(s.end), there(s.centre), s.ccw != turned, s.name)
+            else Arc(in_frame(s.start), in_frame(s.end), in_frame(s.centre), s.ccw != turned, s.name)
             for s in contour
         )
     )
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:
-    """What a drawn contour says by itself: level and upright lines, arcs about their centre, tangent joints."""
+    """What a drawn contour says by itself: level and upright lines, arcs about their centre, tangent
+    joints."""
     if contour.as_circle():
         return []
     count = len(contour)

@@ -1,4 +1,5 @@
-"""Views of a scene's parts with their item numbers: exploded, whole or sub-assembly by sub-assembly; or side by side."""
+"""Views of a scene's parts with their item numbers: exploded, whole or sub-assembly by sub-assembly; or side
+by side."""
 
 from __future__ import annotations
 
@@ -52,10 +53,12 @@ def numbered_pages(
     list_: parts_list.Laid | None,
     block: TitleBlock,
 ) -> tuple[list[Page], bool]:
-    """Views until every item that has a solid has its number in one, and whether the parts list stands beside one.
+    """Views until every item that has a solid has its number in one, and whether the parts list stands beside
+    one.
 
-    A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show follows in
-    further views, and where an exploded view would be too large or too crowded the parts stand side by side.
+    A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show
+    follows in further views, and where an exploded view would be too large or too crowded the parts stand
+    side by side.
     """
     from .picture import ABOVE
 
@@ -182,18 +185,20 @@ def _family_pages(
     made = family.pages(own, (x0, y0, x1, y1))
     if not made:
         raise CheckFailure(
-            f"drawings: {block.number}: a part does not fit A3 at {shown(ASSEMBLIES[-1])}; no drawing was written"
+            f"drawings: {block.number}: a part does not fit A3 at {shown(ASSEMBLIES[-1])}; "
+            "no drawing was written"
         )
     title = Text(
         (x0, y1 + 3.0),
-        "One of each part, in the order of item numbers; scales that differ from the title block's stand below",
+        "One of each part, in the order of item numbers; "
+        "scales that differ from the title block's stand below",
         3.5,
     )
-    found = []
+    pages = []
     for page in made:
         main = Counter(part.scale for part in page).most_common(1)[0][0]
         items: list[Item] = [title, *(Stroke(line, EDGE) for part in page for line in part.lines)]
         items += balloons.drawn([part.balloon for part in page])
         items += [Text(part.below, shown(part.scale), 2.5, "middle") for part in page if part.scale != main]
-        found.append(Page(A3, shown(main), tuple(items), "Assembly drawing"))
-    return found
+        pages.append(Page(A3, shown(main), tuple(items), "Assembly drawing"))
+    return pages

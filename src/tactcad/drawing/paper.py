@@ -1,4 +1,5 @@
-"""Sheets of paper after ISO 5457:1999: sizes, frame, centring marks, zones; A4 upright, all others lying by default."""
+"""Sheets of paper after ISO 5457:1999: sizes, frame, centring marks, zones; A4 upright, all others lying by
+default."""
 
 from __future__ import annotations
 
@@ -73,7 +74,8 @@ def frame(paper: Paper) -> list[Item]:
 
 def _zones(low: float, high: float, middle: float) -> list[tuple[float, float]]:
     """Fields of ZONE length either way from the middle; what is left over joins the outermost."""
-    # ISO 5457 counts them on the whole sheet: 8 x 6 on A3, 24 x 16 on A0. It has no turned sheets: there the filing
+    # ISO 5457 counts them on the whole sheet: 8 x 6 on A3, 24 x 16 on A0. It has no turned sheets: there the
+    # filing
     # margin counts, so that no outermost field is much shorter than the others.
     turned = low == LEFT and 2 * middle == A4.height
     half = int((middle - low) / ZONE + 0.4) if turned else round(middle / ZONE)

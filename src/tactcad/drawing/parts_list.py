@@ -75,17 +75,18 @@ def heading(size: float) -> float:
 def columns(list_: Laid, rooms: Sequence[float]) -> list[range]:
     """The rows of each column of the list, which have `rooms` mm in turn."""
     turns = cycle(rooms)
-    found, start, left = [], 0, next(turns) - heading(list_.size)
+    ranges, start, left = [], 0, next(turns) - heading(list_.size)
     for n in range(len(list_.cells)):
         if list_.height(n) > left:
-            found.append(range(start, n))
+            ranges.append(range(start, n))
             start, left = n, next(turns) - heading(list_.size)
         left -= list_.height(n)
-    return [*found, range(start, len(list_.cells))]
+    return [*ranges, range(start, len(list_.cells))]
 
 
 def drawn(list_: Laid, rows: range, at: Point) -> tuple[list[Item], float]:
-    """The rows below each other from the upper left corner `at`, under a heading; the items, and their height (mm)."""
+    """The rows below each other from the upper left corner `at`, under a heading; the items, and their height
+    (mm)."""
     x0, top = at
     size = list_.size
     y = top - heading(size)

@@ -1,4 +1,5 @@
-"""Sheets as one vector PDF: the same bytes in every process, texts with an embedded font that readers find again."""
+"""Sheets as one vector PDF: the same bytes in every process, texts with an embedded font that readers find
+again."""
 
 from __future__ import annotations
 

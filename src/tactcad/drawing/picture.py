@@ -36,7 +36,8 @@ from .windows import Lines, Polyline, draw_in_windows
 # Curves are drawn as chords that stay this close (mm); at 1:1 a hundredth of a line's width.
 CHORD = 0.01
 MARGIN = 2.0  # mm around the drawing
-# Exact removal: 110 shapes take 0.8 s, 260 take 2.7 s, 2100 more than four minutes; on triangles 0.5, 1.4 and 18 s,
+# Exact removal: 110 shapes take 0.8 s, 260 take 2.7 s, 2100 more than four minutes; on triangles 0.5, 1.4 and
+# 18 s,
 # and the 2100 window by window 12 s.
 EXACT_UP_TO = 300
 MESH_LINEAR, MESH_ANGULAR = (
@@ -105,17 +106,18 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
 
 
 def _boxes(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> np.ndarray:
-    """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm; nothing of a shape is outside."""
+    """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm; nothing of a shape is
+    outside."""
     right, eye = np.array(view.right), np.array(view.eye) / np.linalg.norm(view.eye)
     plane = np.stack([right, np.cross(eye, right)], axis=1)
-    found = np.empty((len(shapes), 2, 2))
+    boxes = np.empty((len(shapes), 2, 2))
     for n, shape in enumerate(shapes):
         box = Bnd_Box()
         BRepBndLib.Add_s(shape, box)
         ends = [(c.X(), c.Y(), c.Z()) for c in (box.CornerMin(), box.CornerMax())]
         corners = np.array(list(product(*zip(*ends)))) @ plane
-        found[n] = corners.min(axis=0), corners.max(axis=0)
-    return found
+        boxes[n] = corners.min(axis=0), corners.max(axis=0)
+    return boxes
 
 
 def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
@@ -144,7 +146,8 @@ def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
 
 
 def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
-    """All shapes as one: added one by one they are hidden pair by pair, with the same lines for the result."""
+    """All shapes as one: added one by one they are hidden pair by pair, with the same lines for the
+    result."""
     builder, whole = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(whole)
     for shape in shapes:
@@ -160,23 +163,24 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
     # a picture smaller than a hand is shown enlarged; its lines keep their share of the width
     scale = max(1.0, ceil(120 / max(width, height)))
     pen = 0.35 / scale
+
+    def path(name: str, colour: str, wide: float, some: Sequence[Polyline]) -> str:
+        return (
+            f'<path class="{name}" stroke="{colour}" stroke-width="{wide:.4f}" d="{_path(some, left, top)}"/>'
+        )
+
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width * scale:.2f}mm" height="{height * scale:.2f}mm" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width * scale:.2f}mm" '
+        f'height="{height * scale:.2f}mm" '
         f'viewBox="0 0 {width:.3f} {height:.3f}">',
         f"<title>{_escaped(title)}</title>",
         f"<desc>{_escaped(description)}</desc>",
         f'<rect width="{width:.3f}" height="{height:.3f}" fill="#ffffff"/>',
         '<g fill="none" stroke-linecap="round" stroke-linejoin="round">',
-        f'<path class="smooth" stroke="#8a929b" stroke-width="{pen * 0.4:.4f}" d="{_path(drawn.smooth, left, top)}"/>',
-        f'<path class="sharp" stroke="#10161d" stroke-width="{pen:.4f}" d="{_path(drawn.sharp, left, top)}"/>',
-        *(
-            [
-                f'<path class="marked" stroke="#0b62c4" stroke-width="{1.6 * pen:.4f}" d="{_path(marked.sharp, left, top)}"/>'
-            ]
-            if marked
-            else []
-        ),
+        path("smooth", "#8a929b", 0.4 * pen, drawn.smooth),
+        path("sharp", "#10161d", pen, drawn.sharp),
+        *([path("marked", "#0b62c4", 1.6 * pen, marked.sharp)] if marked else []),
         "</g>",
         "</svg>",
         "",
@@ -221,7 +225,8 @@ def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
 
 
 def on_curve(curve: BRepAdaptor_Curve, chord: float) -> list[gp_Pnt]:
-    """Points along a curve of the kernel: a line's ends, else so close that chords stay within `chord` mm of it."""
+    """Points along a curve of the kernel: a line's ends, else so close that chords stay within `chord` mm of
+    it."""
     first, last = curve.FirstParameter(), curve.LastParameter()
     if curve.GetType() == GeomAbs_Line:
         return [curve.Value(first), curve.Value(last)]

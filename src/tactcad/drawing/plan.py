@@ -1,4 +1,5 @@
-"""What a part's sheet shows, before it has a scale: views, dimensions and where they stand, callouts, notes."""
+"""What a part's sheet shows, before it has a scale: views, dimensions and where they stand, callouts,
+notes."""
 
 from __future__ import annotations
 
@@ -18,10 +19,10 @@ Box = tuple[float, float, float, float]
 class Dimension:
     """One authored dimension: its value is what its rows measure, all the same.
 
-    `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number shown, of
-    a part modelled at `modelled` (deviation of the model from that number). `key` is the number of the
-    key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in parentheses, for
-    information. `characteristic` is the part's own that it states.
+    `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number
+    shown, of a part modelled at `modelled` (deviation of the model from that number). `key` is the number of
+    the key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in
+    parentheses, for information. `characteristic` is the part's own that it states.
     """
 
     name: str
@@ -77,7 +78,8 @@ def _signed(value: float) -> str:
 
 @dataclass(frozen=True)
 class Linear:
-    """A dimension line on a side of the view; its extension lines start at p and q (mm of the part, in the view)."""
+    """A dimension line on a side of the view; its extension lines start at p and q (mm of the part, in the
+    view)."""
 
     dimension: Dimension
     side: Side
@@ -87,7 +89,8 @@ class Linear:
 
 @dataclass(frozen=True)
 class Across:
-    """A dimension line across a thin web or slot, arrows from outside, its text beyond q: from p to q in the view."""
+    """A dimension line across a thin web or slot, arrows from outside, its text beyond q: from p to q in the
+    view."""
 
     dimension: Dimension
     p: Point
@@ -97,7 +100,8 @@ class Across:
 
 @dataclass(frozen=True)
 class Running:
-    """Running dimensions along a side from one origin (ISO 129-1): each stop with its dimension, None for the origin."""
+    """Running dimensions along a side from one origin (ISO 129-1): each stop with its dimension, None for the
+    origin."""
 
     side: Side
     stops: tuple[tuple[Dimension | None, Point], ...]
@@ -105,8 +109,8 @@ class Running:
 
 @dataclass(frozen=True)
 class Callout:
-    """Texts at the end of a leader that points at one of the targets: circles, or points (radius 0), or arcs that are
-    entered from their centre (`inside`). `dimensions` are those that the lines state."""
+    """Texts at the end of a leader that points at one of the targets: circles, or points (radius 0), or arcs
+    that are entered from their centre (`inside`). `dimensions` are those that the lines state."""
 
     lines: tuple[str, ...]
     targets: tuple[tuple[Point, float], ...]
@@ -119,7 +123,8 @@ class Callout:
 
 @dataclass(frozen=True)
 class Datum:
-    """A datum triangle somewhere on an edge of the view, its letter `away` from it (unit vector on the paper)."""
+    """A datum triangle somewhere on an edge of the view, its letter `away` from it (unit vector on the
+    paper)."""
 
     letter: str
     start: Point
@@ -129,8 +134,8 @@ class Datum:
 
 @dataclass(frozen=True)
 class Bore:
-    """A hole cut along its axis, in the view's own mm: axis, nominal diameter of its thread (0: none), the thread's axis from
-    its start to the end of full thread, and whether that end lies inside the hole."""
+    """A hole cut along its axis, in the view's own mm: axis, nominal diameter of its thread (0: none), the
+    thread's axis from its start to the end of full thread, and whether that end lies inside the hole."""
 
     face: Point
     end: Point
@@ -141,7 +146,8 @@ class Bore:
 
 @dataclass(frozen=True)
 class Section:
-    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes lie in its plane."""
+    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes
+    lie in its plane."""
 
     letter: str
     axis: int
@@ -154,7 +160,8 @@ class View:
     """One view: eye and up in the part's frame, its box in the view's own mm, and what is written on it.
 
     A `window` cuts out what a detail shows; its letter is the view's `label`, and it is drawn as large as
-    `room` (mm of paper) lets, but no smaller than `least` : 1. Of a `section` what lies before its plane is taken away.
+    `room` (mm of paper) lets, but no smaller than `least` : 1. Of a `section` what lies before its plane is
+    taken away.
     """
 
     name: str
@@ -196,8 +203,8 @@ def seen(view: View, p: Vector) -> Point:
 
 @dataclass(frozen=True)
 class Breaks:
-    """What broken views leave out along an axis of the part (0 or 1): from where to where (mm of the part, ascending), and
-    the gap (mm) that stands for each."""
+    """What broken views leave out along an axis of the part (0 or 1): from where to where (mm of the part,
+    ascending), and the gap (mm) that stands for each."""
 
     axis: int
     left_out: tuple[tuple[float, float], ...]

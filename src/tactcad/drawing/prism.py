@@ -1,7 +1,8 @@
-"""The plan of a plate, disc or block: outline and holes by running dimensions from one corner, callouts for the rest.
+"""The plan of a plate, disc or block: outline and holes by running dimensions from one corner, callouts for
+the rest.
 
-What the rule-made dimensions leave open is filled by whatever coordinate or radius says something new, so that the
-account of `Determined` closes for any outline of lines and arcs.
+What the rule-made dimensions leave open is filled by whatever coordinate or radius says something new, so
+that the account of `Determined` closes for any outline of lines and arcs.
 """
 
 from __future__ import annotations
@@ -53,8 +54,8 @@ def prism_plan(
     cut
         With a section, where it is of use.
     shortened
-        With broken views, and regular rows of holes by their ends and their number; None where too little could be left
-        out.
+        With broken views, and regular rows of holes by their ends and their number; None where too little
+        could be left out.
 
     Raises
     ------
@@ -67,19 +68,19 @@ def prism_plan(
     for name, contour in contours(part):
         for row in conventions(name, contour):
             sketch.convention(row)
-    found = rounds(part, design)
+    holes = rounds(part, design)
     eye, up = _front(
-        [r.axis for r in found] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(found) + 1)
+        [r.axis for r in holes] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(holes) + 1)
     )
     right = View("", eye, up, (0, 0, 0, 0)).right
-    below = _below_eye(found, up)
+    below = _below_eye(holes, up)
     eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
-    called = groups(found, sketch.values, eyes)
+    called = groups(holes, sketch.values, eyes)
     breaks, rows = None, []
     if shortened:
         x0, y0, x1, y1 = part.body.outer.box
         rows = regular_rows(called, 0 if x1 - x0 > y1 - y0 else 1)
-        breaks = breaks_of(part, found, {r.owner for row in rows for r in row[2:-2]})
+        breaks = breaks_of(part, holes, {r.owner for row in rows for r in row[2:-2]})
         if breaks is None:
             return None
         notes = (*notes, "Views are broken; dimensions are those of the whole part")
@@ -87,7 +88,7 @@ def prism_plan(
     views = [front]
     if below:
         views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called))
-    section = section_of(part, found, front, below) if cut else None
+    section = section_of(part, holes, front, below) if cut else None
     if section and breaks and section.axis == breaks.axis and not breaks.shows(section.at):
         section = None
     aside = [g for g in called if g.axis[0]]
@@ -108,10 +109,11 @@ def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
     return BACK if from_below > from_top else FRONT
 
 
-def _below_eye(found: Sequence, up: Vector) -> Vector | None:
-    """Where holes are sunk into the y faces: the eye that sees more of them, the upper face first; else None."""
-    upper = sum(1 for r in found if r.axis[1] < 0)
-    lower = sum(1 for r in found if r.axis[1] > 0)
+def _below_eye(holes: Sequence, up: Vector) -> Vector | None:
+    """Where holes are sunk into the y faces: the eye that sees more of them, the upper face first; else
+    None."""
+    upper = sum(1 for r in holes if r.axis[1] < 0)
+    lower = sum(1 for r in holes if r.axis[1] > 0)
     if not upper + lower:
         return None
     return up if upper >= lower else tuple(-u for u in up)
@@ -202,12 +204,12 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
 def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
     """Letters on the two edges that the running dimensions start from: on the longest there that has room."""
     lines = [(seen(view, (*s.start, 0.0)), seen(view, (*s.end, 0.0))) for s in outer if isinstance(s, Line)]
-    found = []
+    datums = []
     for letter, k, away in (("B", 0, (-1.0, 0.0)), ("C", 1, (0.0, -1.0))):
         on = [(p, q) for p, q in lines if max(abs(p[k] - view.box[k]), abs(q[k] - view.box[k])) < ALIKE]
         longest = sorted(on, key=lambda e: -round(abs(e[0][1 - k] - e[1][1 - k]), 6))
-        found += [Datum(letter, *edge, away) for edge in longest]
-    return tuple(found)
+        datums += [Datum(letter, *edge, away) for edge in longest]
+    return tuple(datums)
 
 
 def _is_centre(c: Coordinate) -> bool:
@@ -260,7 +262,8 @@ def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
 def _sunk_view(
     sketch: Sketch, part: Part, front: View, name: str, eye: Vector, called: Sequence[Group]
 ) -> View:
-    """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of them."""
+    """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of
+    them."""
     sign = 1.0 if name == "below" else -1.0
     up = tuple(-sign * e for e in front.eye)
     view = View(name, eye, up, (0, 0, 0, 0))
@@ -283,12 +286,12 @@ def _sunk_view(
 
 def _threads(view: View, called: Sequence[Group]) -> tuple[tuple[Point, float], ...]:
     """Middles and nominal diameters of threads that are entered from the view's side or run through."""
-    found = []
+    threads = []
     for r in (r for g in called for r in g.holes if r.hole.thread):
         towards = sum(a * e for a, e in zip(r.axis, view.eye)) < 0
         if towards or r.hole.through and r.hole.thread_depth >= r.hole.depth:
-            found.append((seen(view, r.at), r.hole.thread_diameter))
-    return tuple(found)
+            threads.append((seen(view, r.at), r.hole.thread_diameter))
+    return tuple(threads)
 
 
 def side_view(

@@ -1,4 +1,5 @@
-"""Running dimensions of a plan: edges, holes, corners and centres from one origin, each that says something new."""
+"""Running dimensions of a plan: edges, holes, corners and centres from one origin, each that says something
+new."""
 
 from __future__ import annotations
 
@@ -19,7 +20,8 @@ HEIGHTS = {"axle": "axles over the underside"}
 def running_along(
     sketch: Sketch, view: View, side: str, k: int, points: Sequence[Coordinate], centre: str | None
 ) -> Running:
-    """Running dimensions of edges and holes along an axis, from the view's left or lower edge (of a disc: its centre)."""
+    """Running dimensions of edges and holes along an axis, from the view's left or lower edge (of a disc: its
+    centre)."""
     if not points:
         return Running(side, ())
     axis = view.right if k == 0 else view.up
@@ -47,8 +49,8 @@ def _stop(
     way: float,
     stated: str = "",
 ) -> tuple[Dimension, Point] | None:
-    """One more dimension from the origin, unless the coordinate is in line with one that has it, or follows from it. `stated` names the
-    part's characteristic that it is."""
+    """One more dimension from the origin, unless the coordinate is in line with one that has it, or follows
+    from it. `stated` names the part's characteristic that it is."""
     if c is origin:
         return None
     same = next((o for o in sketch.known[k] if abs(o.at[k] - c.at[k]) < ALIKE), None)

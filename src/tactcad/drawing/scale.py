@@ -16,7 +16,8 @@ def factor(scale: tuple[int, int]) -> float:
 
 
 def largest_fitting(width: float, height: float, room: tuple[float, float]) -> tuple[int, int] | None:
-    """The largest scale for an assembly at which width x height (mm of it) fits the room (mm of paper); None where none does."""
+    """The largest scale for an assembly at which width x height (mm of it) fits the room (mm of paper); None
+    where none does."""
     return next(
         (s for s in ASSEMBLIES if width * factor(s) <= room[0] and height * factor(s) <= room[1]), None
     )

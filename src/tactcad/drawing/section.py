@@ -1,9 +1,9 @@
 """Whether a part is shown cut, and where: by what is sunk into it, not by what it is called.
 
-A section is cut where a depth would otherwise be seen in hidden lines alone: a pocket, a groove, a blind hole, a counterbore. Its
-plane stands upright on the front view's paper, through axes of such features: x = constant, seen from the left, so that it stands to the
-right of the front view (first angle); or, where no such plane will do, y = constant, seen from the side whose place above or below the
-front view is free.
+A section is cut where a depth would otherwise be seen in hidden lines alone: a pocket, a groove, a blind
+hole, a counterbore. Its plane stands upright on the front view's paper, through axes of such features: x =
+constant, seen from the left, so that it stands to the right of the front view (first angle); or, where no
+such plane will do, y = constant, seen from the side whose place above or below the front view is free.
 """
 
 from __future__ import annotations
@@ -23,19 +23,20 @@ LETTER = "S"  # neither a datum's (A, B, C) nor a detail's (X, Z)
 SAME = 1e-6  # mm: a plane nearer to an axis than this goes through it
 
 
-def section_of(part: Part, found: Sequence[Round], front: View, below: Vector | None) -> Section | None:
-    """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to the middle; None
-    where nothing is sunk, or every plane through an axis would cut another hole off its axis or run along a wall.
+def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> Section | None:
+    """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to
+    the middle; None where nothing is sunk, or every plane through an axis would cut another hole off its axis
+    or run along a wall.
 
     `below` is the eye of a view onto a y face, which has its place already.
     """
     sunk = [f for f in part.features if is_sunk(f)]
     for k in (0, 1):
-        at = _best(part, sunk, found, k, (front.right, front.up)[k][k])
+        at = _best(part, sunk, holes, k, (front.right, front.up)[k][k])
         if at is None:
             continue
         bare = View("", *_sight(front, below, k), (0, 0, 0, 0))
-        bores = [_bore(bare, r.hole) for r in found if not r.hole.axis[k] and abs(r.at[k] - at) < SAME]
+        bores = [_bore(bare, r.hole) for r in holes if not r.hole.axis[k] and abs(r.at[k] - at) < SAME]
         return Section(LETTER, k, at, tuple(bores))
     return None
 
@@ -56,7 +57,7 @@ def _sight(front: View, below: Vector | None, k: int) -> tuple[Vector, Vector]:
     return eye, tuple(-e if from_above else e for e in front.eye)
 
 
-def _best(part: Part, sunk: Sequence[Feature], found: Sequence[Round], k: int, way: float) -> float | None:
+def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, way: float) -> float | None:
     low, high = part.body.outer.box[k], part.body.outer.box[k + 2]
     planes = sorted(
         {round(v, 9) for f in sunk if (v := _middle(f, k)) is not None and low + SAME < v < high - SAME}
@@ -72,7 +73,7 @@ def _best(part: Part, sunk: Sequence[Feature], found: Sequence[Round], k: int, w
             -way * v,
         )
 
-    clean = [v for v in planes if not _cuts_off_axis(found, k, v) and not _runs_along(part, k, v)]
+    clean = [v for v in planes if not _cuts_off_axis(holes, k, v) and not _runs_along(part, k, v)]
     return max(clean, key=worth, default=None)
 
 
@@ -105,9 +106,9 @@ def _depth(f: Feature) -> float:
     return f.depth if isinstance(f, Pocket) or not f.through else f.counterbore[1]
 
 
-def _cuts_off_axis(found: Sequence[Round], k: int, at: float) -> bool:
+def _cuts_off_axis(holes: Sequence[Round], k: int, at: float) -> bool:
     """Whether the plane would show a hole narrower than it is."""
-    return any(SAME < abs(r.at[k] - at) < _widest(r.hole) / 2 + SAME for r in found if not r.hole.axis[k])
+    return any(SAME < abs(r.at[k] - at) < _widest(r.hole) / 2 + SAME for r in holes if not r.hole.axis[k])
 
 
 def _widest(h: Hole) -> float:

@@ -1,5 +1,5 @@
-"""What a section view has beside its curves: label, axes and threads of the holes that it cuts (ISO 128-3, ISO 6410-1), and
-its cutting plane in the view that it is taken from."""
+"""What a section view has beside its curves: label, axes and threads of the holes that it cuts (ISO 128-3,
+ISO 6410-1), and its cutting plane in the view that it is taken from."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ def letters(section: Section) -> str:
 
 
 def bore_lines(bore: Bore, f: float, face: Hatch) -> list[Item]:
-    """Axis of a hole in a section at the scale f, and its thread: thin lines at the nominal diameter where there is
-    material, hatched up to the drilled hole, and a thick line at the end of full thread (ISO 6410-1)."""
+    """Axis of a hole in a section at the scale f, and its thread: thin lines at the nominal diameter where
+    there is material, hatched up to the drilled hole, and a thick line at the end of full thread (ISO
+    6410-1)."""
     (ax, ay), (bx, by) = ((x * f, y * f) for x, y in (bore.face, bore.end))
     length = hypot(bx - ax, by - ay)
     ux, uy = (bx - ax) / length, (by - ay) / length
@@ -66,12 +67,12 @@ def inside(face: Hatch, a: Point, b: Point) -> list[tuple[Point, Point]]:
 
 
 def mark_plane(board: Board, section: Section, at: float, sight: float, view: Box) -> bool:
-    """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the section's axis: a
-    chain line with thick ends, arrows along that axis in the direction of `sight` (1 or -1), a letter at each; False where an
-    end finds no place."""
+    """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the
+    section's axis: a chain line with thick ends, arrows along that axis in the direction of `sight` (1 or
+    -1), a letter at each; False where an end finds no place."""
     k = section.axis
 
-    def there(across: float, along: float) -> Point:
+    def point(across: float, along: float) -> Point:
         return (across, along) if k == 0 else (along, across)
 
     low, high = view[1 - k], view[3 - k]
@@ -80,25 +81,26 @@ def mark_plane(board: Board, section: Section, at: float, sight: float, view: Bo
             _end(
                 board,
                 section.letter,
-                [there(at, edge + out * OFF), there(at, edge + out * away)],
-                there(sight, 0.0),
+                [point(at, edge + out * OFF), point(at, edge + out * away)],
+                point(sight, 0.0),
                 tail,
             )
             for away in OUT
             for tail in TAILS
         ]
-        found = [place for place in places if place]
-        if not found:
+        free = [place for place in places if place]
+        if not free:
             return False
-        board.add(min(found, key=lambda place: place[0])[1])
-    board.add([segment(there(at, low - OFF), there(at, high + OFF), CENTRE, "centre")])
+        board.add(min(free, key=lambda place: place[0])[1])
+    board.add([segment(point(at, low - OFF), point(at, high + OFF), CENTRE, "centre")])
     return True
 
 
 def _end(
     board: Board, letter: str, thick: Sequence[Point], sight: Point, tail: float
 ) -> tuple[float, Sequence[Item]] | None:
-    """One end of the plane's line with an arrow at its outer point, and what it costs; None where it is not free."""
+    """One end of the plane's line with an arrow at its outer point, and what it costs; None where it is not
+    free."""
     (x, y), (ux, uy) = thick[1], sight
     start, tip = (x - tail * ux, y - tail * uy), (x - CUTTING.width / 2 * ux, y - CUTTING.width / 2 * uy)
     beyond = ABOVE + (LETTER / 2 if uy else 0.0)

@@ -28,7 +28,8 @@ LEAST_WHOLE = 1 / 2  # scale: a long part comes out broken before it comes out s
 
 @dataclass(frozen=True)
 class Order:
-    """One sheet to make: the part, its solid as the kernel's text, and the files that the shop makes it from."""
+    """One sheet to make: the part, its solid as the kernel's text, and the files that the shop makes it
+    from."""
 
     design: Design
     part: Part
@@ -99,8 +100,8 @@ def part_sheet(order: Order) -> Sheet:
 
 
 def _attempts(order: Order) -> Iterator[tuple[Plan, Sequence[Paper], Sequence[tuple[int, int]]]]:
-    """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them down to 1:2
-    before broken ones, and smaller only after these."""
+    """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them
+    down to 1:2 before broken ones, and smaller only after these."""
 
     def plans(shortened: bool = False) -> list[Plan]:
         plan = part_plan(order.part, order.design, order.files, shortened=shortened)

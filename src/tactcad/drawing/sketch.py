@@ -16,8 +16,8 @@ ALIKE = 1e-6  # mm: coordinates nearer than this are one
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's other end; whether
-    it is a mere corner between edges. None is the coordinate 0."""
+    """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's
+    other end; whether it is a mere corner between edges. None is the coordinate 0."""
 
     name: str
     variable: Variable | None
@@ -56,7 +56,8 @@ class Sketch:
         return False
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
-        """The dimension that states the characteristic of that name; a plain one where the part has none, or it is stated."""
+        """The dimension that states the characteristic of that name; a plain one where the part has none, or
+        it is stated."""
         c = self.unstated.get(name)
         if c is None:
             return Dimension(plain or name, rows)
@@ -73,7 +74,8 @@ class Sketch:
 
 
 def closed(sketch: Sketch) -> None:
-    """Raise CheckFailure unless every characteristic is stated, and everything but the place on the paper determined."""
+    """Raise CheckFailure unless every characteristic is stated, and everything but the place on the paper
+    determined."""
     if sketch.unstated:
         raise CheckFailure(
             f"drawings: {sketch.part.part_no}: no dimension states {', '.join(sketch.unstated)}"

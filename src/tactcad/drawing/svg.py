@@ -16,7 +16,8 @@ def svg_bytes(sheet: Sheet) -> bytes:
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{w:g}mm" height="{h:g}mm" viewBox="0 0 {w:g} {h:g}" '
-        f'font-family="{FAMILY}, Verdana, sans-serif" fill="none" stroke-linecap="butt" stroke-linejoin="round">',
+        f'font-family="{FAMILY}, Verdana, sans-serif" fill="none" stroke-linecap="butt" '
+        'stroke-linejoin="round">',
         f"<title>{escape(sheet.number)}: {escape(sheet.title)}</title>",
         f'<rect width="{w:g}" height="{h:g}" fill="#ffffff"/>',
         *(_drawn(item, h) for item in sheet.items),
@@ -34,8 +35,10 @@ def _drawn(item: Item, h: float) -> str:
     if isinstance(item, Arc):
         return f'<path class="{item.role}" {_pen(item.line)} d="{_arc(item, h)}"/>'
     if isinstance(item, Hatch):
-        return f'<path class="{item.role}" {_pen(item.line)} d="{"".join(_polyline(chord, h) for chord in item.chords())}"/>'
-    return f'<path class="{item.role}" {_pen(item.line)} d="{_polyline(item.points, h)}{"Z" if item.closed else ""}"/>'
+        lines = "".join(_polyline(chord, h) for chord in item.chords())
+        return f'<path class="{item.role}" {_pen(item.line)} d="{lines}"/>'
+    line = _polyline(item.points, h) + ("Z" if item.closed else "")
+    return f'<path class="{item.role}" {_pen(item.line)} d="{line}"/>'
 
 
 def _pen(line: LineType) -> str:
@@ -60,6 +63,7 @@ def _text(text: Text, h: float) -> str:
     turn = f' transform="rotate({-text.angle:g} {x:.3f} {h - y:.3f})"' if text.angle else ""
     ink = GREY if text.role == "watermark" else "#000000"
     return (
-        f'<text class="{text.role}" fill="{ink}" font-size="{em(text.height):.4f}" x="{x:.3f}" y="{h - y:.3f}" '
-        f'textLength="{text.width:.3f}" lengthAdjust="spacingAndGlyphs" xml:space="preserve"{turn}>{escape(text.text)}</text>'
+        f'<text class="{text.role}" fill="{ink}" font-size="{em(text.height):.4f}" '
+        f'x="{x:.3f}" y="{h - y:.3f}" textLength="{text.width:.3f}" lengthAdjust="spacingAndGlyphs" '
+        f'xml:space="preserve"{turn}>{escape(text.text)}</text>'
     )

@@ -149,7 +149,8 @@ def _first_angle(at: Point) -> list[Item]:
 
 
 def wrapped(text: str, height: float, room: float) -> list[str]:
-    """The text in lines no wider than `room` mm, broken at blanks, or inside a word that is too long by itself."""
+    """The text in lines no wider than `room` mm, broken at blanks, or inside a word that is too long by
+    itself."""
     lines, line = [], ""
     for word in text.split():
         longer = f"{line} {word}" if line else word
@@ -167,7 +168,8 @@ def wrapped(text: str, height: float, room: float) -> list[str]:
 
 
 def notes(at: Point, lines: Sequence[str], room: float, height: float = 2.5) -> tuple[list[Item], float]:
-    """Numbered notes from the upper left corner `at`, wrapped to `room` mm; the items, and how high they are (mm)."""
+    """Numbered notes from the upper left corner `at`, wrapped to `room` mm; the items, and how high they are
+    (mm)."""
     items: list[Item] = []
     indent = width("00. ", height)
     x, y = at

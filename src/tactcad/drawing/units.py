@@ -1,4 +1,5 @@
-"""The views in which a scene of several sub-assemblies is taken apart, read off its steps' units and its ready scenes."""
+"""The views in which a scene of several sub-assemblies is taken apart, read off its steps' units and its
+ready scenes."""
 
 from __future__ import annotations
 
@@ -13,8 +14,8 @@ from .apart import Piece, pieces_of
 
 @dataclass(frozen=True)
 class UnitView:
-    """A view's letter and title, the scene that knows how its pieces meet, and the pieces; none where all of the scene is
-    drawn as its steps explode it."""
+    """A view's letter and title, the scene that knows how its pieces meet, and the pieces; none where all of
+    the scene is drawn as its steps explode it."""
 
     letter: str
     title: str
@@ -23,7 +24,8 @@ class UnitView:
 
 
 def unit_views(scene: Scene) -> list[UnitView]:
-    """The whole, each sub-assembly standing assembled in it; then each by itself, and after it the ready scenes that stand in it.
+    """The whole, each sub-assembly standing assembled in it; then each by itself, and after it the ready
+    scenes that stand in it.
 
     None where the scene has fewer than two sub-assemblies.
     """

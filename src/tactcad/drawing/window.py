@@ -1,4 +1,5 @@
-"""What a detail's window shows of a view: curves clipped to it, with break lines where it cuts through the material."""
+"""What a detail's window shows of a view: curves clipped to it, with break lines where it cuts through the
+material."""
 
 from __future__ import annotations
 

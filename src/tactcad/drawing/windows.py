@@ -1,9 +1,9 @@
 """Hidden-line pictures of many shapes, window by window, so that time does not grow with their square.
 
 The kernel holds every edge against every face that may hide it, and its time grows faster than the number of
-shapes. Inside a strip of the picture only shapes count that reach into it: each strip is drawn with those, and its
-lines are cut off at its borders. (A plate as long as the picture reaches into every strip with all its holes: that
-share of the time still grows with the square, 1.2 in all.)
+shapes. Inside a strip of the picture only shapes count that reach into it: each strip is drawn with those,
+and its lines are cut off at its borders. (A plate as long as the picture reaches into every strip with all
+its holes: that share of the time still grows with the square, 1.2 in all.)
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ OFF_GRID = 5e-4  # mm: points are given to a micrometre, borders lie half-way be
 
 
 def draw_in_windows(boxes: NDArray[np.float64], draw: Callable[[NDArray[np.intp]], Lines]) -> Lines:
-    """Lines of all shapes. boxes (n, 2, 2) are their least and largest corners in the picture (mm), `draw` gives the
-    visible lines of some of them. The strips cross the picture's longer side."""
+    """Lines of all shapes. boxes (n, 2, 2) are their least and largest corners in the picture (mm), `draw`
+    gives the visible lines of some of them. The strips cross the picture's longer side."""
     size = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
     axis = int(np.argmax(size))
     low, high = boxes[:, 0, axis], boxes[:, 1, axis]

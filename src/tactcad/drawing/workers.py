@@ -1,4 +1,5 @@
-"""Drawings made side by side on the machine's cores, by processes that end with the export, however it ends."""
+"""Drawings made side by side on the machine's cores, by processes that end with the export, however it
+ends."""
 
 from __future__ import annotations
 
@@ -38,8 +39,8 @@ class Named(Protocol):
 def end_with(parent: int) -> None:
     """Let this process be killed when its parent, of that number, is gone.
 
-    A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock of the
-    export's folder among it. Systems without prctl leave it waiting.
+    A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock
+    of the export's folder among it. Systems without prctl leave it waiting.
     """
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -59,8 +60,10 @@ def all_written(
     if not orders:
         return []
     cores = min(len(os.sched_getaffinity(0)), len(orders))
-    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called serial).
-    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said meanwhile.
+    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called
+    # serial).
+    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said
+    # meanwhile.
     with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
         futures = [pool.submit(make, order) for order in orders]
         try:
