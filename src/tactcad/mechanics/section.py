@@ -17,7 +17,9 @@ and arm on one mid-line. Both slot corners are rounded by the fillet radius r.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,7 +89,7 @@ class HingeSection:
         """A copy with some parameters replaced."""
         return replace(self, **{name: np.asarray(value) for name, value in changes.items()})
 
-    def rows(self, index: object) -> HingeSection:
+    def rows(self, index: int | slice | Sequence[int] | NDArray[Any]) -> HingeSection:
         """The designs at `index` of the flattened common shape; what is one for all stays one."""
         shape = self.shape
         picked = {}
