@@ -28,7 +28,7 @@ def test_a_gap_that_was_derived_holds_with_friction_and_without_whatever_frictio
     """K L/(L - mu H): an arm that rubs is stiffer, its rated deflection smaller, and so is its gap. What the
     design is rated for must hold on a slippery object too, at the gap that was cut."""
     rough = variant({"rating.friction": friction}, name)
-    assert {b.path for b in broken_rules(rough)} <= {"calibration.travel"}  # another matter: it yields sooner
+    assert {b.part for b in broken_rules(rough)} <= {"calibration.travel"}  # another matter: it yields sooner
     assert [f for f in check_strength(rough) if f.severity == "fail"] == []
     layout = Layout(rough)
     cut = {f"{p.arm:g}": stop_gap(layout, p) for p in layout.elements}
@@ -47,7 +47,7 @@ def test_a_stop_one_step_wider_passes_the_rated_deflection(name):
         wider = variant({"stop.gaps": {arm: round(gap + 0.005, 6)}}, name)
         failed = {f.part.split()[0] for f in check_strength(wider) if f.severity == "fail"}
         assert failed == {p.designator for p in layout.elements if p.arm == state.place.arm}
-        assert {b.path for b in broken_rules(wider)} == {f"stop.gaps.{arm}"}
+        assert {b.part for b in broken_rules(wider)} == {f"stop.gaps.{arm}"}
         assert broken_rules(variant({"stop.gaps": {arm: gap}}, name)) == []
 
 
@@ -129,8 +129,8 @@ def test_the_gap_follows_the_overload_force():
 
 def test_a_force_that_no_gap_can_save_the_hinge_from_is_refused_with_the_one_that_it_can():
     (found,) = broken_rules(variant({"rating.overload_force": 250.0}))
-    assert found.path == "rating.overload_force"
-    most = float(found.legal.split()[2])
+    assert found.part == "rating.overload_force"
+    most = float(found.limit.split()[2])
     assert broken_rules(variant({"rating.overload_force": 0.99 * most})) == []
     assert most > 0.8 * 250  # and it is near what it cannot
 
