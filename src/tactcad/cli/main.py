@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import importlib.util
 import json
 import sys
 from collections.abc import Callable
 
 from tactcad import __version__
-from tactcad.account import account, text
+from tactcad.account import KERNEL, account, text
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.ending import end_on_signals, past_ending
@@ -22,6 +23,7 @@ from . import streams
 from .parser import Parser
 
 COMMANDS = {
+    "new": "write a design file to start from",
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
     "release": "run every check, and write one zip that a shop can quote from",
@@ -36,6 +38,9 @@ COMMANDS = {
     "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
+
+# Refused before they begin where the kernel is not installed; others are where they first ask for it.
+NEED_KERNEL = ("export", "check", "release", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 
@@ -59,6 +64,10 @@ def main(argv: list[str] | None = None) -> int:
         if error.errno not in NO_ROOM:
             raise
         return _refused(f"the output cannot be written: {error.strerror}", FAILED)
+    except ImportError as error:
+        if (error.name or "").split(".")[0] not in KERNEL:
+            raise
+        return _refused(_no_kernel(error), FAILED)
 
 
 def _own_process() -> int:
@@ -78,6 +87,13 @@ def _own_process() -> int:
 def _refused(why: object, status: int) -> int:
     print(f"tactcad: {why}", file=sys.stderr)
     return status
+
+
+def _no_kernel(error: ImportError | None = None) -> str:
+    """What to install: the kernel, or what of the system it does not find."""
+    if error is None or isinstance(error, ModuleNotFoundError):
+        return "this needs the CAD kernel, which is not installed: pip install 'tactcad[cad]'"
+    return f"the CAD kernel cannot be loaded: {error}; on Debian or Ubuntu: apt-get install libgl1 libx11-6"
 
 
 def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
@@ -108,6 +124,8 @@ def _dispatch(argv: list[str]) -> int:
             "made, how often, how long, and how much memory it took (with --json as JSON)",
         )
         args = parser.parse_args(argv[1:])
+        if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
+            raise CheckFailure(_no_kernel())
         return _profiled(module.run, args) if args.profile else module.run(args)
     parser = Parser(
         prog="tactcad",
