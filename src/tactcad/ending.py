@@ -11,13 +11,17 @@ from __future__ import annotations
 import os
 import signal
 
+TYPE_CHECKING = False  # typing is not loaded yet
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
 SAID = {
     signal.SIGINT: "interrupted",
     signal.SIGTERM: "terminated (SIGTERM)",
     signal.SIGHUP: "the terminal hung up (SIGHUP)",
 }
 
-_unfinished: dict[str, tuple[int, int]] = {}  # path: device and number of what was made there
+_unfinished: list[Callable[[], object]] = []  # what puts it away
 _owner = 0  # the process whose unfinished things they are: a forked helper has only a copy
 
 
@@ -38,20 +42,19 @@ def past_ending() -> None:
 
 
 class unfinished:
-    """Around the making of a file or folder: `with unfinished(path)` has it removed when a signal ends the program.
+    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends the program.
 
-    It is told by its number, not by its name: what has been exchanged for it meanwhile is not touched.
+    It may be called between any two steps of the block, and must tell by what lies on the disk what is to go.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.path.abspath(path)
+    def __init__(self, put_away: Callable[[], object]) -> None:
+        self.put_away = put_away
 
     def __enter__(self) -> None:
-        state = os.lstat(self.path)
-        _unfinished[self.path] = state.st_dev, state.st_ino
+        _unfinished.append(self.put_away)
 
     def __exit__(self, *_: object) -> None:
-        _unfinished.pop(self.path, None)
+        _unfinished.remove(self.put_away)
 
 
 def _end(number: int, _frame: object) -> None:
@@ -59,8 +62,11 @@ def _end(number: int, _frame: object) -> None:
         os._exit(128 + number)
     past_ending()
     _kill_helpers()
-    for path, identity in list(_unfinished.items()):
-        _remove(path, identity)
+    for put_away in reversed(_unfinished):
+        try:
+            put_away()
+        except Exception:
+            pass  # the next run does it
     for each in SAID:  # whoever presses Ctrl-C again does not wait for a reader that takes no line
         signal.signal(each, signal.SIG_DFL)
     line = f"tactcad: {SAID[number]}; what was not finished is as it was before\n"
@@ -80,18 +86,3 @@ def _kill_helpers() -> None:
                     os.kill(int(child), signal.SIGKILL)
     except OSError:
         pass  # no such list here, or one that ended by itself
-
-
-def _remove(path: str, identity: tuple[int, int]) -> None:
-    import shutil
-
-    try:
-        state = os.lstat(path)
-        if (state.st_dev, state.st_ino) != identity:
-            return
-        if os.path.isdir(path):
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            os.unlink(path)
-    except OSError:
-        pass  # the next run sweeps it

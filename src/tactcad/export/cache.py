@@ -88,7 +88,7 @@ class Cache:
                 return  # it leads out of the folder
             handle, temporary = tempfile.mkstemp(prefix=UNFINISHED, dir=path.parent)
             try:
-                with unfinished(temporary), open(handle, "wb") as file:
+                with unfinished(lambda: os.unlink(temporary)), open(handle, "wb") as file:
                     fcntl.flock(file, fcntl.LOCK_EX)  # `trim` tells by it what a killed run left
                     file.write(self._header(key, data) + b"\n" + data)
                     file.flush()
