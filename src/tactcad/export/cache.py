@@ -50,17 +50,19 @@ class Cache:
     ) -> None:
         self.root, self.say = root, say
         self._secret: bytes | None = None  # None: nothing is read or kept
+        self._trouble: OSError | None = None  # why, to be said at the first use
         self._complained = False
         try:
             root.mkdir(parents=True, exist_ok=True)
             _claim(root)
             self._secret = _secret(root / SECRET_NAME)
         except OSError as error:
-            self._complain(error)
+            self._trouble = error
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
         if self._secret is None:
+            self._complain(self._trouble)
             return None
         path = self._path(key)
         try:
