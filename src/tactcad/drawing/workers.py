@@ -16,6 +16,7 @@ from itertools import count
 from typing import Protocol
 
 from tactcad.design.messages import CheckFailure
+from tactcad.ending import past_ending
 
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2)
 EVERY = 2.0  # s: nobody waits longer without a word
@@ -37,11 +38,13 @@ class Named(Protocol):
 
 
 def end_with(parent: int) -> None:
-    """Let this process be killed when its parent, of that number, is gone.
+    """Let this process be killed when its parent, of that number, is gone, and by nothing else that ends the parent.
 
     A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock
-    of the export's folder among it. Systems without prctl leave it waiting.
+    of the export's folder among it. Systems without prctl leave it waiting. Ctrl-C reaches it too, but it is
+    the parent that answers.
     """
+    past_ending()
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before
