@@ -30,7 +30,7 @@ from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.scale import SERIES
 from tactcad.drawing.sheets import Order, all_written, part_sheet, title_of, written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
-from tactcad.export.pipeline import export
+from tactcad.export.pipeline import ExportOptions, export
 from tactcad.parts.description import Characteristic, Extrusion, Material, Part
 from tactcad.scenes import make_scene, scene_names
 
@@ -226,7 +226,7 @@ SMALL = {"array.row_arms": [[4.0, 6.0]]}
 def test_a_missing_font_stops_the_export_before_anything_is_written(monkeypatch, tmp_path):
     monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf"):
-        export(variant(SMALL), ("array",), tmp_path / "out", Silent(), drawings=True)
+        export(variant(SMALL), ExportOptions(("array",), drawings=True), tmp_path / "out", Silent())
     assert not (tmp_path / "out").exists()
 
 
