@@ -57,7 +57,7 @@ def finished(orders):
 
 
 def pdf(sheet) -> bytes:
-    return pdf_bytes([sheet], "title", "author")
+    return pdf_bytes([sheet], "title", "author", "2026-11-21")
 
 
 def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro):
@@ -157,7 +157,7 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
         "'macro-array-other' is missing" in fault
         for fault in drawing_faults(pdf(sheet), sheet, other, macro.design.revision)
     )
-    two = pdf_bytes([sheet, sheet], "t", "a")
+    two = pdf_bytes([sheet, sheet], "t", "a", "2026-11-21")
     assert drawing_faults(two, sheet, part, macro.design.revision) == ["2 pages instead of 1"]
     scribbled = replace(sheet, items=(*sheet.items, Text(value.at, "again", 2.5)))
     assert any(

@@ -61,7 +61,7 @@ def sheet(paper=A3, **changes) -> Sheet:
 
 
 def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
-    reader = PdfReader(io.BytesIO(pdf_bytes([sheet(), sheet(A4)], "title", "author")))
+    reader = PdfReader(io.BytesIO(pdf_bytes([sheet(), sheet(A4)], "title", "author", "2026-11-21")))
     assert len(reader.pages) == 2
     for page, paper in zip(reader.pages, (A3, A4)):
         points = [float(v) * 25.4 / 72 for v in page.mediabox[2:]]
@@ -90,7 +90,7 @@ def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
     """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too much."""
     text = Text((40, 60), "Qg±⌀(12)", 10, angle=90)
     bare = Sheet("n", "t", A4.size, (text,))
-    (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a"))
+    (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a", "2026-11-21"))
     subprocess.run(["pdftoppm", "-r", "127", "-gray", tmp_path / "a.pdf", tmp_path / "a"], check=True)
     data = next(tmp_path.glob("a*.pgm")).read_bytes()
     w, h = map(int, data.split(b"\n", 3)[1].split())
@@ -119,7 +119,7 @@ def test_equal_bytes_in_two_processes_with_other_hash_seeds():
     script = (
         "import sys, hashlib; sys.path[:0] = sys.argv[1:]\n"
         "from test_sheet_writers import sheet, pdf_bytes, svg_bytes\n"
-        "print(hashlib.sha256(pdf_bytes([sheet()], 't', 'a') + svg_bytes(sheet())).hexdigest())"
+        "print(hashlib.sha256(pdf_bytes([sheet()], 't', 'a', '2026-11-21') + svg_bytes(sheet())).hexdigest())"
     )
     here = Path(__file__).parent
     seen = {
@@ -132,13 +132,15 @@ def test_equal_bytes_in_two_processes_with_other_hash_seeds():
         ).stdout.strip()
         for seed, zone in (("1", "UTC"), ("77", "Asia/Tokyo"))
     }
-    assert seen == {hashlib.sha256(pdf_bytes([sheet()], "t", "a") + svg_bytes(sheet())).hexdigest()}
+    assert seen == {
+        hashlib.sha256(pdf_bytes([sheet()], "t", "a", "2026-11-21") + svg_bytes(sheet())).hexdigest()
+    }
 
 
 def test_a_draft_says_so_and_stays_clean():
     draft = preliminary(sheet())
     assert layout_faults(draft) == []
-    text = PdfReader(io.BytesIO(pdf_bytes([draft], "t", "a"))).pages[0].extract_text()
+    text = PdfReader(io.BytesIO(pdf_bytes([draft], "t", "a", "2026-11-21"))).pages[0].extract_text()
     assert re.sub(r"\s", "", text).count("PRELIMINARY") == 1
 
 
@@ -169,7 +171,7 @@ def test_missing_font_or_letter_is_said(monkeypatch):
         fonts.width("张", 2.5)
     monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf of the package matplotlib.* is missing"):
-        pdf_bytes([sheet()], "t", "a")
+        pdf_bytes([sheet()], "t", "a", "2026-11-21")
 
 
 def test_zones_are_those_of_iso_5457():
