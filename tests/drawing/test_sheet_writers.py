@@ -115,7 +115,7 @@ def test_svg_holds_the_same_texts_at_the_same_places():
         )
 
 
-def test_equal_bytes_in_two_processes_with_other_hash_seeds():
+def test_equal_bytes_in_processes_with_other_hash_seeds_zones_and_dates():
     script = (
         "import sys, hashlib; sys.path[:0] = sys.argv[1:]\n"
         "from test_sheet_writers import sheet, pdf_bytes, svg_bytes\n"
@@ -128,13 +128,22 @@ def test_equal_bytes_in_two_processes_with_other_hash_seeds():
             capture_output=True,
             text=True,
             check=True,
-            env={**os.environ, "PYTHONHASHSEED": seed, "TZ": zone},
+            env={**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "SOURCE_DATE_EPOCH": epoch},
         ).stdout.strip()
-        for seed, zone in (("1", "UTC"), ("77", "Asia/Tokyo"))
+        for seed, zone, epoch in (("1", "UTC", "1"), ("77", "Asia/Tokyo", "1700000000"))
     }
     assert seen == {
         hashlib.sha256(pdf_bytes([sheet()], "t", "a", "2026-11-21") + svg_bytes(sheet())).hexdigest()
     }
+
+
+def test_the_date_is_the_designs():
+    metadata = PdfReader(io.BytesIO(pdf_bytes([sheet()], "t", "a", "2026-11-21"))).metadata
+    assert (
+        metadata.creation_date.isoformat()
+        == metadata.modification_date.isoformat()
+        == "2026-11-21T00:00:00+00:00"
+    )
 
 
 def test_a_draft_says_so_and_stays_clean():
