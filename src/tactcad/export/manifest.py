@@ -11,9 +11,17 @@ from tactcad.design.files import read_bytes, read_json
 from tactcad.design.messages import InputError
 
 from .contents import MOST_BYTES, NAME, sealed, sha256_of
+from .formats import PART_FORMATS
 
 SCHEMA = "tactcad-manifest-1"
-KINDS = ("step-part", "step-assembly", "dxf", "bom", "picture", "drawing", "inspection", "report")
+KINDS = {f.kind for f in PART_FORMATS} | {
+    "step-assembly",
+    "picture",
+    "bom",
+    "drawing",
+    "inspection",
+    "report",
+}
 
 
 @dataclass(frozen=True)
@@ -131,7 +139,11 @@ def _file_faults(folder: Path, file: FileRecord, parts: set[str]) -> list[str]:
     path = PurePosixPath(file.path)
     if path.is_absolute() or ".." in path.parts or not path.parts:
         return [f"{file.path}: leads out of the folder"]
-    wrong = [] if file.kind in KINDS else [f"{file.path}: kind {file.kind!r} is none of {', '.join(KINDS)}"]
+    wrong = (
+        []
+        if file.kind in KINDS
+        else [f"{file.path}: kind {file.kind!r} is none of {', '.join(sorted(KINDS))}"]
+    )
     if file.part_no and file.part_no not in parts:
         wrong.append(f"{file.path}: part {file.part_no!r} is not listed")
     try:

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Pose, Scene
 
-    from .products import Product, Shapes
+    from .products import Product
+    from .shapes import Shapes
 
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
@@ -147,14 +148,8 @@ def _rebuild(
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
 
-    from .products import (
-        Shapes,
-        assembly_products,
-        drawing_products,
-        guide_products,
-        part_products,
-        scene_products,
-    )
+    from .products import assembly_products, drawing_products, guide_products, part_products, scene_products
+    from .shapes import Shapes
 
     cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
