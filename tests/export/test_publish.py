@@ -602,9 +602,10 @@ def test_a_parent_that_is_a_file(tmp_path):
         export(tmp_path / "file" / "macro", "a")
 
 
-def test_a_name_that_is_too_long(tmp_path):
+@pytest.mark.parametrize("length", [252, 300])
+def test_a_name_that_is_too_long(tmp_path, length):
     with pytest.raises(InputError, match="File name too long"):
-        export(tmp_path / ("x" * 252), "a")
+        export(tmp_path / ("x" * length), "a")
 
 
 READ_ONLY = """

@@ -55,8 +55,9 @@ def looked_at(directory: str | os.PathLike[str], schema: str, others: str = REFU
     `others` is REFUSE.
     """
     out = absolute(directory)
-    _refuse_place(out)
-    seen = contents(out, schema)
+    with _in_one_line(out):
+        _refuse_place(out)
+        seen = contents(out, schema)
     if seen.foreign and others == REFUSE:
         raise InputError(
             str(directory),
