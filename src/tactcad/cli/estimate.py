@@ -72,7 +72,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inspection",
         metavar="FILE",
-        help="the design's inspection sheet, filled in: its elements as made, beside the nominal",
+        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its elements as "
+        "made, beside the nominal",
     )
 
 

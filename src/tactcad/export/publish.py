@@ -15,7 +15,6 @@ first; a kill between these two renames leaves no DIR until the next run puts it
 
 from __future__ import annotations
 
-import ctypes
 import errno
 import fcntl
 import os
@@ -277,6 +276,8 @@ def _move(old: Path, new: Path) -> None:
 
 def _rename(old: Path, new: Path, flag: int) -> bool:
     """Rename with that flag of renameat2; False where the system or its file system cannot."""
+    import ctypes  # an export with nothing changed does without
+
     try:
         renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
     except (AttributeError, OSError):
