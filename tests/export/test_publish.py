@@ -382,6 +382,21 @@ def test_killed_at_random_moments(tmp_path):
     assert names(tmp_path) == {"macro"}
 
 
+def test_what_a_killed_run_left_is_named_although_the_next_refuses(tmp_path):
+    out, said = tmp_path / "macro", []
+    export(out, "a")
+    left = tmp_path / ".macro.tactcad-abcdefgh"
+    left.mkdir()
+    (left / "written-by-tactcad").write_text("1")
+    out.rename(left / "finished")
+    add(left / "finished")
+    with pytest.raises(CheckFailure, match="not closed"), turn(out, SCHEMA, say=said.append):
+        raise CheckFailure("contour not closed")
+    (line,) = said
+    assert "macro-kept-1 for sub/notes.txt (added)" in line
+    assert names(tmp_path) == {"macro-kept-1"}
+
+
 def test_interrupted_while_the_earlier_folder_is_looked_at(tmp_path, monkeypatch):
     """Ctrl-C between exchange and look: what somebody wrote is not removed with our own folder."""
     out = tmp_path / "ex"

@@ -178,15 +178,21 @@ def turn(
     def settle(left: Path) -> None:
         _recover(left, out, schema, kept)
 
-    with _in_one_line(out), ExitStack() as stack:
+    with _in_one_line(out):
         looked_at(out, schema, others)
         out.parent.mkdir(parents=True, exist_ok=True)
-        own = _own_folder(out, settle, stack, say, time.monotonic() + wait)
-        work = Work(out, schema, others, say, own, looked_at(out, schema, others), kept)
-        if work.earlier.foreign and others == DISCARD:
-            say(f"{out}: to be discarded: {_named(work.earlier.foreign)}")
-        work.folder.mkdir()
-        yield work
+        try:
+            with ExitStack() as stack:
+                own = _own_folder(out, settle, stack, say, time.monotonic() + wait)
+                work = Work(out, schema, others, say, own, looked_at(out, schema, others), kept)
+                if work.earlier.foreign and others == DISCARD:
+                    say(f"{out}: to be discarded: {_named(work.earlier.foreign)}")
+                work.folder.mkdir()
+                yield work
+        except BaseException:
+            for line in kept:
+                say(f"{out}: what appeared in the earlier folder meanwhile is {line}")
+            raise
     if kept:
         raise CheckFailure(
             f"{out}: the new folder stands; what appeared in the earlier one meanwhile is {'; '.join(kept)}"
