@@ -63,7 +63,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.load import read
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.design.load import find, read
     from tactcad.export.pipeline import ExportOptions, export
     from tactcad.scenes import chosen_scenes, left_out
     from tactcad.scenes.poses import pose_of
@@ -73,6 +74,7 @@ def run(args: argparse.Namespace) -> int:
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
+    refuse_overwriting(out, find(args.design))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     done = export(design, options, out, say, args.others)
     for line in left_out(design) if done.reasons and not args.scene else ():
