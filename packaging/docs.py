@@ -1,4 +1,4 @@
-"""Before and after the site's generator: `docs.py stage DIR` writes the pages, `docs.py finish DIR` holds the site to be whole.
+"""Before and after the site's generator: `docs.py stage DIR` writes its pages, `docs.py finish SITE OUT` takes a whole site.
 
 Staged are docs/, README as the first page, CONTRIBUTING and CHANGELOG, what pages link to outside docs/, and the
 reference made from the program: the design file's fields, the commands' parsers. Finishing follows every link and
@@ -23,10 +23,12 @@ TOP = {"README.md": "index.md", "CONTRIBUTING.md": "CONTRIBUTING.md", "CHANGELOG
 LINK = re.compile(r"\]\(([^)#\s]+)")
 
 
-def stage(out: Path) -> None:
-    """Write every page, and every file that one of them links to, to the folder `out`, which is made anew."""
-    shutil.rmtree(out, ignore_errors=True)
+def stage(folder: Path) -> None:
+    """Write the generator's configuration, every page, and every file that one of them links to; `folder` is made anew."""
+    shutil.rmtree(folder, ignore_errors=True)
+    out = folder / "pages"
     shutil.copytree(ROOT / "docs", out)
+    shutil.copy(ROOT / "packaging" / "zensical.toml", folder)
     for source, target in TOP.items():
         (out / target).write_text((ROOT / source).read_text("utf-8").replace("](docs/", "]("), "utf-8")
     for page in out.glob("*.md"):
@@ -118,10 +120,13 @@ def finish(site: Path) -> list[str]:
 
 
 if __name__ == "__main__":
-    what, folder = sys.argv[1], Path(sys.argv[2]).resolve()
+    what, *folders = sys.argv[1:]
     if what == "stage":
-        stage(folder)
+        stage(Path(folders[0]))
     else:
-        problems = finish(folder)
-        print("\n".join(problems) or f"{folder}: whole; open {folder / 'index.html'}")
-        sys.exit(bool(problems))
+        site, out = (Path(f).resolve() for f in folders)
+        if problems := finish(site):
+            sys.exit("\n".join(problems))
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copytree(site, out)
+        print(f"{len(list(out.rglob('*.html')))} pages, every link followed: open {out / 'index.html'}")

@@ -4,7 +4,5 @@ set -eu
 cd "$(dirname "$0")/.."
 packaging/pinned.sh docs
 .venv/bin/python packaging/docs.py stage .cache/docs
-rm -rf exports/docs
-mkdir -p exports
-.cache/env/docs/bin/zensical build --clean --strict
-.venv/bin/python packaging/docs.py finish exports/docs
+(cd .cache/docs && ../env/docs/bin/zensical build --strict) # its own cache is then below that folder
+.venv/bin/python packaging/docs.py finish .cache/docs/site exports/docs
