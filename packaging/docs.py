@@ -8,6 +8,7 @@ takes out what would be fetched from elsewhere.
 from __future__ import annotations
 
 import argparse
+import html
 import re
 import shutil
 import sys
@@ -29,6 +30,7 @@ def stage(folder: Path) -> None:
     out = folder / "pages"
     shutil.copytree(ROOT / "docs", out)
     shutil.copy(ROOT / "packaging" / "zensical.toml", folder)
+    shutil.copy(ROOT / "packaging" / "site.css", out)
     for source, target in TOP.items():
         (out / target).write_text((ROOT / source).read_text("utf-8").replace("](docs/", "]("), "utf-8")
     for page in out.glob("*.md"):
@@ -53,7 +55,9 @@ def schema_page() -> str:
 def commands_page() -> str:
     head = (
         "# Commands\n\nDESIGN is a path, or the name of a design in `hardware/`. Exit status: 0 done; 1 a check failed or "
-        "a request cannot be met; 2 bad input, refused in one line.\n"
+        "a request cannot be met; 2 bad input, refused in one line. Every command has `--help`, which shows what "
+        "stands here, and `--profile`, which says at the end what was loaded and made, how long it took, and how "
+        "much memory.\n"
     )
     return "\n".join([head, *(_command(name) for name in COMMANDS)])
 
@@ -61,8 +65,11 @@ def commands_page() -> str:
 def _command(name: str) -> str:
     """A command as its own parser has it: usage, arguments, examples."""
     parser = parser_of(name)
-    shown = [action for action in parser._actions if action.dest != "help"]
-    rows = ["| " + _called(action) + " | " + (action.help or "").replace("|", "\\|") + " |" for action in shown]
+    shown = [action for action in parser._actions if action.dest not in ("help", "profile")]
+    rows = [
+        "| " + _called(action) + " | " + html.escape(action.help or "").replace("|", "\\|") + " |"
+        for action in shown
+    ]
     return (
         f"## tactcad {name}\n\n{COMMANDS[name][0].upper()}{COMMANDS[name][1:]}.\n\n"
         f"| argument | meaning |\n|---|---|\n" + "\n".join(rows) + f"\n\n```text\n{parser.epilog}\n```\n"
