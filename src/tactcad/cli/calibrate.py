@@ -34,10 +34,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import write_whole
+    from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
     from tactcad.paper import published
 
+    if args.out:
+        refuse_overwriting(args.out, args.file)
     load_cell = published.load().figure["load_cell_stiffness"] if args.load_cell is None else args.load_cell
     rows = calibration.calibrate(
         readings.calibration(args.file), load_cell, level=args.level, drop_outliers=args.drop_outliers
