@@ -13,7 +13,7 @@ from .inputs import digest
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from tactcad.drawing.picture import View
+    from tactcad.drawing.picture import Viewpoint
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Placement
 
@@ -71,7 +71,7 @@ def picture_bytes(
     from tactcad.parts.library.screws import for_pictures
     from tactcad.solids.place import placed_shape
 
-    eye: View = picture.VIEWS[view]
+    eye: Viewpoint = picture.VIEWS[view]
 
     def drawn(some: Sequence[Placement]) -> picture.Drawing:
         return picture.drawing(
