@@ -42,17 +42,17 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
         "left": Viewpoint("left", (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     }
     boxes = {name: projected_box(scene.placements, v.right, v.eye) for name, v in views.items()}
-    size = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}
-    wide, high = size["front"][0] + size["left"][0], size["front"][1] + size["plan"][1]
+    extents = {name: (b[2] - b[0], b[3] - b[1]) for name, b in boxes.items()}
+    wide, high = extents["front"][0] + extents["left"][0], extents["front"][1] + extents["plan"][1]
     spare = APART + AROUND
     scale, paper, items, (x0, y0, x1, y1) = _largest(wide, high, spare, notes_of(design, scene), block)
     f = factor(scale)
     west, south = (x0 + x1 - f * wide - spare) / 2 + AROUND, (y0 + y1 - f * high - spare) / 2
-    north = south + f * size["plan"][1] + APART
+    north = south + f * extents["plan"][1] + APART
     places = {
         "plan": (west, south),
         "front": (west, north),
-        "left": (west + f * size["front"][0] + APART, north),
+        "left": (west + f * extents["front"][0] + APART, north),
     }
     for name, view in views.items():
         # from the front and from above the outermost parts hide the long rows behind them
@@ -66,7 +66,7 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
         items += edges(drawing(placed, view).sharp, f, (px - f * bx, py - f * by))
     # on three sides that face nothing: texts of short dimensions stand beside them
     for name, sides in (("front", ("top", "left")), ("plan", ("right",))):
-        items += [moved(i, *places[name]) for i in _overall(size[name], f, sides)]
+        items += [moved(i, *places[name]) for i in _overall(extents[name], f, sides)]
     return Page(paper, shown(scale), tuple(items), "Assembly drawing")
 
 
@@ -113,10 +113,10 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
     )
 
 
-def _overall(size: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
+def _overall(extent: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
     """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in
     parentheses."""
-    w, h = size
+    w, h = extent
     wide, high = WHOLE.place(0), WHOLE.place(1)
     values = {wide: round(w, 1), high: round(h, 1)}
     items: list[Item] = []
