@@ -147,6 +147,31 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         raise refusal(str(path), error) from error
 
 
+def flush_entry(path: Path) -> None:
+    """Let what the file or folder holds be on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def scratch_folder(purpose: str) -> Iterator[Path]:
+    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes first.
+
+    Raises as `whole_file` does.
+    """
+    parent = absolute(tempfile.gettempdir())
+    stem = f"tactcad-{purpose}"
+    try:
+        sweep_folders(parent, stem)
+        with held_folder(parent, stem) as folder:
+            yield folder
+    except OSError as error:
+        raise refusal(str(parent), error) from error
+
+
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
     """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under whatever name or
     link, lies in a folder that is one, or is a folder with one in it. What is not there is no matter.
@@ -174,31 +199,6 @@ def _folders(path: str | Path) -> set[tuple[int, int] | None]:
     """The folders around it, by the name given and by where links lead."""
     ways = (Path(way(path)) for way in (os.path.abspath, os.path.realpath))
     return {_identity(folder) for way in ways for folder in way.parents} - {None}
-
-
-def flush_entry(path: Path) -> None:
-    """Let what the file or folder holds be on the disk."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
-@contextmanager
-def scratch_folder(purpose: str) -> Iterator[Path]:
-    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes first.
-
-    Raises as `whole_file` does.
-    """
-    parent = absolute(tempfile.gettempdir())
-    stem = f"tactcad-{purpose}"
-    try:
-        sweep_folders(parent, stem)
-        with held_folder(parent, stem) as folder:
-            yield folder
-    except OSError as error:
-        raise refusal(str(parent), error) from error
 
 
 def absolute(path: str | Path) -> Path:

@@ -143,7 +143,7 @@ def _section(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -
     if "sides" in header:
         column = header.index("sides")
         sides = [_side(path, line, column, row[column]) for line, row in rows]
-    return HingeSection(**numbers, two_sided=[SIDES[side] for side in sides])
+    return HingeSection.of(**numbers, two_sided=[SIDES[side] for side in sides])
 
 
 def _number(path: Path, line: int, column: int, text: str) -> float:

@@ -67,9 +67,7 @@ def release(
     ]
     contents = Contents(design, scenes, flags, failures, draft)
     with scratch_folder("release") as folder:
-        files = _exported(
-            design, tuple(scene.name for scene in scenes), folder / design.name, progress, draft
-        )
+        files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, draft)
     files = {README: readme_bytes(contents, list(files)), **files}
     data = archive_bytes(files, design.design.date)
     make_folder(target.parent)
