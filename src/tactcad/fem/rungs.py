@@ -19,12 +19,11 @@ def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
     from tactcad.fem.shape import reference_shape
     from tactcad.fem.solid import solve_solid
 
-    columns = {f.name: np.broadcast_to(getattr(s, f.name), s.shape).astype(float) for f in fields(s)}
-    rows = np.column_stack(list(columns.values()))
-    distinct, index = np.unique(rows, axis=0, return_inverse=True)
+    columns = [np.broadcast_to(getattr(s, f.name), s.shape) for f in fields(s)]
+    distinct, index = np.unique(np.column_stack(columns).astype(float), axis=0, return_inverse=True)
     found = {"fem-plane": np.empty(len(distinct)), "fem-solid": np.empty(len(distinct))}
     for i, row in enumerate(distinct):
-        one = HingeSection.of(**dict(zip(columns, row)))
+        one = HingeSection.of(**dict(zip((f.name for f in fields(s)), row)))
         shape, material = (
             reference_shape(one),
             (float(one.youngs_modulus), float(one.poisson), float(one.width)),
