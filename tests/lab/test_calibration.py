@@ -215,7 +215,7 @@ HEADER = "element,run,displacement,force,signal\n"
     [
         ("element,run,displacement,force\n1,1,0,0\n", ":1:5", "signal"),
         (HEADER + "1,1,0,0,0\n1,1,x,0,0\n", ":3:3", "not a number"),
-        (HEADER + "1,1,0,nan,0\n", ":2:4", "out of range"),
+        (HEADER + "1,1,0,nan,0\n", ":2:4", "not a number"),
         (HEADER + "1,1,150,0,0\n", ":2:3", "out of range"),  # micrometres in a column of millimetres
         (HEADER + "1.5,1,0,0,0\n", ":2:1", "out of range"),
         (HEADER + "1,1,0,0,0\n1,1,0,0,0\n", ":3:1", "already on line 2"),

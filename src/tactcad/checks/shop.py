@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -151,7 +150,7 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 
 def _size(where: str, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and isfinite(value) and 0 < value <= 100):
+    if not (number and 0 < value <= 100):
         raise InputError(
             where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
         )
