@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from tactcad.design.fields import shown_text
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.toml_text import parse_toml
@@ -95,8 +96,7 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
     where = str(path)
     table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)
     _names(where, "", table, {"name", "limits", "source"}, {"machining", "machining_source"})
-    if not isinstance(table["name"], str):
-        raise InputError(f"{where}: name", "is no text", value=table["name"])
+    shown_text(table["name"], f"{where}: name", "what the shop is called")
     limits, source = _section(where, table, Limits, "limits", "source")
     usual = None if path == DEFAULT else load_shop()
     if {"machining", "machining_source"} & set(table) or usual is None:
@@ -128,10 +128,7 @@ def _section(
             )
     values = {one: _size(f"{where}: {name}.{one}", v) for one, v in values.items()}
     for one, text in source.items():
-        if not isinstance(text, str) or not text.strip():
-            raise InputError(
-                f"{where}: {source_name}.{one}", "is no text", value=text, legal="where the limit is from"
-            )
+        shown_text(text, f"{where}: {source_name}.{one}", "where the limit is from")
     if usual:
         values = {**vars(getattr(usual, name)), **values}
         source = {**getattr(usual, source_name), **source}

@@ -58,6 +58,26 @@ def shortened(value: object, most: int = 60) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def hidden(text: str) -> str:
+    """What a text holds that nobody sees and that changes how the rest is shown; "" where there is nothing.
+
+    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, halves of pairs,
+    and formats, among them all that turn the direction of text. The two joiners that scripts and emoji need may stand.
+    """
+    if text.isprintable():
+        return ""
+    import unicodedata  # hardly a text needs it
+
+    strange = (c for c in text if c not in "\n\u200c\u200d")
+    found = next((c for c in strange if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp")), "")
+    return found and f"U+{ord(found):04X} {unicodedata.name(found, '(a control, or half a pair)')}"
+
+
+def visible(text: str) -> bool:
+    """Whether a letter or digit can be seen in the text; Hangul's fillers are letters that cannot."""
+    return any(c.isalnum() and c not in "\u115f\u1160\u3164\uffa0" for c in text)
+
+
 def _on_one_line(where: str, most: int = 200) -> str:
     text = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in where)
     return text if len(text) <= most else f"{text[: most // 2]}...{text[-most // 4 :]}"

@@ -17,7 +17,7 @@ _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uf
 
 
 def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters, not only spaces", meaning)
+    return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
 
 
 @dataclass(frozen=True)

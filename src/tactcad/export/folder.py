@@ -52,21 +52,27 @@ def refuse_foreign(out: Path, endings: set[str], schema: str) -> None:
         raise InputError(
             str(out), "is not a folder", legal="a folder that is missing, empty, or an earlier report"
         )
-    there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    if not there:
-        return
     try:
-        ours = read_json(out / "report.json", MOST_BYTES, "a report").get("schema") == schema
-    except (InputError, AttributeError):
-        ours = False
-    foreign = [name for name in there if Path(name).suffix not in endings]
-    if not ours or foreign:
+        there = sorted(os.listdir(out))
+        if there and _is_report(out, schema):  # only then is it looked into: it may be a whole disk
+            files = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
+            there = [name for name in files if Path(name).suffix not in endings]
+    except OSError as error:
+        raise refusal(str(out), error) from error
+    if there:
         raise InputError(
             str(out),
             "holds files that are not an earlier report's",
-            value=foreign[0] if foreign else there[0],
+            value=there[0],
             legal="a folder that is missing, empty, or an earlier report",
         )
+
+
+def _is_report(out: Path, schema: str) -> bool:
+    try:
+        return read_json(out / "report.json", MOST_BYTES, "a report").get("schema") == schema
+    except (InputError, AttributeError):
+        return False
 
 
 def _move(part: Path, out: Path) -> None:
