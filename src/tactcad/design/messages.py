@@ -8,16 +8,16 @@ from collections.abc import Iterable
 class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
 
-    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2");
-            shown on one line and shortened, whatever a file calls its fields
-    what    what is wrong, one clause without a full stop
+    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
+    what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever a
+            file calls its fields
     value   the value found, shown with repr and shortened; leave it out where there is none
     legal   what would be accepted
     """
 
     def __init__(self, where: str, what: str, *, value: object = ..., legal: str = "") -> None:
         self.where, self.what, self.value, self.legal = where, what, value, legal
-        parts = [f"{_on_one_line(where)}: {what}"]
+        parts = [f"{_on_one_line(where)}: {_on_one_line(what, 500)}"]
         if value is not ...:
             parts.append(f"found {shortened(value)}")
         if legal:

@@ -39,6 +39,7 @@ class Sensitivity:
     signal_per_deflection_se: np.ndarray
     correlation: np.ndarray
     dof: np.ndarray
+    path: str = "calibration"
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ def evaluate(
     touching = readings.load > 0
     if touching.sum() < 3 or len(readings.element) < 2:
         raise InputError(
-            f"sample {readings.sample}",
+            f"{readings.path}: sample {readings.sample}",
             "too little to tell a slope from noise",
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
@@ -136,7 +137,10 @@ def evaluate(
     number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
     if number not in readings.element:
         raise InputError(
-            "reference", "was not read in this grasp", value=number, legal=str(readings.element.tolist())
+            f"{readings.path}: reference",
+            "was not read in this grasp",
+            value=number,
+            legal=str(readings.element.tolist()),
         )
     r = int(np.flatnonzero(readings.element == number)[0])
     others = [i for i in np.argsort(-stiffness, kind="stable") if i != r]
@@ -278,7 +282,7 @@ def _row(calibration: Sensitivity, number: int) -> int:
     found = np.flatnonzero(calibration.element == number)
     if not len(found):
         raise InputError(
-            "calibration",
+            calibration.path,
             f"element {number} of the grasp is not there",
             legal=str(calibration.element.tolist()),
         )

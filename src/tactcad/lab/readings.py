@@ -48,6 +48,7 @@ class GraspReadings:
     load: np.ndarray  # N, by state
     run: np.ndarray  # by state
     signal: np.ndarray
+    path: str = "readings"
 
 
 def calibration(path: str | Path) -> CalibrationReadings:
@@ -128,7 +129,7 @@ def _grasp(
             f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
             legal="every element at every load",
         )
-    return GraspReadings(sample, elements, states["load"], states["run"], grid)
+    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path)
 
 
 def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
