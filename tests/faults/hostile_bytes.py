@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from copy import deepcopy
 from random import Random
 from typing import Any
 
@@ -48,7 +49,7 @@ def _other_json(value: Any, r: Random) -> bytes:
         elif what == 2 and isinstance(holder, list):
             holder.insert(key, holder[key])
         else:
-            holder[key] = r.choice(VALUES)
+            holder[key] = deepcopy(r.choice(VALUES))
     text = json.dumps(value, ensure_ascii=r.random() < 0.8)
     return text.encode("utf-8", "surrogatepass")
 

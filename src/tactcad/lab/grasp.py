@@ -294,13 +294,15 @@ def _satterthwaite(slopes: Slopes, m: list[int], x: float) -> float:
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
     signal = np.array([along @ slopes.from_signal[i] @ along for i in m])
     parts = np.array([along @ slopes.from_calibration[i] @ along for i in m])
-    weight = 1 / (signal + parts)
+    weight = 1 / np.maximum(signal + parts, np.finfo(float).tiny)
     weight = weight * (
         1 - weight / weight.sum()
     )  # what each element's noise does to the contrast between them
     bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + (
         (weight * parts) ** 2 / slopes.calibration_dof[m]
     ).sum()
+    if bottom == 0:  # readings and calibration without any scatter
+        return float(slopes.signal_dof)
     return float((weight * (signal + parts)).sum() ** 2 / bottom)
 
 
