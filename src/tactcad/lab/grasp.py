@@ -133,6 +133,11 @@ def evaluate(
             legal="two elements and three loads at least",
         )
     slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
+    for still in slopes.element[slopes.s == 0][:1]:
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"element {still}: its signal does not change with the load",
+        )
     stiffness = slopes.f / slopes.s
     number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
     if number not in readings.element:
