@@ -24,9 +24,11 @@ export: environment ## write the files of every design in hardware/ to exports/<
 test: environment ## every test but the long ones
 	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS)
 
-check: environment ## style, and every check of every design: all failures are printed, then it fails
+check: environment ## style, types, and every check of every design: all failures are printed, then it fails
 	@status=0; \
 	$(BIN)/ruff check || status=1; \
+	$(BIN)/ruff format --check || status=1; \
+	$(BIN)/mypy || status=1; \
 	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
 	exit $$status
 

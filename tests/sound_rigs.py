@@ -11,7 +11,7 @@ from tactcad.parts.library.bearings import BEARINGS
 from tactcad.parts.library.orings import GROOVE_DEPTH, GROOVE_WIDTH, INSIDE
 from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
 from tactcad.parts.rigs.layout import RigLayout
-from tactcad.parts.rigs.moving import ballast_range
+from tactcad.scenes.moving_axis import ballast_range
 
 M3, M5 = METRIC["M3"], METRIC["M5"]
 # The stand: the post's front behind the sensor's axis, and the guide's front before it (mm, docs/rigs.md).

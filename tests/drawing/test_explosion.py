@@ -18,8 +18,7 @@ from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.library.screws import cap_screw
 from tactcad.parts.plates import STEEL
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.array import ALONG_Y, DOWN
-from tactcad.scenes.scene import Contact, Placement, Scene
+from tactcad.scenes.scene import ALONG_Y, DOWN, Contact, Placement, Scene
 
 GAP = 5.0
 

@@ -14,7 +14,7 @@ from tactcad.mechanics.rigs import holding_force, inside_by, tipping_margin, tip
 from tactcad.parts.designs import load
 from tactcad.parts.rigs.layout import RigLayout
 from tactcad.scenes import make_scene
-from tactcad.scenes.grasping import moving_weight
+from tactcad.scenes.moving_axis import moving_weight
 from tactcad.scenes.scene import Pose
 from tactcad.solids.build import build
 

@@ -34,12 +34,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import write_whole
+    from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
     from tactcad.paper import published
 
     from .progress import slow_work
 
+    if args.out:
+        refuse_overwriting(args.out, args.file)
     load_cell = published.load().figure["load_cell_stiffness"] if args.load_cell is None else args.load_cell
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")

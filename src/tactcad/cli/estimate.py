@@ -154,6 +154,7 @@ def _why(choice: Choice, accuracy: float) -> str:
 
 
 def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
+    from tactcad.design.files import refuse_overwriting
     from tactcad.lab.batch import estimate_file
 
     for name, given in (("DESIGN", args.design), ("--force", args.force), ("--inspection", args.inspection)):
@@ -163,6 +164,7 @@ def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
         raise InputError("--batch", "writes CSV; leave out --json")
     if args.out is None:
         raise InputError("--batch", "needs --out OUT.csv")
+    refuse_overwriting(args.out, args.batch)
     valid, count = estimate_file(args.batch, args.out, args.model or DEFAULT_RUNG, accuracy)
     print(f"{args.out}: {count} designs, {count - valid} out of range" + (" or of reach" if accuracy else ""))
     return 0

@@ -58,7 +58,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.load import read
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.design.load import find, read
     from tactcad.export.pipeline import export
     from tactcad.scenes import chosen_scenes, left_out
     from tactcad.scenes.poses import pose_of
@@ -68,6 +69,7 @@ def run(args: argparse.Namespace) -> int:
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
+    refuse_overwriting(out, find(args.design))
     done = export(
         design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail, args.drawings
     )

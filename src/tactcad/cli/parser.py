@@ -13,6 +13,10 @@ class Parser(argparse.ArgumentParser):
     """argparse's parser without its page of usage before the message, and with the word that was meant."""
 
     def parse_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> argparse.Namespace:
+        if args and args[-1] == "--":
+            self.error(
+                str(InputError("--", "nothing follows it", legal="leave it out, or name what it is for"))
+            )
         parsed, unknown = super().parse_known_args(args, namespace)
         if unknown:
             hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""

@@ -30,12 +30,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.design.load import find
     from tactcad.export import folder
     from tactcad.paper import array_model as array
     from tactcad.paper import published, report, validation
     from tactcad.parts.designs import load
 
     if args.out:
+        refuse_overwriting(args.out, args.table1, args.table2, find(args.design))
         folder.refuse_foreign(Path(args.out), {".html", ".json", ".svg"}, report.SCHEMA)  # before the work
     data = published.load(args.table1, args.table2)
     made = validation.validate(data, array.from_design(load(args.design)))

@@ -164,6 +164,35 @@ def write_whole(path: str | Path, data: bytes) -> None:
         raise refusal(str(path), error) from error
 
 
+def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
+    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under whatever name or
+    link, lies in a folder that is one, or is a folder with one in it. What is not there is no matter.
+    """
+    place, around = _identity(out), _folders(out)
+    for source in inputs:
+        if source is None or (own := _identity(source)) is None:
+            continue
+        if own == place or place in _folders(source) or own in around:
+            raise InputError(
+                option, f"{out} would overwrite {source}, which is read", legal="a place apart from it"
+            )
+
+
+def _identity(path: str | Path) -> tuple[int, int] | None:
+    """Device and number of what stands at the end of all links, None where nothing does."""
+    try:
+        state = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    return state.st_dev, state.st_ino
+
+
+def _folders(path: str | Path) -> set[tuple[int, int] | None]:
+    """The folders around it, by the name given and by where links lead."""
+    ways = (Path(way(path)) for way in (os.path.abspath, os.path.realpath))
+    return {_identity(folder) for way in ways for folder in way.parents} - {None}
+
+
 def absolute(path: str | Path) -> Path:
     """The path from the root. Raises InputError where the folder that it starts from is gone."""
     try:

@@ -102,7 +102,7 @@ def _section(kind: type, table: dict[str, Any], path: str) -> Any:
     for name in table:
         if name not in fields:
             raise _unknown(f"{path}.{name}", [f"{path}.{n}" for n in fields])
-    values = {}
+    values: dict[str, Any] = {}
     for name, f in fields.items():
         where = f"{path}.{name}"
         if name not in table:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from tactcad.design.files import read_json
+from tactcad.design.load import find
 from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 
@@ -55,6 +56,12 @@ class Side:
             return {}
         files = [f.path for f in read_manifest(self.folder).files if f.kind == "picture"]
         return {path: (self.folder / path).read_bytes() for path in files}
+
+
+def named(source: str) -> Path:
+    """The file or folder that `source` names. Raises InputError where it is no path, and no design of that name."""
+    path = Path(source)
+    return path if os.path.isdir(path) or path.suffix == ".json" else find(source)
 
 
 def read_side(source: str) -> Side:

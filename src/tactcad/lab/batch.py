@@ -113,7 +113,7 @@ def _section(table: Table) -> HingeSection:
     sides = [DEFAULT_SIDES] * len(rows)
     if "sides" in table.header:
         sides = [_side(table, *cell) for cell in zip(rows.lines, table.column("sides"))]
-    return HingeSection(**numbers, two_sided=[SIDES[side] for side in sides])
+    return HingeSection.of(**numbers, two_sided=[SIDES[side] for side in sides])
 
 
 def _side(table: Table, line: int, side: str) -> str:

@@ -43,7 +43,7 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """
     ladder.require_range(s, rung)
     if rung in ladder.WITH_ROOTS:
-        factor = fillet_factor(s)
+        factor: Array | float = fillet_factor(s)
     else:
         factor = 1.0 if rung == "short" else 1.0 + s.straight_length / 2.0 / s.load_arm
     return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
@@ -145,7 +145,8 @@ def grid_factor(s: HingeSection, grid_length, rung: str = ladder.DEFAULT_RUNG) -
         raise CheckFailure(
             "the gauge's grid is longer than the flat part of a two-sided hinge and half of its fillets"
         )
-    root = sum(plane.root_lengths(s)) / 2.0
+    to_arm, to_body = plane.root_lengths(s)
+    root = (to_arm + to_body) / 2.0
     if np.all(s.two_sided):
         return two_sided_grid(s, grid, by_sides("grid", np.True_), root)
     one = one_sided_grid(s, grid, by_sides("grid", np.False_), root)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib.resources import files
-from math import isclose
 from pathlib import Path
 
 import numpy as np
@@ -166,10 +165,3 @@ def _figures(path) -> tuple[dict, dict, dict, dict]:
         {name: unit for name, _, unit, _ in lines},
         {name: place for name, _, _, place in lines},
     )
-
-
-def row_of_measuring(data: Published, row: int) -> int | None:
-    """Row of Table 1 whose stiffness Table 2's row `row` prints as K_m, or None."""
-    k = data.table2.measuring_stiffness.value[row]
-    found = [i for i, v in enumerate(data.table1.stiffness.value) if isclose(v, k, rel_tol=1e-9)]
-    return found[0] if found else None

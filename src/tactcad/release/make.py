@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tactcad.checks.report import Report
+from tactcad.design.files import refuse_overwriting
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.golden import check_golden, golden_path
@@ -51,6 +52,9 @@ def release(
     does not hold just this revision (a draft goes on and says so in its README), or where what was written does
     not read back; InputError where `out` cannot be written.
     """
+    revision = design.design.revision
+    target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
+    refuse_overwriting(target, design_file, shop_file)
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
     _refuse(design, failures, draft, progress)
@@ -58,13 +62,11 @@ def release(
     failures += [str(f) for f in report.failures]
     _refuse(design, failures, draft, progress)
 
-    revision = design.design.revision
     scenes = [make_scene(design, name) for name in scene_names(design)]
     flags = [
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
     contents = Contents(design, scenes, flags, failures, draft)
-    target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
     with tempfile.TemporaryDirectory(prefix="tactcad-release-") as folder:
         files = _exported(
             design, [scene.name for scene in scenes], Path(folder) / design.name, progress, draft

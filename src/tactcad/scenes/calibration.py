@@ -12,14 +12,13 @@ from tactcad.parts.rigs import bought, carried
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
 
-from .array import DOWN, array
+from .array import array
 from .builder import Builder
 from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
-from .scene import REST, Motion, Pose, Rotation, Scene
+from .scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
-OUT_OF_Y: Rotation = ((1, 0, 0), (0, 0, -1), (0, 1, 0))  # local z runs along -y
 
 
 def calibration(design: Design, pose: Pose = REST) -> Scene:
@@ -69,7 +68,7 @@ def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
     head = bought.micrometer(c.stage_travel, 0.01)
     t, half = STAGE_PLATE, STAGE / 2
     below, at = STAND, (0.0, 0.0)
-    for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", OUT_OF_Y, (0, -1)))):
+    for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")
         low = b.place("SF", fixed, (*at, z))

@@ -18,8 +18,8 @@ from tactcad.parts.rigs.layout import (
     RigLayout,
 )
 
-from .array import AGAINST_Y, ALONG_Y
 from .builder import Builder
+from .scene import AGAINST_Y, ALONG_Y
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate

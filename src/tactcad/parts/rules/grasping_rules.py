@@ -9,7 +9,6 @@ from ..layout import Layout
 from ..library.screws import counterbore_diameter
 from ..rigs.carried import BAR_MIDDLE, BAR_SCREW_X
 from ..rigs.layout import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT, RigLayout
-from ..rigs.moving import ballast_range
 from .calibration_rules import carrier_threads_clear
 from .cart_rules import LEAST_AIR
 from .rule import at_most, fits, rule, wrong
@@ -56,18 +55,3 @@ def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     if top < g.lift - SAME or bottom < 1.0:
         what = f"carriage can rise {top:.3g} mm and fall {bottom:.3g} mm"
         yield wrong(path, what, length, f"rise at least {g.lift:g}, fall at least 1 mm")
-
-
-@fits("grasping")
-def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
-    wanted = layout.design.grasping.moving_weight
-    try:
-        low, high = ballast_range(RigLayout(layout.design))
-    except (AttributeError, ValueError):
-        return  # parts that cannot be drawn: the design is refused for that
-    if low <= wanted <= high:
-        return
-    within = f"from {low:.4g} to {high:.4g} N"
-    legal = within if low < high else "fewer or larger weights: their stack is too high"
-    what = "no ballast under the weights brings what moves to it"
-    yield wrong("grasping.moving_weight", what, wanted, legal)
