@@ -88,18 +88,18 @@ def report_folder(path: Path) -> None:
     folder.refuse_foreign(path.parent, {".json"}, "tactcad-validation-1")
 
 
-def cached(path: Path) -> None:
+DATA_KEPT = b"data\n" * 20
+
+
+def cached(path: Path, cache: Cache) -> None:
     """Whatever an entry became, it is what was put there or nothing."""
-    cache = Cache(path.parent / "cache", say=lambda text: None)
-    entry = cache._path("key")
-    entry.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy(path, entry)
-    assert cache.get("key") in (None, b"data\n" * 20)
+    shutil.copy(path, cache._path("key"))
+    assert cache.get("key") in (None, DATA_KEPT)
 
 
-def cache_entry(place: Path) -> bytes:
-    cache = Cache(place)
-    cache.put("key", b"data\n" * 20)
+def entry_of(cache: Cache) -> bytes:
+    cache.put("key", DATA_KEPT)
+    assert cache.get("key") == DATA_KEPT
     return cache._path("key").read_bytes()
 
 
@@ -150,6 +150,7 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
     known = place / "calibration.csv"
     known.write_text(calibration_text.to_csv(rows, 57.04))
     export = Export(design)
+    cache = Cache(place / "cache", say=lambda text: None)
     lines = (EXAMPLES / "calibration.csv").read_bytes().split(b"\n")
     found = [
         Reader(
@@ -194,7 +195,7 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
         Reader("bom.json", export.files["bom.json"][2], lambda path: export.with_file("bom.json", path, old)),
         Reader("report.json", b'{"schema": "tactcad-validation-1", "sections": []}', report_folder),
         Reader("samples.csv", b"poisson,width\n0.3,1\n0.2,2.5\n,3\n", fit_samples.load),
-        Reader("entry", cache_entry(place), cached),
+        Reader("entry", entry_of(cache), lambda path: cached(path, cache)),
     ]
     return {reader.name: reader for reader in found}
 
