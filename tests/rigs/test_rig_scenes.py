@@ -22,7 +22,8 @@ from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import set_screw
 from tactcad.parts.rigs.calibration_loads import calibration_loads
-from tactcad.parts.rigs.layout import RigLayout, pad_middles
+from tactcad.parts.rigs.frame import pad_middles
+from tactcad.parts.rigs.stand_layout import StandLayout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.poses import pose_of, poses
 from tactcad.scenes.scene import Pose, Scene
@@ -94,7 +95,7 @@ def test_each_element_comes_under_the_force_gauge(number):
         design.sheet.thickness / 2,
     )
     at = [sum(r * c for r, c in zip(row, local)) + o for row, o in zip(p.rotation, p.origin)]
-    assert at == pytest.approx([0.0, 0.0, RigLayout(design).pads_up], abs=1e-9)
+    assert at == pytest.approx([0.0, 0.0, StandLayout(design).pads_up], abs=1e-9)
     (gauge,) = (p for p in scene.placements if p.designator == "FG1")
     assert gauge.origin[:2] == (0.0, 0.0)
 

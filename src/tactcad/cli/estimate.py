@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
-from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, RUNGS
+from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
     from tactcad.mechanics.accuracy import Choice
@@ -227,7 +227,7 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
             f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
             "cut at load line and clamp edge"
         )
-    if model in ("plane", "solid"):
+    if model in FITTED:
         lines.append(_spread(design, first))
     return "\n".join(lines)
 

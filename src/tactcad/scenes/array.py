@@ -7,14 +7,18 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from tactcad.design.tree import Design
-from tactcad.parts import plates
+from tactcad.parts.blank import blank
+from tactcad.parts.carrier import carrier
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
+from tactcad.parts.end_plate import end_plate
 from tactcad.parts.fasteners import carrier_screw, clamping
 from tactcad.parts.layout import Layout
 from tactcad.parts.library import dowels, screws
 from tactcad.parts.library.screws import seating_torque
+from tactcad.parts.spacer import spacer
+from tactcad.parts.stop_plate import stop_plate
 
 from .builder import Builder
 from .scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Scene, Step
@@ -76,7 +80,7 @@ def _stack(b: Builder, layout: Layout, instead: Mapping[int, Part]) -> list[str]
     """
     d = layout.design
     half_sheet, half_spacer = d.sheet.thickness / 2, layout.spacer / 2
-    spacer, blank = plates.spacer(layout), plates.blank(layout)
+    between, empty = spacer(layout), blank(layout)
     standing = {(p.row, p.index): instead.get(p.number) or element(layout, p) for p in layout.elements}
     ends, on_ledge = [], []
     for row in (1, 2):
@@ -84,7 +88,7 @@ def _stack(b: Builder, layout: Layout, instead: Mapping[int, Part]) -> list[str]
         before = None
         for i in range(layout.positions + 1):
             y = -layout.stack / 2 + i * d.array.pitch + half_spacer
-            beside = b.place("SP", spacer, (0, y + out * half_spacer, 0), ROW[row], STACK)
+            beside = b.place("SP", between, (0, y + out * half_spacer, 0), ROW[row], STACK)
             if before:
                 b.meet(before, beside)
             else:
@@ -92,17 +96,17 @@ def _stack(b: Builder, layout: Layout, instead: Mapping[int, Part]) -> list[str]
             if i < layout.positions:
                 at = (0, layout.position_y(i) + out * half_sheet, 0)
                 part = standing.get((row, i))
-                before = b.place("E" if part else "BL", part or blank, at, ROW[row], STACK)
+                before = b.place("E" if part else "BL", part or empty, at, ROW[row], STACK)
                 b.meet(beside, before)
                 on_ledge.append(before)
         ends.append(("EP2", beside))
     outer = layout.stack / 2 + d.clamp.end_plate_thickness
     z0 = layout.end_plate_z[0]
-    b.place("EP", plates.end_plate(layout, head=True), (0, -outer, z0), ALONG_Y, OTHER_PLATE)
-    b.place("EP", plates.end_plate(layout, head=False), (0, outer, z0), AGAINST_Y, FIRST_PLATE)
+    b.place("EP", end_plate(layout, head=True), (0, -outer, z0), ALONG_Y, OTHER_PLATE)
+    b.place("EP", end_plate(layout, head=False), (0, outer, z0), AGAINST_Y, FIRST_PLATE)
     for plate, spacer_name in ends:
         b.meet(plate, spacer_name)
-    b.place("CA", plates.carrier(layout), (0, 0, layout.carrier_bottom), UPRIGHT, CARRIER)
+    b.place("CA", carrier(layout), (0, 0, layout.carrier_bottom), UPRIGHT, CARRIER)
     b.meet("EP1", "CA1")
     b.meet("EP2", "CA1")
     return on_ledge
@@ -137,7 +141,7 @@ def _tie_rod(b: Builder, layout: Layout, x: float, length: float) -> None:
 
 
 def _carrier_screws(b: Builder, layout: Layout) -> None:
-    """Carrier screws into the end plates."""
+    """Carrier screws into the end"""
     fixing = carrier_screw(layout)
     screw = screws.cap_screw(layout.design.clamp.screw, fixing.length)
     z = layout.carrier_bottom + fixing.under_head
@@ -150,7 +154,7 @@ def _carrier_screws(b: Builder, layout: Layout) -> None:
 
 def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
     """The stop plate, and set screws in the carrier that press it on the ledges."""
-    plate = b.place("ST", plates.stop_plate(layout), (0, 0, layout.ledge), UPRIGHT, STOP_PLATE)
+    plate = b.place("ST", stop_plate(layout), (0, 0, layout.ledge), UPRIGHT, STOP_PLATE)
     for designator in on_ledge:
         b.meet(designator, plate)
     length = layout.hold_down.length

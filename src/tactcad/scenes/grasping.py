@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from tactcad.design.tree import Design
-from tactcad.parts.rigs import bought, stand
-from tactcad.parts.rigs.layout import RISER_PITCH, STAGE_HOLE, RigLayout, pad_middles
+from tactcad.parts import rigs
+from tactcad.parts.rigs.frame import POST_Y, RISER_PITCH, STAGE_HOLE, pad_middles
+from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
+from tactcad.parts.rigs.rail import rail_holes
+from tactcad.parts.rigs.riser import RISER_SCREW, RISER_UNDER_HEAD
+from tactcad.parts.rigs.stand_layout import StandLayout
 
 from .builder import Builder
 from .common import CORNERS, place_cart, place_stand
@@ -14,18 +18,19 @@ from .scene import AGAINST_Y, ALONG_Y, REST, Motion, Pose, Scene
 
 def grasping(design: Design, pose: Pose = REST) -> Scene:
     """Scene `grasping`: pads on the sample (pose.deflection mm into it), or pose.height mm over it."""
-    rig = RigLayout(design)
-    g = design.grasping
+    rig = guide_layout(design)
+    assert rig is not None, "scenes/__init__.NEEDS has its tables"
+    g = rig.grasping
     weights = round(g.weights) if pose.weights is None else pose.weights
     b = Builder()
     pads = pad_middles(rig.array)
     dents = tuple((x - pose.cart, y) for x, y in pads) if pose.deflection else ()
-    sample = place_cart(b, rig, pose.cart, dents, pose.deflection)
-    post = place_stand(b, rig, stages=False)
+    sample = place_cart(b, rig.cart, pose.cart, dents, pose.deflection)
+    post = place_stand(b, StandLayout(design), stages=False)
     rail = _guide(b, rig, post)
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
-    disc = bought.disc_weight(rig)
+    disc = rigs.disc_weight(rig)
     for _ in range(weights):
         name = b.place("WT", disc, (0, 0, z))
         b.meet(below, name)
@@ -41,7 +46,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     if pose.height == 0:
         for place in rig.array.elements:
             b.meet(place.designator, sample)
-    c = design.cart
+    c = rig.cart.cart
     up, still = (0.0, 0.0, g.lift), (0.0, 0.0, 0.0)
     motions = (
         Motion("array down to the sample", (("axis", up, still),)),
@@ -58,23 +63,23 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     return b.scene("grasping", motions, cover=set(b.groups["axis"]) - elements)
 
 
-def _guide(b: Builder, rig: RigLayout, post: str) -> str:
-    front = rig.post_y - rig.riser_depth
+def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
+    front = POST_Y - rig.riser_depth
     z = rig.riser_middle
-    length = rig.design.grasping.rail_length
-    riser = b.place("RI", stand.riser(rig), (0, front, z), ALONG_Y)
+    length = rig.grasping.rail_length
+    riser = b.place("RI", rigs.riser(rig), (0, front, z), ALONG_Y)
     b.meet(post, riser)
     for sx, sy in CORNERS:
-        at = (sx * STAGE_HOLE, front + rig.riser_depth - stand.RISER_UNDER_HEAD, z + sy * RISER_PITCH)
-        b.screw("M4", stand.RISER_SCREW, at, (0, 1, 0), riser, post)
+        at = (sx * STAGE_HOLE, front + rig.riser_depth - RISER_UNDER_HEAD, z + sy * RISER_PITCH)
+        b.screw("M4", RISER_SCREW, at, (0, 1, 0), riser, post)
     b.step(
         "Riser",
         (0, -50, 110),
         "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square on the base plate.",
     )
-    rail = b.place("RL", bought.rail(length), (0, front, z), AGAINST_Y)
+    rail = b.place("RL", rigs.rail(length), (0, front, z), AGAINST_Y)
     b.meet(riser, rail)
-    for dz in bought.rail_holes(length):
+    for dz in rail_holes(length):
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
     b.step(
         "Guide rail",

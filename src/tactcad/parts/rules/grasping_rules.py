@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from ..finding import SAME, Finding
 from ..layout import Layout
 from ..library.screws import counterbore_diameter
-from ..rigs.carried import BAR_MIDDLE, BAR_SCREW_X
-from ..rigs.layout import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT, RigLayout
+from ..rigs.bar import BAR_MIDDLE, BAR_SCREW_X
+from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
+from ..rigs.guide_layout import guide_layout
 from .calibration_rules import carrier_threads_clear
 from .cart_rules import LEAST_AIR
 from .rule import at_most, fits, rule, wrong
@@ -44,7 +45,10 @@ def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
 
 @fits("grasping")
 def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
-    rig, g = RigLayout(layout.design), layout.design.grasping
+    rig = guide_layout(layout.design)
+    if rig is None:
+        return
+    g = rig.grasping
     path, length = "grasping.rail_length", g.rail_length
     if abs(length / 20 - round(length / 20)) > SAME:
         yield wrong(path, "not a multiple of the rail's hole pitch", length, "a multiple of 20 mm")
