@@ -132,6 +132,12 @@ def evaluate(
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
         )
+    for stranger in np.setdiff1d(readings.element, calibration.element)[:1]:
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"element {stranger} of the grasp is not in {calibration.path}",
+            legal=str(calibration.element.tolist()),
+        )
     slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
     for still in slopes.element[slopes.s == 0][:1]:
         raise InputError(
