@@ -11,7 +11,6 @@ from tactcad.design import load
 from tactcad.design.files import read_json
 from tactcad.design.messages import InputError
 from tactcad.design.toml_text import parse_toml
-from tactcad.export.folder import refuse_foreign
 from tactcad.paper import published
 
 LONG = ".".join("abcdefghijklmnopq")  # 17 names
@@ -144,12 +143,3 @@ def test_json_that_no_file_can_hold_again(tmp_path, value):
         (tmp_path / "x.json").write_text(text, encoding="utf-8")
         with pytest.raises(InputError, match=f"^{tmp_path}/x.json: "):
             read_json(tmp_path / "x.json", 10_000, "a file")
-
-
-def test_a_report_is_not_looked_for_in_a_whole_disk(tmp_path, monkeypatch):
-    """`validate --out /` ends at once: only a folder that is a report is looked through."""
-    from pathlib import Path
-
-    monkeypatch.setattr(Path, "rglob", lambda *_: pytest.fail("looked through"))
-    with pytest.raises(InputError, match="^/: holds files that are not an earlier report's"):
-        refuse_foreign(Path("/"), {".json"}, "any")

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 
 from tactcad.checks.shop import load_shop
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import folder, golden, manifest, sides
+from tactcad.export import golden, manifest, sides
 from tactcad.export.cache import Cache
 from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
@@ -82,10 +82,6 @@ def difference(old: sides.Side, source: str) -> None:
         changes = sides.compare_sides(a, b)
         [str(c) for c in changes], json.dumps([vars(c) for c in changes])
         page(a, b, changes)
-
-
-def report_folder(path: Path) -> None:
-    folder.refuse_foreign(path.parent, {".json"}, "tactcad-validation-1")
 
 
 DATA_KEPT = b"data\n" * 20
@@ -193,7 +189,6 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
         Reader("manifest.json", export.manifest, lambda path: export.with_file("", path, old)),
         Reader("part.dxf", export.files["part.dxf"][2], lambda path: export.with_file("part.dxf", path, old)),
         Reader("bom.json", export.files["bom.json"][2], lambda path: export.with_file("bom.json", path, old)),
-        Reader("report.json", b'{"schema": "tactcad-validation-1", "sections": []}', report_folder),
         Reader("samples.csv", b"poisson,width\n0.3,1\n0.2,2.5\n,3\n", fit_samples.load),
         Reader("entry", entry_of(cache), lambda path: cached(path, cache)),
     ]
@@ -216,7 +211,7 @@ def every_scene(path: Path) -> None:
 
 NAMES = (
     "design.toml shop.toml table1.csv table2.csv batch.csv readings.csv grasp.csv calibration.csv calibration.json sheet.csv "
-    "golden.json manifest.json part.dxf bom.json report.json samples.csv entry"
+    "golden.json manifest.json part.dxf bom.json  samples.csv entry"
 ).split()
 
 

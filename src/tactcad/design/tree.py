@@ -15,6 +15,8 @@ from .materials import ALLOYS
 # Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
 _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
 
+IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands write beside the designs' own
+
 
 def _line(meaning: str) -> Text:
     return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
@@ -26,8 +28,10 @@ class Identity:
 
     name: str = given(
         Text(
-            r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])$)[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
-            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...)",
+            rf"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9]|{'|'.join(IN_EXPORTS)})$)"
+            r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
+            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...), "
+            f"not what else lies in exports/ ({', '.join(IN_EXPORTS)})",
             "short name: folder, part numbers and file names start with it",
         )
     )

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
+from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.parts.section import cut_section
 
@@ -76,6 +77,15 @@ def dxf_bytes(part: Part) -> bytes:
     finally:
         ezdxf.options.write_fixed_meta_data_for_testing = earlier
     return drawing.encode(text.getvalue())
+
+
+def checked_dxf(part: Part) -> bytes:
+    """The part's cut file, read back. Raises CheckFailure where it does not say what the part is."""
+    data = dxf_bytes(part)
+    wrong = check_dxf(data, part)
+    if wrong:
+        raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
+    return data
 
 
 def _add(drawing: Drawing, contour: Contour) -> None:
