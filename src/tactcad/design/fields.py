@@ -42,6 +42,29 @@ class Number:
 
 
 @dataclass(frozen=True)
+class Whole:
+    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one too."""
+
+    low: int
+    high: int
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return f"a whole number from {self.low:g} to {self.high:g}"
+
+    def read(self, value: Any, where: str) -> int:
+        number = Number(self.unit, self.low, self.high, self.meaning).read(value, where)
+        if not number.is_integer():
+            raise InputError(where, "not a whole number", value=value, legal=self.legal)
+        return int(number)
+
+    def schema(self) -> dict:
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
+
+
+@dataclass(frozen=True)
 class Choice:
     """One of a few words."""
 
@@ -175,7 +198,7 @@ class Rows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Choice | Text | Day | Numbers | Rows
+Spec = Number | Whole | Choice | Text | Day | Numbers | Rows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -53,7 +53,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     limits = {
         "element": (1, sum(len(row) for row in design.array.row_arms)),
         "deflection": (0.0, 5.0),
-        "weights": (0, round(design.grasping.weights) if design.grasping else 0),
+        "weights": (0, design.grasping.weights if design.grasping else 0),
         "height": (0.0, max(design.grasping.lift if design.grasping else 0.0, 5.0)),
         "cart": (-design.cart.roll, design.cart.roll) if design.cart else (0.0, 0.0),
     }
