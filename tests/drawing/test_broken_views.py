@@ -42,7 +42,7 @@ def sheet_of(design, part):
     from tactcad.solids.bytes import to_bytes
 
     sheet = part_sheet(Order(design, part, to_bytes(build(part).wrapped), (FILE,)))
-    pdf = pdf_bytes([sheet], "title", "author")
+    pdf = pdf_bytes([sheet], "title", "author", design.design.date)
     assert layout_faults(sheet) == []
     assert drawing_faults(pdf, sheet, part, design.design.revision) == []
     return sheet, pdf_runs(pdf)[0]
