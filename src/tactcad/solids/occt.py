@@ -5,7 +5,8 @@ from __future__ import annotations
 from OCP.TopoDS import TopoDS
 
 try:
-    from OCP.collections import TDF_LabelSequence, TopTools_IndexedMapOfShape
+    from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as TopTools_IndexedMapOfShape
+    from OCP.collections import Sequence_TDF_Label as TDF_LabelSequence
 except ImportError:  # OCP 7.9
     from OCP.TDF import TDF_LabelSequence
     from OCP.TopTools import TopTools_IndexedMapOfShape
