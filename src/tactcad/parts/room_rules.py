@@ -20,12 +20,16 @@ LEAD, LEADS = 0.25, 3
 
 
 def turns(layout: Layout) -> list[float]:
-    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance; in the calibration,
-    which has no stop plate, by what its travel gives."""
+    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance, and with
+    the stop plate as far as that gives way; in the calibration, which has none, by what its travel gives."""
     design = layout.design
     calibrated = design.calibration is not None and misfit(layout, "calibration") is None
     loads = calibration_loads(design) if calibrated else ()
-    tips = [stop_gap(layout, p) + design.stop.tolerance for p in layout.elements]
+    force, give = design.rating.overload_force, layout.stop_give
+    tips = [
+        stop_gap(layout, p) + design.stop.tolerance + give * force * p.load_arm / p.arm
+        for p in layout.elements
+    ]
     for n, load in enumerate(loads):
         pad = design.calibration.travel if load.refused else load.deflection
         tips[n] = max(tips[n], pad * load.place.arm / load.place.load_arm)

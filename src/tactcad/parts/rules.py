@@ -45,6 +45,7 @@ from .room_rules import (
 )
 from .slivers import no_slivers
 from .stop_gap import land_room, stop_gap, stop_limit
+from .stop_rules import gaps_name_an_arm, stop_plate_stays
 
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
@@ -677,6 +678,7 @@ RULES: dict[str, Rule] = {
     rule.__name__: rule
     for rule in (
         override_names_element,
+        gaps_name_an_arm,
         pitch_is_sheet_and_spacer,
         arms_clear_opposite_row,
         hinge_thinner_than_arm,
@@ -692,6 +694,7 @@ RULES: dict[str, Rule] = {
         ledge_below_rear,
         recess_fits_rear,
         stop_land_above_arm,
+        stop_plate_stays,
         stop_keeps_rated_deflection,
         stop_gap_above_tolerance,
         stop_land_fits_arm,
@@ -708,10 +711,11 @@ RULES: dict[str, Rule] = {
     )
 }
 # Rules whose breach would make later ones fail for the same reason.
-STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm"})
+STOP_AFTER = frozenset({"override_names_element", "stop_land_above_arm", "stop_plate_stays"})
 # Rules that need the stop gap or the stiffness, and those without which there is none: what is no hinge has no stiffness.
 ASK_THE_GAP = frozenset(
     {
+        "stop_plate_stays",
         "stop_keeps_rated_deflection",
         "stop_gap_above_tolerance",
         "stop_land_fits_arm",

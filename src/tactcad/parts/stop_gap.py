@@ -44,9 +44,10 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     return round(floor(widest / step + 1e-9) * step, 6)
 
 
-def stop_limit(layout: Layout, place: ElementPlace) -> StopLimit:
+def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
     """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield of the
-    fillet, carried from the load line to the tip by the rigid arm's lever a/L.
+    fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives way by what its
+    beams say, or by `give` mm/N.
 
     Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and errs to
     a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
@@ -69,6 +70,7 @@ def stop_limit(layout: Layout, place: ElementPlace) -> StopLimit:
         design.rating.deflection_factor,
         design.rating.overload_force,
         design.stop.tolerance,
+        layout.stop_give if give is None else give,
     )
 
 
@@ -84,12 +86,12 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
 def _limit(
-    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance
+    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance, give
 ) -> StopLimit:
     section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
     rated = yield_strength / strain.stress_beyond_the_fit(section, 1.0) / factor
-    closing = float(largest_closing_force(section, K, a, overload, rated))
+    closing = float(largest_closing_force(section, K, a, give, overload, rated))
     narrow = K * (2.0 * tolerance + STEP_MM) * L / a
-    return StopLimit(closing / K * a / L, float(largest_overload(section, K, a, narrow, rated)))
+    return StopLimit(closing / K * a / L, float(largest_overload(section, K, a, give, narrow, rated)))
