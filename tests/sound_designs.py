@@ -200,11 +200,15 @@ def _loads(d: Draw) -> None:
     least, most = min(map(min, d.arms)), max(map(max, d.arms))
     pad, sheet = d.table["element.pad_length"], d.table["sheet.thickness"]
     factor = d.number("rating.deflection_factor", high=5.0)
+    # an arm that rubs gives way by a share of what a smooth one does: 1 - mu H/L, here half or more
+    lever = d.table["element.pad_height"] + d.t / 2
+    friction = d.number("rating.friction", high=0.5 * (least - pad / 2) / lever)
+    yielding = 1 - friction * lever / (least - pad / 2)
     # deflection at the tip when a leaf of length l yields: 2 (stress/E) a l/t
     bend = 2 / factor * (max(d.l - 2 * d.r, 0) + sqrt(d.r * d.t)) / d.t
     room = d.rise - 0.2929 * d.corner - 0.005
     open_slot = min(0.3 * d.l * least / d.h, room)
-    low = 2 * 0.02 / (bend * least)
+    low = 2 * 0.02 / (yielding * bend * least)
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", d.choice(*ALLOYS))
     ratio = d.between(min(max(low, 3e-4), 0.5), min(max(high, 3e-4), 0.5))
@@ -222,8 +226,8 @@ def _loads(d: Draw) -> None:
     E = d.number("material.youngs_modulus", max(1e3, 1 / ratio, 2e-6 / force / ratio), min(1e6, 5000 / ratio))
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
     d.rest("material")
-    d.elastic = 0.2 * bend * factor * least * ratio  # mm of deflection that no hinge yields at
-    gap = min(room, bend * least * ratio)
+    d.elastic = 0.2 * yielding * bend * factor * least * ratio  # mm of deflection that no hinge yields at
+    gap = min(room, yielding * bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     # rows that stay apart when facing pads turn towards each other

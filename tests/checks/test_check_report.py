@@ -8,9 +8,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tactcad.checks.finding import Finding
 from tactcad.checks.report import Report, failure_table, json_bytes, junit_bytes
 from tactcad.cli.main import main
+from tactcad.parts.finding import Finding
 
 
 def report() -> Report:

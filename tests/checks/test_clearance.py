@@ -13,7 +13,7 @@ from tactcad.design.load import names
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.rigs.calibration_loads import calibration_loads
-from tactcad.parts.room_rules import turns
+from tactcad.parts.rules.pressed_rules import turns
 from tactcad.parts.stop_gap import stop_gap
 
 
@@ -73,37 +73,6 @@ def test_the_calibration_turns_an_arm_further_than_its_stop_would():
     assert turns(Layout(replace(design, calibration=None)))[0] < asin(tip / 8)
 
 
-def test_an_arm_too_near_its_neighbour_is_seen_with_part_place_and_number():
-    """0.11 mm of spacer, less 0.1 of sheet and 0.01 of spacer."""
-    found = check_clearance(variant({"array.row_arms": [[6, 6]], "array.pitch": 3.11, "array.spacer": 0.11}))
-    assert [(f.part, f.message.split(";")[0]) for f in found] == [
-        ("E1", "the arm stands 0.110 mm beside EP1"),
-        ("E1", "the arm stands 0.110 mm beside E2"),
-        ("E2", "the arm stands 0.110 mm beside E1"),
-        ("E2", "the arm stands 0.110 mm beside EP2"),
-    ]
-    # E1's mid-plane at y = -1.555: its sides 1.5 mm to both sides, its tip at x = 1
-    assert [f.place for f in found[:2]] == [
-        pytest.approx((1.0, -3.055, 0.0)),
-        pytest.approx((1.0, -0.055, 0.0)),
-    ]
-    assert all(f.value == pytest.approx(0.11) and f.limit == pytest.approx(0.11) for f in found)
-    assert (
-        check_clearance(variant({"array.row_arms": [[6, 6]], "array.pitch": 3.13, "array.spacer": 0.13}))
-        == []
-    )
-
-
-def test_a_blank_is_a_neighbour_too():
-    found = check_clearance(
-        variant({"array.row_arms": [[6, 6], [6]], "array.pitch": 3.1, "array.spacer": 0.1})
-    )
-    assert {"a blank"} == {f.message.split("beside ")[1].split(";")[0] for f in found if f.part == "E3"} - {
-        "EP1",
-        "EP2",
-    }
-
-
 def test_an_arm_that_would_meet_the_stop_plate_beside_its_land_is_seen():
     """The land stands 0.13 mm over the arm, whose back, 2.6 of 4 mm out, comes 0.035 less high than the tip."""
     (finding,) = check_clearance(
@@ -118,29 +87,3 @@ def test_an_arm_that_would_meet_the_stop_plate_beside_its_land_is_seen():
     )
     assert finding.part == "E1" and "stop plate" in finding.message
     assert finding.value == pytest.approx(0.165, abs=0.01) and finding.limit == 0.2
-
-
-def test_leads_without_room_are_seen():
-    (finding,) = check_clearance(
-        variant({"array.row_arms": [[6]], "element.recess_depth": 0.2, "element.corner_radius": 0.15})
-    )
-    assert "0 leads of 0.25 mm fit into its wire recess of 4 x 0.2 mm, it has 3" in finding.message
-    assert finding.place[0] == pytest.approx(1 + 6 + 0.44 + 1.96 + 1.6)
-    # 0.6 mm wide and 0.5 deep: two in a row, two rows
-    narrow = {
-        "array.row_arms": [[6]],
-        "sheet.thickness": 0.4,
-        "array.spacer": 0.2,
-        "array.pitch": 0.6,
-        "tolerance.sheet_thickness": 0.01,
-    }
-    assert check_clearance(variant({**narrow, "element.recess_depth": 0.5})) == []
-    assert [f.value for f in check_clearance(variant({**narrow, "element.recess_depth": 0.45}))] == [2]
-
-
-def test_a_gauge_that_would_touch_the_object_is_seen():
-    """Lead of 0.25 and 0.03 of backing under a pad of 0.27."""
-    (finding,) = check_clearance(
-        variant({"array.row_arms": [[6]], "element.pad_height": 0.27, "element.pad_root_radius": 0.2})
-    )
-    assert "gauge and leads stand 0.280 mm out" in finding.message and finding.value == pytest.approx(0.27)

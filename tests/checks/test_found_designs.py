@@ -96,7 +96,7 @@ PASSES = {
 @pytest.mark.parametrize("what", REFUSED)
 def test_refused_by_its_rule(what):
     rule, changes = REFUSED[what]
-    assert rule in [b.rule for b in broken_rules(variant({**TWO, **changes}))]
+    assert rule in [b.check for b in broken_rules(variant({**TWO, **changes}))]
 
 
 @pytest.mark.parametrize("what", LEFT_OUT)

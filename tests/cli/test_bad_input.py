@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 from variants import DROP, HARDWARE, table
@@ -205,3 +206,25 @@ def test_a_closed_pipe_is_no_error():
         check=False,
     )
     assert (run.returncode, run.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "error, said",
+    [
+        (ModuleNotFoundError("No module named 'OCP'", name="OCP.gp"), "pip install 'tactcad[cad]'"),
+        (ImportError("libGL.so.1: cannot open", name="OCP"), "libGL.so.1: cannot open; on Debian or Ubuntu"),
+    ],
+)
+def test_a_kernel_that_cannot_be_loaded_is_one_line(error, said, monkeypatch, capsys):
+    monkeypatch.setattr("tactcad.cli.schema.run", Mock(side_effect=error))
+    assert main(["schema"]) == 1
+    told = capsys.readouterr().err
+    assert said in told and told.count("\n") == 1
+
+
+def test_another_missing_module_is_our_own_mistake(monkeypatch):
+    monkeypatch.setattr(
+        "tactcad.cli.schema.run", Mock(side_effect=ModuleNotFoundError(name="tactcad.nothing"))
+    )
+    with pytest.raises(ModuleNotFoundError):
+        main(["schema"])

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.checks.finding import Finding
 from tactcad.cli.main import main
 from tactcad.contour import Line
 from tactcad.design.load import names, read
@@ -30,6 +29,7 @@ from tactcad.export.golden import (
 )
 from tactcad.parts.designs import load
 from tactcad.parts.element import element
+from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
 
 ROOT = Path(__file__).parents[2]

@@ -45,7 +45,7 @@ SPELT_OUT = {
     ("checks/brep.py", "f'step-{name}'"): ("step-volume", "step-area"),
 }
 # Functions that make findings under a name that they are given.
-PASS_ON = {"Finding", "fail", "flag", "_finding", "_about", "_pressed"}
+PASS_ON = {"Finding", "fail", "flag", "at_least", "at_most", "_finding", "_pressed", "_thin"}
 GATE = re.compile(
     r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$"
 )
@@ -98,16 +98,15 @@ def _without(function):
     if inspect.isgeneratorfunction(function):
         @functools.wraps(function)
         def wrapped(*args, **kwargs):
-            return (f for f in function(*args, **kwargs) if getattr(f, "check", f[0] if isinstance(f, tuple) else "") != {name!r})
+            return (f for f in function(*args, **kwargs) if f.check != {name!r})
     else:
         @functools.wraps(function)
         def wrapped(*args, **kwargs):
             return [f for f in function(*args, **kwargs) if f.check != {name!r}]
     return wrapped
 for _name, _function in list(globals().items()):
-    if callable(_function) and getattr(_function, "__module__", "") == __name__ and any(
-        kind in str(getattr(_function, "__annotations__", {{}}).get("return", "")) for kind in ("[Finding]", "[Raw]")
-    ):
+    returned = str(getattr(_function, "__annotations__", {{}}).get("return", ""))
+    if callable(_function) and getattr(_function, "__module__", "") == __name__ and "[Finding]" in returned:
         globals()[_name] = _without(_function)
 """
 
@@ -135,8 +134,6 @@ def names_of_findings(module: str, tree: ast.Module) -> set[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in PASS_ON and node.args:
             names |= _spelt(module, node.args[0])
-        elif isinstance(node, ast.Yield) and isinstance(node.value, ast.Tuple) and len(node.value.elts) == 5:
-            names |= _spelt(module, node.value.elts[0])
         elif isinstance(node, ast.For) and isinstance(node.iter, ast.Tuple):
             for row in node.iter.elts:  # rows of a table whose first column is the name
                 if (
@@ -164,27 +161,13 @@ def _spelt(module: str, node: ast.expr) -> set[str]:
 
 
 def rules() -> Iterator[Mutant]:
-    for module, tables in (("parts/rules.py", ("RULES",)), ("parts/rigs/rules.py", ("RIG_RULES", "FITS"))):
-        tree = ast.parse((SOURCE / "tactcad" / module).read_text(encoding="utf-8"))
-        homes = {node.name: module for node in tree.body if isinstance(node, ast.FunctionDef)}
-        for node in tree.body:  # a rule may live in a module of its own, imported from beside this one
-            if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module:
-                homes |= {
-                    alias.name: f"{Path(module).parent}/{node.module.replace('.', '/')}.py"
-                    for alias in node.names
-                }
-        for node in tree.body:
-            target = (
-                node.target
-                if isinstance(node, ast.AnnAssign)
-                else node.targets[0]
-                if isinstance(node, ast.Assign)
-                else None
-            )
-            if isinstance(target, ast.Name) and target.id in tables:
-                used = {n.id for n in ast.walk(node.value) if isinstance(n, ast.Name)}
-                for name in sorted(used & set(homes)):
-                    yield Mutant("rule", homes[name], name, lambda tree, name=name: _silent(tree, name))
+    """Functions with @rule or @fits above them."""
+    for path in sorted((SOURCE / "tactcad").glob("*/**/*.py")):
+        module = path.relative_to(SOURCE / "tactcad").as_posix()
+        for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
+            if any(ast.unparse(d).startswith(("rule(", "fits(")) for d in function.decorator_list):
+                name = function.name
+                yield Mutant("rule", module, name, lambda tree, name=name: _silent(tree, name))
 
 
 def _silent(tree: ast.Module, name: str) -> ast.Module:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 from variants import variant
 
-from tactcad.checks.finding import Finding
 from tactcad.checks.interference import check_interference
 from tactcad.checks.motion import check_motions
 from tactcad.contour import circle, rectangle
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.designs import load
 from tactcad.parts.detail import envelope
+from tactcad.parts.finding import Finding
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene
 from tactcad.solids.build import build

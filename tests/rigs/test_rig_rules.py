@@ -9,9 +9,8 @@ from tactcad.design.load import names
 from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
-from tactcad.parts.rigs.rules import FITS, RIG_RULES
-from tactcad.parts.rules import broken_rules
-from tactcad.scenes import chosen_scenes, left_out, scene_names
+from tactcad.parts.rules import broken_rules, design_rules, scene_rules
+from tactcad.scenes import NEEDS, chosen_scenes, left_out, scene_names
 
 WITNESSES = {
     "axles_carry_wheels": {"cart.bearing": "682-2Z", "cart.shim": 2.0},
@@ -51,25 +50,25 @@ MISFITS = {
 
 
 def test_there_is_a_witness_for_every_rule():
-    assert set(WITNESSES) == set(RIG_RULES)
-    assert set(MISFITS) == {rule.__name__ for rules in FITS.values() for rule in rules}
+    of_rigs = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules")
+    assert set(WITNESSES) == {n for n, r in design_rules().items() if r.find.__module__.endswith(of_rigs)}
+    assert set(MISFITS) == {name for scene in NEEDS for name in scene_rules(scene)}
 
 
 @pytest.mark.parametrize("rule", WITNESSES)
 def test_a_design_that_breaks_it_is_refused(rule):
     design = variant(WITNESSES[rule])
-    assert rule in [b.rule for b in broken_rules(design)]
-    found = next(iter(RIG_RULES[rule](Layout(design))))
-    assert found[0].split(".")[0] in {"cart", "holder", "grasping", "calibration", "sample"}
-    assert found[3]  # says what is legal
+    assert rule in [b.check for b in broken_rules(design)]
+    (found,) = design_rules()[rule](Layout(design))
+    assert found.part.split(".")[0] in {"cart", "holder", "grasping", "calibration", "sample"}
+    assert found.limit  # says what is legal
 
 
 @pytest.mark.parametrize("rule", MISFITS)
 def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
     scene, changes = MISFITS[rule]
     design = variant(changes)
-    (checked,) = (r for r in FITS[scene] if r.__name__ == rule)
-    assert list(checked(Layout(design)))
+    assert scene_rules(scene)[rule](Layout(design))
     assert scene not in scene_names(design)
     assert any(line.startswith(f"scene {scene} left out: rule ") for line in left_out(design))
     with pytest.raises(InputError, match="left out"):
@@ -87,7 +86,7 @@ def test_the_shipped_rigs_keep_all(name):
 @pytest.mark.parametrize("rows", [[1], [3], [1, 7], [50, 50], [500, 500]])
 def test_arrays_of_any_length_are_still_built(rows):
     design = variant({"array.row_arms": [[6.0] * n for n in rows]})
-    assert not [b for b in broken_rules(design) if b.rule in RIG_RULES]
+    assert not [b for b in broken_rules(design) if b.check in WITNESSES]
     assert "array" in scene_names(design)
 
 

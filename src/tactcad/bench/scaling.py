@@ -18,17 +18,6 @@ from .timing import interleaved
 
 TITLE = "Scaling with the number of elements"
 QUESTION = "Does any cost grow faster than the array?"
-BATCH_COLUMNS = (
-    "hinge_thickness",
-    "hinge_length",
-    "fillet_radius",
-    "load_arm",
-    "arm_height",
-    "body_height",
-    "body_length",
-    "poisson",
-    "width",
-)
 
 # Why a stage may grow faster than its array; what is not named here is reported as unexplained.
 _PICTURES = (
@@ -107,7 +96,9 @@ def _batches(plan: Plan) -> list[dict]:
         plan.say(f"tactcad estimate --batch, {n} rows")
         source = plan.folder / "batch.csv"
         drawn = draw_box(n, plan.seed)
-        fit_samples.write({k: drawn[k] for k in BATCH_COLUMNS} | {"youngs_modulus": np.full(n, 70e3)}, source)
+        fit_samples.write(
+            {k: drawn[k] for k in fit_samples.BOX} | {"youngs_modulus": np.full(n, 70e3)}, source
+        )
         run = command("estimate", "--batch", str(source), "--out", str(plan.folder / "stiffness.csv"))
         runs = [measured(run) for _ in range(plan.of(1, 2, 5))]
         seconds = [r.seconds for r in runs]

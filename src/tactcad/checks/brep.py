@@ -16,11 +16,10 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL,
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from tactcad.parts.description import Part
+from tactcad.parts.finding import Finding
 from tactcad.solids.explore import subshapes
 from tactcad.solids.measure import measure
 from tactcad.solids.step import read_step, write_step
-
-from .finding import Finding
 
 VOLUME_AGREES = 1e-6
 # What comes back from a STEP file is what went in, but for the last of its 15 digits: shares of volume and area, and mm.

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
+from tactcad.parts.finding import Finding
 from tactcad.parts.rigs.calibration_loads import calibration_loads
-
-from .finding import Finding
 
 
 def check_calibration(design: Design) -> list[Finding]:

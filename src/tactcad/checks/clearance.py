@@ -1,8 +1,12 @@
-"""Do pressed arms stay clear of what stands around them, and have gauges and leads their space?
+"""Do pressed arms stay clear of their own body, the stop plate and the opposite row?
 
 Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to its stop's gap and
-tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate. It moves in its own
-plane: from its neighbours and the end plates it stays as far as it stands.
+tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate.
+
+The rules on pressed arms (`parts/rules/pressed_rules.py`) say in closed form which corner meets which wall first. This
+asks every piece of the contour, and so alone finds a shape of arm, fillet or land of which that is no longer true. Of
+thousands of designs that keep the rules none has had a finding here. What lies beside an arm, and the room of gauges
+and leads, are the rules' alone: there is no contour to ask.
 """
 
 from __future__ import annotations
@@ -16,37 +20,20 @@ from tactcad.contour import Arc, Contour, Point, Segment
 from tactcad.contour.nearest import distance
 from tactcad.design.tree import Design
 from tactcad.parts.element import outline
+from tactcad.parts.finding import Finding
 from tactcad.parts.layout import ElementPlace, Layout
-from tactcad.parts.room_rules import (
-    LEAD,
-    LEADS,
-    gauge_room,
-    gauge_stands_out,
-    hinge_centre,
-    leads_that_fit,
-    neighbours_take,
-    turns,
-)
+from tactcad.parts.rules.pressed_rules import hinge_centre, turns
 from tactcad.parts.stop_gap import stop_gap
-
-from .finding import Finding
 
 
 def check_clearance(design: Design) -> list[Finding]:
-    """Findings on every element, pressed and at rest: its own body, the stop plate, its neighbours and the end plates,
-    the opposite arms, gauge and leads.
+    """Findings on every pressed element: its own body, the stop plate, the opposite arms.
 
     Nearer than the design's tolerances is too near: two pad edges may each be off by [tolerance] load_arm.
     """
     layout = Layout(design)
     arms = _Arms(layout)
-    return [
-        *_own_body(layout, arms),
-        *_stop_plate(layout, arms),
-        *_beside(layout),
-        *_opposite(layout, arms),
-        *_leads(layout),
-    ]
+    return [*_own_body(layout, arms), *_stop_plate(layout, arms), *_opposite(layout, arms)]
 
 
 class _Arms:
@@ -125,8 +112,6 @@ def _own_body(layout: Layout, arms: _Arms) -> Iterator[Finding]:
             )
 
 
-# Lengths in decimals, kept in binary, mm.
-ROUNDING = 1e-9
 # Pieces of the contour that meet the stop plate, or lead up to it.
 LAND = frozenset({"stop_land", "tip", "land_ramp", "land_root"})
 
@@ -143,33 +128,6 @@ def _stop_plate(layout: Layout, arms: _Arms) -> Iterator[Finding]:
         limit = layout.design.tolerance.arm_height
         if seen[key] <= limit:
             yield _pressed("stop-clearance", place, seen[key], limit, "the stop plate beside its land")
-
-
-def _beside(layout: Layout) -> Iterator[Finding]:
-    """Along the row: what stands next to each element, blanks and end plates too, is a spacer away."""
-    limit, thick = neighbours_take(layout), layout.design.sheet.thickness
-    for place in layout.elements:
-        for step in (-1, 1):
-            gap = layout.stack / 2 - abs(place.y) - thick / 2
-            index = place.index + step
-            if 0 <= index < layout.positions:
-                gap = abs(layout.position_y(index) - place.y) - thick
-                what = next(
-                    (p.designator for p in layout.elements if (p.row, p.index) == (place.row, index)),
-                    "a blank",
-                )
-            else:
-                what = "EP1" if place.y + step < place.y else "EP2"
-            if gap <= limit + ROUNDING:
-                message = f"the arm stands {gap:.3f} mm beside {what}; tolerances of sheet and spacer take {limit:.3f} mm"
-                yield _about(
-                    "neighbour-clearance",
-                    place,
-                    (place.hinge_x - place.arm, place.y + step * thick / 2, 0.0),
-                    gap,
-                    limit,
-                    message,
-                )
 
 
 def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
@@ -192,29 +150,7 @@ def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
                 )
 
 
-def _leads(layout: Layout) -> Iterator[Finding]:
-    """Gauge and leads stay off the object, and the leads go into the wire recess."""
-    e = layout.design.element
-    out, room = gauge_stands_out(layout), gauge_room(layout)
-    fit = leads_that_fit(layout)
-    for place in layout.elements:
-        if room < out - ROUNDING:
-            message = f"gauge and leads stand {out:.3f} mm out, and the object comes within {room:.3f} mm of their face"
-            yield _about("gauge-room", place, (place.hinge_x, 0.0), room, out, message)
-        if fit < LEADS:
-            message = (
-                f"{fit} leads of {LEAD:g} mm fit into its wire recess of {layout.design.array.pitch:g} x {e.recess_depth:g} mm, "
-                f"it has {LEADS}"
-            )
-            yield _about("lead-room", place, (layout.recess_start, 0.0), fit, LEADS, message)
-
-
 def _pressed(check: str, place: ElementPlace, value: float, limit: float, what: str) -> Finding:
     message = f"pressed as far as it goes the arm comes within {value:.3f} mm of {what}; tolerances take {limit:.3f} mm"
-    return _about(check, place, (place.hinge_x - place.arm, 0.0), value, limit, message)
-
-
-def _about(
-    check: str, place: ElementPlace, at: tuple[float, ...], value: float, limit: float, message: str
-) -> Finding:
+    at = (place.hinge_x - place.arm, 0.0)
     return Finding(check, "fail", place.designator, at, value, limit, message)

@@ -14,12 +14,12 @@ import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.TopoDS import TopoDS_Shape
 
+from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.solids.measure import bounding_box, measure, volume
 from tactcad.solids.near import Faces, boxed, faces_within, nearest
 from tactcad.solids.place import location
 
-from .finding import Finding
 from .sliding import stretch, zones
 from .threads import thread_overlap
 

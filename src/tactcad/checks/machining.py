@@ -3,27 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
-from math import dist, hypot, inf
-from typing import Literal
+from math import dist, inf
 
 from tactcad.contour import Arc, Contour
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
 from tactcad.parts.description import Extrusion, Hole, Part, Pocket, Revolution, Vector, drill_point_height
+from tactcad.parts.finding import SAME, Finding, at_least, at_most
 from tactcad.parts.library.screws import METRIC
 
-from .finding import Finding
 from .shop import Machining
 
 MACHINED = ("milled", "turned", "ground")
-SAME = 1e-9
 # Coarse pitches that are no screws of the array (ISO 261), mm.
 PITCH = {name: m.pitch for name, m in METRIC.items()} | {"M6": 1.0}
-
-
-# Walls: flagged where they are thinner than advised, failed where no workshop would leave them.
-WALLS = ("hole-web", "hole-wall", "counterbore")
 
 
 def check_machining(part: Part, limit: Machining) -> list[Finding]:
@@ -31,18 +26,15 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
     if part.process not in MACHINED:
         return []
     rules = (_corners, _narrow_pockets, _pocket_floors, _drills, _threads, _hole_walls, _slender)
-    return [
-        Finding(check, _severity(check, value, limit), part.part_no, place, value, least, message)
-        for rule in rules
-        for check, place, value, least, message in rule(part, limit)
-    ]
+    return [finding for rule in rules for finding in rule(part, limit)]
 
 
-def _severity(check: str, value: float, limit: Machining) -> Literal["fail", "flag"]:
-    return "flag" if check in WALLS and value >= limit.wall_least - SAME else "fail"
-
-
-Raw = tuple[str, Vector, float, float, str]
+def _thin(
+    check: str, part: Part, at: Vector, wall: float, limit: Machining, message: str
+) -> Iterator[Finding]:
+    """A wall is flagged where it is thinner than advised, and fails where no workshop would leave it."""
+    for found in at_least(check, part.part_no, wall, limit.wall, message, at):
+        yield found if wall < limit.wall_least - SAME else replace(found, severity="flag")
 
 
 def _pockets(part: Part) -> Iterator[Pocket]:
@@ -53,19 +45,21 @@ def _pockets(part: Part) -> Iterator[Pocket]:
             yield f
 
 
-def _corners(part: Part, limit: Machining) -> Iterator[Raw]:
+def _corners(part: Part, limit: Machining) -> Iterator[Finding]:
     """Inside corners: no tighter than the cutter that reaches the depth."""
     if isinstance(part.body, Extrusion) and part.process == "milled":
-        yield from _tight("outline", part.body.outer, part.body.thickness, limit, inside=False)
+        yield from _tight(part, "outline", part.body.outer, part.body.thickness, limit, inside=False)
         for opening in part.body.openings:
-            yield from _tight("opening", opening, part.body.thickness, limit, inside=True)
+            yield from _tight(part, "opening", opening, part.body.thickness, limit, inside=True)
     for pocket in _pockets(part):
-        yield from _tight(f"pocket {pocket.name}", pocket.contour, pocket.depth, limit, inside=True)
+        yield from _tight(part, f"pocket {pocket.name}", pocket.contour, pocket.depth, limit, inside=True)
         for island in pocket.island:
-            yield from _tight(f"island in {pocket.name}", island, pocket.depth, limit, inside=False)
+            yield from _tight(part, f"island in {pocket.name}", island, pocket.depth, limit, inside=False)
 
 
-def _tight(name: str, contour: Contour, depth: float, limit: Machining, inside: bool) -> Iterator[Raw]:
+def _tight(
+    part: Part, name: str, contour: Contour, depth: float, limit: Machining, inside: bool
+) -> Iterator[Finding]:
     """Corners of a contour that the cutter meets from its inside (a pocket) or its outside (an outline)."""
     least = max(limit.cutter_radius, depth / limit.cutter_reach / 2)
     contour = contour if contour.ccw else contour.reversed()
@@ -73,21 +67,11 @@ def _tight(name: str, contour: Contour, depth: float, limit: Machining, inside: 
     for s, after in zip(segments, segments[1:] + segments[:1]):
         turn = _turn(s, after)
         if (turn if inside else -turn) > 1e-6:
-            yield (
-                "mill-corner",
-                (*s.end, 0.0),
-                0.0,
-                least,
-                f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of {least:.3g} mm or more",
-            )
-        if isinstance(s, Arc) and s.ccw == inside and s.radius < least - SAME:
-            yield (
-                "mill-corner",
-                (*s.at(0.5), 0.0),
-                s.radius,
-                least,
-                f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more",
-            )
+            what = f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of {least:.3g} mm or more"
+            yield from at_least("mill-corner", part.part_no, 0.0, least, what, (*s.end, 0.0))
+        if isinstance(s, Arc) and s.ccw == inside:
+            what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more"
+            yield from at_least("mill-corner", part.part_no, s.radius, least, what, (*s.at(0.5), 0.0))
 
 
 def _turn(a, b) -> float:
@@ -105,130 +89,78 @@ def _direction(s, u: float) -> tuple[float, float]:
     return ((s.end[0] - s.start[0]) / s.length, (s.end[1] - s.start[1]) / s.length)
 
 
-def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Raw]:
+def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:
     """Grooves around islands: as wide as the cutter that reaches their floor."""
     for pocket in _pockets(part):
         least = max(2 * limit.cutter_radius, pocket.depth / limit.cutter_reach)
         for island in pocket.island:
             wide = min(distance(a, b) for a in pocket.contour for b in island)
-            if wide < least - SAME:
-                yield (
-                    "mill-groove",
-                    pocket.at,
-                    wide,
-                    least,
-                    f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more",
-                )
+            what = f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more"
+            yield from at_least("mill-groove", part.part_no, wide, least, what, pocket.at)
 
 
-def _pocket_floors(part: Part, limit: Machining) -> Iterator[Raw]:
+def _pocket_floors(part: Part, limit: Machining) -> Iterator[Finding]:
     for pocket in _pockets(part):
         left = _material_along(part, pocket.at, pocket.axis) - pocket.depth
-        if left < limit.floor - SAME:
-            yield (
-                "mill-floor",
-                pocket.at,
-                left,
-                limit.floor,
-                f"pocket {pocket.name} leaves a floor of {left:.3g} mm, at least {limit.floor:g}",
-            )
+        what = f"pocket {pocket.name} leaves a floor of {left:.3g} mm, at least {limit.floor:g}"
+        yield from at_least("mill-floor", part.part_no, left, limit.floor, what, pocket.at)
 
 
 def _holes(part: Part) -> list[Hole]:
     return [f for f in part.features if isinstance(f, Hole)]
 
 
-def _drills(part: Part, limit: Machining) -> Iterator[Raw]:
+def _drills(part: Part, limit: Machining) -> Iterator[Finding]:
     for h in _holes(part):
-        if h.diameter < limit.drill - SAME:
-            yield (
-                "drill-diameter",
-                h.at,
-                h.diameter,
-                limit.drill,
-                f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}",
-            )
+        what = f"hole {h.name}: {h.diameter:g} mm, at least {limit.drill:g}"
+        yield from at_least("drill-diameter", part.part_no, h.diameter, limit.drill, what, h.at)
         wide, entry = h.counterbore or (h.diameter, 0.0)
         for deep, diameter in ((h.depth - entry, h.diameter), (entry, wide)):
-            if deep > limit.drill_reach * diameter + SAME:
-                yield (
-                    "drill-depth",
-                    h.at,
-                    deep,
-                    limit.drill_reach * diameter,
-                    f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters",
-                )
-        if h.counterbore and h.counterbore[1] >= h.depth - SAME:
-            yield (
-                "counterbore",
-                h.at,
-                h.depth - h.counterbore[1],
-                limit.wall,
-                f"hole {h.name}: counterbore as deep as the hole",
-            )
-        elif h.counterbore and h.through and h.depth - h.counterbore[1] < limit.wall - SAME:
-            left = h.depth - h.counterbore[1]
-            yield (
-                "counterbore",
-                h.at,
-                left,
-                limit.wall,
-                f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}",
-            )
+            what = f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters"
+            yield from at_most("drill-depth", part.part_no, deep, limit.drill_reach * diameter, what, h.at)
+        if h.counterbore:
+            yield from _under_head(part, h, h.depth - h.counterbore[1], limit)
         if not h.through:
             tip = drill_point_height(h.diameter) if h.drill_point else 0.0
             left = _material_along(part, h.at, h.axis) - h.depth - tip
-            if left < limit.floor - SAME:
-                yield (
-                    "drill-floor",
-                    h.at,
-                    left,
-                    limit.floor,
-                    f"blind hole {h.name} leaves {left:.3g} mm of material, at least {limit.floor:g}",
-                )
+            what = f"blind hole {h.name} leaves {left:.3g} mm of material, at least {limit.floor:g}"
+            yield from at_least("drill-floor", part.part_no, left, limit.floor, what, h.at)
 
 
-def _threads(part: Part, limit: Machining) -> Iterator[Raw]:
+def _under_head(part: Part, h: Hole, left: float, limit: Machining) -> Iterator[Finding]:
+    """A counterbore leaves material under the screw's head."""
+    if left <= SAME:
+        what = f"hole {h.name}: counterbore as deep as the hole"
+        yield from at_least("counterbore", part.part_no, left, limit.wall, what, h.at)
+    elif h.through:
+        what = f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        yield from _thin("counterbore", part, h.at, left, limit, what)
+
+
+def _threads(part: Part, limit: Machining) -> Iterator[Finding]:
     for h in _holes(part):
         if not h.thread:
             continue
-        d = h.thread_diameter
-        if h.thread_depth > limit.thread_reach * d + SAME:
-            yield (
-                "thread-depth",
-                h.at,
-                h.thread_depth,
-                limit.thread_reach * d,
-                f"thread {h.name} {h.thread}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters",
-            )
+        name, deepest = f"thread {h.name} {h.thread}", limit.thread_reach * h.thread_diameter
+        what = f"{name}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters"
+        yield from at_most("thread-depth", part.part_no, h.thread_depth, deepest, what, h.at)
         if not h.through:
             start = h.counterbore[1] if h.counterbore else 0.0
             room, least = h.depth - start - h.thread_depth, limit.run_out * PITCH[h.thread]
-            if room < least - 1e-6:
-                yield (
-                    "thread-run-out",
-                    h.at,
-                    room,
-                    least,
-                    f"thread {h.name} {h.thread}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}",
-                )
+            if room < least - 1e-6:  # mm: depths are rounded to that
+                what = f"{name}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}"
+                yield from at_least("thread-run-out", part.part_no, room, least, what, h.at)
 
 
-def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
+def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
     """Material between holes, and between a hole and the part's sides."""
     cylinders = [c for h in _holes(part) for c in _cylinders(h)]
     for (h, a, b, r), (k, c, d, q) in combinations(cylinders, 2):
         if h is k:
             continue
         wall = _between(a, b, c, d) - r - q
-        if wall < limit.wall - SAME:
-            yield (
-                "hole-web",
-                a,
-                wall,
-                limit.wall,
-                f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}",
-            )
+        what = f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        yield from _thin("hole-web", part, a, wall, limit, what)
     if not isinstance(part.body, Extrusion):
         return
     t = part.body.thickness
@@ -238,14 +170,8 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Raw]:
             wall = (clearance(part.body.outer, a[:2]) if inside else -inf) - r
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
-        if wall < limit.wall - SAME:
-            yield (
-                "hole-wall",
-                a,
-                wall,
-                limit.wall,
-                f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}",
-            )
+        what = f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        yield from _thin("hole-wall", part, a, wall, limit, what)
 
 
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
@@ -303,7 +229,7 @@ def _material_along(part: Part, at: Vector, axis: Vector) -> float:
     )
 
 
-def _slender(part: Part, limit: Machining) -> Iterator[Raw]:
+def _slender(part: Part, limit: Machining) -> Iterator[Finding]:
     if part.process != "turned":
         return
     if isinstance(part.body, Extrusion):
@@ -312,23 +238,13 @@ def _slender(part: Part, limit: Machining) -> Iterator[Raw]:
     else:
         _, z0, r, z1 = part.body.profile.box
         length, diameter = z1 - z0, 2 * r
-    if length > limit.slenderness * diameter + SAME:
-        yield (
-            "turn-slender",
-            (0.0, 0.0, length / 2),
-            length / diameter,
-            limit.slenderness,
-            f"{length:g} mm long at {diameter:g} diameter: {length / diameter:.3g} diameters, at most {limit.slenderness:g}",
-        )
+    slender = length / diameter
+    what = (
+        f"{length:g} mm long at {diameter:g} diameter: {slender:.3g} diameters, at most {limit.slenderness:g}"
+    )
+    yield from at_most("turn-slender", part.part_no, slender, limit.slenderness, what, (0.0, 0.0, length / 2))
     if isinstance(part.body, Extrusion):
         for opening in part.body.openings:
-            bore = hypot(opening.box[2] - opening.box[0], 0.0)
-            wall = (diameter - bore) / 2
-            if wall < limit.ring - SAME:
-                yield (
-                    "turn-wall",
-                    (0.0, 0.0, 0.0),
-                    wall,
-                    limit.ring,
-                    f"ring of {wall:.3g} mm wall, at least {limit.ring:g}",
-                )
+            wall = (diameter - (opening.box[2] - opening.box[0])) / 2
+            what = f"ring of {wall:.3g} mm wall, at least {limit.ring:g}"
+            yield from at_least("turn-wall", part.part_no, wall, limit.ring, what, (0.0, 0.0, 0.0))

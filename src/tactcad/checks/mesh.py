@@ -8,10 +8,9 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.account import making
 from tactcad.parts.description import Part
+from tactcad.parts.finding import Finding
 from tactcad.solids.measure import measure
 from tactcad.solids.mesh import triangles
-
-from .finding import Finding
 
 LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
 

@@ -18,11 +18,11 @@ from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.parts.description import Vector
+from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Motion, Placement, Scene
 from tactcad.solids.measure import bounding_box, volume
 from tactcad.solids.place import location
 
-from .finding import Finding
 from .interference import OVERLAP_MM3, TOUCH_MM, placed_box, relative
 
 # A pair that slides along at less than its way over this many steps is reported as not shown to be free.

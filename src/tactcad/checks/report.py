@@ -10,8 +10,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from tactcad.design.messages import CheckFailure
-
-from .finding import Finding
+from tactcad.parts.finding import Finding
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from OCP.TopoDS import TopoDS_Shape
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
 from tactcad.parts.detail import envelope
+from tactcad.parts.finding import Finding
 from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
@@ -18,7 +19,6 @@ from tactcad.solids.build import SolidError, build
 from .brep import check_brep, check_step
 from .calibration import check_calibration
 from .clearance import check_clearance
-from .finding import Finding
 from .interference import check_interference
 from .machining import MACHINED, check_machining
 from .mesh import check_mesh

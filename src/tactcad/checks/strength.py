@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
+from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
 from tactcad.parts.overload import Overload, overloads
-
-from .finding import Finding
 
 # Relative, of a hinge that is exactly at its limit.
 ROUNDING = 1e-9

@@ -15,13 +15,13 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.contour import Contour, circle
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.parts.finding import Finding
 from tactcad.parts.library.screws import SOCKET_WALL
 from tactcad.scenes.scene import Placement, Scene, Step
 from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 from tactcad.solids.near import Faces, boxed, faces_within, nearest
 
-from .finding import Finding
 from .interference import TOUCH_MM
 
 # A key's long arm or a bit with its handle reaches this far from the screw (mm); chosen: a hand needs no less.

@@ -68,12 +68,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
     """The design's report. Of several designs one that is refused fails, and the others are checked all the same."""
-    from tactcad.checks.finding import Finding
     from tactcad.checks.report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden import check_golden, golden_path
     from tactcad.parts.designs import load
+    from tactcad.parts.finding import Finding
     from tactcad.scenes import chosen_scenes
 
     from .progress import progress

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import importlib.util
 import io
 import json
 import os
@@ -16,13 +17,14 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from tactcad import __version__
-from tactcad.account import account, text
+from tactcad.account import KERNEL, account, text
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
 
 from .parser import Parser
 
 COMMANDS = {
+    "new": "write a design file to start from",
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
     "release": "run every check, and write one zip that a shop can quote from",
@@ -37,6 +39,9 @@ COMMANDS = {
     "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
+
+# Refused before they begin where the kernel is not installed; others are where they first ask for it.
+NEED_KERNEL = ("export", "check", "release", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 INTERRUPTED = 130  # what shells give: 128 + SIGINT
@@ -62,6 +67,10 @@ def main(argv: list[str] | None = None) -> int:
             raise
         _drop_output()
         return _refused(f"the output cannot be written: {error.strerror}", FAILED)
+    except ImportError as error:
+        if (error.name or "").split(".")[0] not in KERNEL:
+            raise
+        return _refused(_no_kernel(error), FAILED)
     except KeyboardInterrupt:
         return _refused("interrupted; nothing was changed", INTERRUPTED)
 
@@ -70,6 +79,13 @@ def _refused(why: object, status: int) -> int:
     with suppress(OSError):  # the status tells it, even where nobody can be told in words
         print(f"tactcad: {why}", file=sys.stderr)
     return status
+
+
+def _no_kernel(error: ImportError | None = None) -> str:
+    """What to install: the kernel, or what of the system it does not find."""
+    if error is None or isinstance(error, ModuleNotFoundError):
+        return "this needs the CAD kernel, which is not installed: pip install 'tactcad[cad]'"
+    return f"the CAD kernel cannot be loaded: {error}; on Debian or Ubuntu: apt-get install libgl1 libx11-6"
 
 
 def _mend_streams() -> None:
@@ -118,6 +134,8 @@ def _dispatch(argv: list[str]) -> int:
             "made, how often, how long, and how much memory it took (with --json as JSON)",
         )
         args = parser.parse_args(argv[1:])
+        if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
+            raise CheckFailure(_no_kernel())
         return _profiled(module.run, args) if args.profile else module.run(args)
     parser = Parser(
         prog="tactcad",

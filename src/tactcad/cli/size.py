@@ -5,9 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.ladder import CLOSED_FORMS, DEFAULT_RUNG
+from tactcad.mechanics.section import REQUIRED, HingeSection
+
+if TYPE_CHECKING:
+    from tactcad.design.tree import Design
 
 EXAMPLES = """\
   tactcad size --stiffness 10 --load-arm 5
@@ -15,15 +20,8 @@ EXAMPLES = """\
   tactcad size --stiffness 2 --load-arm 6 --design soft-tissue --force 0.5 --json
 """
 
-LENGTHS = {  # option: section parameter
-    "hinge-thickness": "hinge_thickness",
-    "hinge-length": "hinge_length",
-    "fillet-radius": "fillet_radius",
-    "arm-height": "arm_height",
-    "body-height": "body_height",
-    "body-length": "body_length",
-    "width": "width",
-}
+# Lengths that an option of their name takes; the load arm is asked for by itself.
+LENGTHS = tuple(name for name in REQUIRED if name not in ("load_arm", "poisson", "youngs_modulus"))
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -43,8 +41,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--design", default="macro-array", help="design that gives all else (default macro-array)"
     )
-    for option in LENGTHS:
-        parser.add_argument(f"--{option}", type=float, metavar="MM", help="instead of the design's")
+    for name in LENGTHS:
+        parser.add_argument(
+            f"--{name.replace('_', '-')}", type=float, metavar="MM", help="instead of the design's"
+        )
     parser.add_argument("--youngs-modulus", type=float, metavar="MPA", help="instead of the design's")
     parser.add_argument("--poisson", type=float, help="instead of the design's")
     parser.add_argument("--alloy", help="whose strength to use, instead of the design's")
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    for option in ("stiffness", "load_arm", "force", "tolerance", "youngs_modulus", *LENGTHS.values()):
+    for option in ("stiffness", "load_arm", "force", "tolerance", "youngs_modulus", *LENGTHS):
         value = getattr(args, option)
         if value is not None and not 0.0 < value < math.inf:
             raise InputError(f"--{option.replace('_', '-')}", "not a positive number", value=value)
@@ -118,8 +118,7 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
         "stiffness": float(ladder.stiffness(found, args.model)),
         "stiffness_interval": sorted(ends),
         "section": {
-            name: float(getattr(found, name))
-            for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS.values())
+            name: float(getattr(found, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS)
         }
         | {"sides": "two" if bool(found.two_sided) else "one"},
         "alloy": alloy.name,
@@ -141,36 +140,22 @@ def _stiffness_at(ladder, section, parameter: str, value: float, model: str) -> 
         raise CheckFailure(f"at the tolerance's end, {parameter} {value:.4g} mm: {refusal}") from None
 
 
-def _section(args: argparse.Namespace, design):
+def _section(args: argparse.Namespace, design: Design) -> HingeSection:
     """The design's element with what the options change, at the asked load arm."""
-    from tactcad.mechanics.section import HingeSection
+    from tactcad.parts.hinge_section import own_parameters, shared_parameters
     from tactcad.parts.layout import Layout
 
     layout = Layout(design)
     e = design.element
-    own = {name: getattr(args, name) for name in LENGTHS.values() if getattr(args, name) is not None}
-    slot = own.get("hinge_length", e.hinge_length)
+    given = {name: getattr(args, name) for name in REQUIRED if getattr(args, name) is not None}
+    if args.sides:
+        given["two_sided"] = args.sides == "two"
+    slot = given.get("hinge_length", e.hinge_length)
     hinge_x = layout.pad_inner + e.pad_length / 2.0 + args.load_arm
     # an arm longer than the array's moves the clamp edge out and keeps the seat behind its slot
     body_length = max(layout.clamp_edge - hinge_x - slot / 2.0, e.seat_length)
-    usual = {
-        "hinge_thickness": e.hinge_thickness,
-        "hinge_length": e.hinge_length,
-        "fillet_radius": e.fillet_radius,
-        "arm_height": e.arm_height,
-        "body_height": e.body_height,
-        "body_length": body_length,
-        "width": design.sheet.thickness,
-    }
-    return HingeSection(
-        **(usual | own),
-        load_arm=args.load_arm,
-        poisson=design.material.poisson if args.poisson is None else args.poisson,
-        youngs_modulus=args.youngs_modulus or design.material.youngs_modulus,
-        two_sided=(args.sides or e.sides) == "two",
-        pad_height=e.pad_height,
-        friction=design.rating.friction,
-    )
+    usual = own_parameters(layout.common_hinge, args.load_arm, body_length) | shared_parameters(design)
+    return HingeSection(**(usual | given))
 
 
 def _report(a: dict) -> str:

@@ -33,7 +33,7 @@ def read(source: str | Path) -> Design:
 
 
 def find(source: str | Path) -> Path:
-    """The design file that `source` names: a path (it has a '/' or ends in .toml), or a name in hardware/."""
+    """The design file that `source` names: a path (it has a '/' or ends in .toml), or a named design."""
     text = str(source)
     if isinstance(source, Path) or "/" in text or text.endswith(".toml"):
         return Path(text)
@@ -50,16 +50,17 @@ def find(source: str | Path) -> Path:
 
 
 def names() -> list[str]:
-    """Names of the designs in hardware/, sorted."""
+    """Names of the designs in hardware/ where the command runs and of those that came with tactcad, sorted."""
     return sorted({p.stem for folder in _hardware_folders() for p in folder.glob("*.toml")})
 
 
 def _hardware_folders() -> list[Path]:
-    """hardware/ where the command runs; in a checkout, also the project's own."""
-    here, checkout = Path("hardware"), Path(__file__).parents[3] / "hardware"
-    if checkout.is_dir() and not (here.is_dir() and here.samefile(checkout)):
-        return [here, checkout]
-    return [here]
+    """hardware/ where the command runs, then the designs that came with tactcad.
+
+    Those are the checkout's hardware/: `named` is a link to it there, and a folder of its files in a wheel.
+    """
+    here, own = Path("hardware"), Path(__file__).with_name("named").resolve()
+    return [here] if here.is_dir() and here.samefile(own) else [here, own]
 
 
 def parse(text: str, where: str) -> Design:

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tactcad.checks.finding import Finding
 from tactcad.design.files import make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
+from tactcad.parts.finding import Finding
 
 from .difference import Change, differences
 from .geometry import Record, geometry

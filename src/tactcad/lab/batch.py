@@ -15,21 +15,8 @@ from tactcad.design.files import read_text, write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import choose_each
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import OPTIONAL, REQUIRED, HingeSection
 
-REQUIRED = (
-    "hinge_thickness",
-    "hinge_length",
-    "fillet_radius",
-    "load_arm",
-    "arm_height",
-    "body_height",
-    "body_length",
-    "poisson",
-    "youngs_modulus",
-    "width",
-)
-OPTIONAL = {"pad_height": 0.0, "friction": 0.0}
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"
 MOST_BYTES = 200_000_000  # a million designs and more

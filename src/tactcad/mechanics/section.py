@@ -17,7 +17,7 @@ and arm on one mid-line. Both slot corners are rounded by the fillet radius r.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -90,6 +90,10 @@ class HingeSection:
                 picked[field.name] = np.broadcast_to(value, shape).reshape(-1)[index]
         return HingeSection(**picked)
 
+
+# Names of the numbers that make a section: those without which there is none, and the others' defaults.
+REQUIRED = tuple(f.name for f in fields(HingeSection) if f.default is MISSING and f.name != "two_sided")
+OPTIONAL = {f.name: f.default for f in fields(HingeSection) if f.default is not MISSING}
 
 # The element that three independent codes were compared on, mm and MPa.
 REFERENCE = HingeSection(

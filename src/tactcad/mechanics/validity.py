@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
 from . import friction
 from .constants import ladder_data
-from .section import Array, HingeSection
+from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
-POSITIVE = (
-    "hinge_thickness",
-    "hinge_length",
-    "load_arm",
-    "arm_height",
-    "body_height",
-    "body_length",
-    "youngs_modulus",
-    "width",
-)
+POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
 
 
 @dataclass(frozen=True)
@@ -34,7 +25,7 @@ class Rule:
 
 
 def _not_finite(s: HingeSection) -> np.ndarray:
-    numbers = (getattr(s, f.name) for f in fields(s) if f.name != "two_sided")
+    numbers = (getattr(s, name) for name in (*REQUIRED, *OPTIONAL))
     return np.logical_not(np.logical_and.reduce([np.isfinite(x) for x in np.broadcast_arrays(*numbers)]))
 
 

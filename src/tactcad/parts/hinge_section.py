@@ -8,27 +8,40 @@ from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics.section import HingeSection
 
-from .layout import ElementPlace, Layout
+from .layout import ElementPlace, HingeShape, Layout
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
     """Section parameters of the elements at `places`, arrays of shape (len(places),); mm, MPa."""
-    d = layout.design
+    own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     return HingeSection(
-        hinge_thickness=[p.hinge.t for p in places],
-        hinge_length=[p.hinge.l for p in places],
-        fillet_radius=[p.hinge.r for p in places],
-        load_arm=[p.load_arm for p in places],
-        arm_height=[p.hinge.h for p in places],
-        body_height=d.element.body_height,
-        body_length=[p.body_length for p in places],
-        poisson=d.material.poisson,
-        youngs_modulus=d.material.youngs_modulus,
-        width=d.sheet.thickness,
-        two_sided=d.element.sides == "two",
-        pad_height=d.element.pad_height,
-        friction=d.rating.friction,
+        **{name: [each[name] for each in own] for name in own[0]}, **shared_parameters(layout.design)
     )
+
+
+def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> dict[str, float]:
+    """What may differ between the elements of one design, by the names of `HingeSection`'s fields; mm."""
+    return {
+        "hinge_thickness": hinge.t,
+        "hinge_length": hinge.l,
+        "fillet_radius": hinge.r,
+        "load_arm": load_arm,
+        "arm_height": hinge.h,
+        "body_length": body_length,
+    }
+
+
+def shared_parameters(design: Design) -> dict[str, float]:
+    """What all elements of a design have in common, by the names of `HingeSection`'s fields; mm, MPa."""
+    return {
+        "body_height": design.element.body_height,
+        "poisson": design.material.poisson,
+        "youngs_modulus": design.material.youngs_modulus,
+        "width": design.sheet.thickness,
+        "two_sided": design.element.sides == "two",
+        "pad_height": design.element.pad_height,
+        "friction": design.rating.friction,
+    }
 
 
 def design_alloy(design: Design) -> Alloy:

@@ -7,7 +7,7 @@ the elements' flat (gauge) face, + away from the object. Row two is row one's ki
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from tactcad.design.tree import Design
@@ -107,18 +107,19 @@ class Layout:
                 )
         return tuple(places)
 
+    @property
+    def common_hinge(self) -> HingeShape:
+        """[element]'s hinge, of every element without an override."""
+        e = self.design.element
+        return HingeShape(t=e.hinge_thickness, l=e.hinge_length, r=e.fillet_radius, h=e.arm_height)
+
     def hinge_of(self, number: int) -> HingeShape:
         """[element]'s hinge, with what [element.override.NUMBER] changes."""
-        e = self.design.element
-        own = e.override.get(number)
-
-        def pick(name: str) -> float:
-            changed = getattr(own, name) if own else None
-            return getattr(e, name) if changed is None else changed
-
-        return HingeShape(
-            t=pick("hinge_thickness"), l=pick("hinge_length"), r=pick("fillet_radius"), h=pick("arm_height")
-        )
+        own = self.design.element.override.get(number)
+        if own is None:
+            return self.common_hinge
+        given = {"t": own.hinge_thickness, "l": own.hinge_length, "r": own.fillet_radius, "h": own.arm_height}
+        return replace(self.common_hinge, **{k: v for k, v in given.items() if v is not None})
 
     @cached_property
     def clamp_edge(self) -> float:

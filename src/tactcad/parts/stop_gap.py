@@ -10,6 +10,7 @@ from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload
 
+from .hinge_section import own_parameters, shared_parameters
 from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
@@ -46,28 +47,19 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
     """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield of the
-    fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives way by what its
+    fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives way as its
     beams say, or by `give` mm/N.
 
     Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and errs to
     a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
     """
     design = layout.design
+    own = own_parameters(place.hinge, place.load_arm, place.body_length)
+    parameters = own | shared_parameters(design)
     return _limit(
-        place.hinge.t,
-        place.hinge.l,
-        place.hinge.r,
-        place.hinge.h,
+        tuple(parameters.items()),
         place.arm,
-        place.load_arm,
-        place.body_length,
-        design.element.body_height,
-        design.sheet.thickness,
-        design.element.sides == "two",
-        design.material.youngs_modulus,
-        design.material.poisson,
-        design.material.yield_strength,
-        design.rating.deflection_factor,
+        design.material.yield_strength / design.rating.deflection_factor,
         design.rating.overload_force,
         design.stop.tolerance,
         layout.stop_give if give is None else give,
@@ -86,12 +78,19 @@ def land_room(layout: Layout, hinge: HingeShape) -> float:
 
 @lru_cache(maxsize=4096)  # equal elements of a long row ask for the same gap
 def _limit(
-    t, l, r, h, a, L, Lb, Hb, b, two_sided, E, nu, yield_strength, factor, overload, tolerance, give
+    parameters: tuple[tuple[str, float], ...],
+    arm: float,
+    stress: float,
+    overload: float,
+    tolerance: float,
+    give: float,
 ) -> StopLimit:
-    section = HingeSection(t, l, r, L, h, Hb, Lb, nu, E, b, two_sided)
+    """`stop_limit` of the section with these parameters, whose fillet may bear `stress` (MPa)."""
+    section = HingeSection(**dict(parameters))
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
-    rated = yield_strength / strain.stress_beyond_the_fit(section, 1.0) / factor
-    closing = float(largest_closing_force(section, K, a, give, overload, rated))
-    narrow = K * (2.0 * tolerance + STEP_MM) * L / a
-    return StopLimit(closing / K * a / L, float(largest_overload(section, K, a, give, narrow, rated)))
+    rated = stress / strain.stress_beyond_the_fit(section, 1.0)
+    closing = float(largest_closing_force(section, K, arm, give, overload, rated))
+    lever = arm / float(section.load_arm)  # of the tip over that of the load line
+    narrow = K * (2.0 * tolerance + STEP_MM) / lever
+    return StopLimit(closing / K * lever, float(largest_overload(section, K, arm, give, narrow, rated)))

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from tactcad import __version__
-from tactcad.checks.finding import Finding
 from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
 from tactcad.export import inspection, strength
 from tactcad.parts.description import Characteristic, Part
+from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
 from tactcad.scenes.scene import Scene
 

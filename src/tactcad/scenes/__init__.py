@@ -13,7 +13,7 @@ from tactcad.account import making
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
-from tactcad.parts.rigs.rules import misfit
+from tactcad.parts.rules import misfit
 
 if TYPE_CHECKING:
     from .scene import Pose, Scene
@@ -39,7 +39,7 @@ def left_out(design: Design) -> list[str]:
         why = misfit(Layout(design), name)
         if why:
             lines.append(
-                f"scene {name} left out: rule {why.rule}: {why.what} ({why.path} = {why.value}; legal: {why.legal})"
+                f"scene {name} left out: rule {why.check}: {why.message} ({why.part} = {why.value}; legal: {why.limit})"
             )
     return lines
 

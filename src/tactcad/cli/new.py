@@ -1,0 +1,48 @@
+"""tactcad new FILE [--from DESIGN] [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+EXAMPLES = """\
+  tactcad new my-sensor.toml                      the published array under a name of your own
+  tactcad new my-sensor.toml --from soft-tissue   from another named design, or from a file
+
+The design's name is the file's. Everything else is the other design's, with its comments and origins; it starts at
+revision A, dated today. A file that is there is never written over."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    from tactcad.design.load import DEFAULT_DESIGN
+
+    parser.add_argument("file", metavar="FILE", help="the design file to write, NAME.toml")
+    parser.add_argument(
+        "--from",
+        dest="source",
+        default=DEFAULT_DESIGN,
+        metavar="DESIGN",
+        help=f"what to start from: a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
+    )
+    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+
+
+def run(args: argparse.Namespace) -> int:
+    from datetime import date
+    from pathlib import Path
+
+    from tactcad.design.files import write_whole
+    from tactcad.design.load import parse
+    from tactcad.design.start import name_of, started
+    from tactcad.parts.rules import refuse_broken
+
+    path = Path(args.file)
+    name = name_of(path)
+    text = started(args.source, name, date.today())
+    refuse_broken(parse(text, args.source))
+    write_whole(path, text.encode())
+    if args.json:
+        print(json.dumps({"file": args.file, "name": name, "from": args.source}, indent=1))
+    else:
+        print(f"{args.file}: written, from {args.source}\nnext: tactcad estimate {args.file}")
+    return 0

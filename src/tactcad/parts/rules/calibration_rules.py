@@ -1,0 +1,156 @@
+"""Rules on the calibration's stages and roller, and on what holds an array by its carrier."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+
+from ..deflected import deflection_at_pad_edge
+from ..finding import SAME, Finding
+from ..layout import HOLE_WEB, Layout
+from ..library.dowels import dowel_diameter, dowel_lengths
+from ..library.screws import counterbore_diameter
+from ..rigs.calibration_loads import calibration_loads
+from ..rigs.carried import CARRIER_SCREW, under_carrier_screw
+from ..rigs.layout import FOOT, STAGE_HOLE, RigLayout, pad_middles
+from . import misfit
+from .cart_rules import LEAST_AIR
+from .rule import at_least, at_most, fits, rule, wrong
+
+ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
+
+
+@rule(after="stop_land_above_arm")
+def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    if d.calibration is None:
+        return
+    rig, c = RigLayout(d), d.calibration
+    down = max(c.travel, d.sample.travel if d.sample else 0.0)
+    for touch in rig.touches:
+        rest = rig.axis_middle(touch) - rig.stage_middle(touch)
+        need = max(rest + c.retract, down - rest)
+        what = f"vertical axis rests {rest:+.3g} mm off its middle"
+        yield from at_least("calibration.axis_travel", what, c.axis_travel, need, f"at least {need:.4g} mm")
+
+
+@rule(after="stop_land_above_arm")
+def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
+    """No hinge yields at the end of the travel: in this set-up there is no stop plate."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    for load in calibration_loads(layout.design):
+        if c.travel > load.travel_at_yield:  # not where the estimator does not reach
+            yield wrong(
+                "calibration.travel",
+                f"the hinge of element {load.place.number} yields before its end",
+                c.travel,
+                f"at most {load.travel_at_yield:.4g} mm",
+            )
+
+
+@rule(after="stop_land_above_arm")
+def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
+    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
+    c = layout.design.calibration
+    if c is None or misfit(layout, "calibration") is not None:
+        return
+    roller = dowel_diameter(c.roller) / 2
+    for load in calibration_loads(layout.design):
+        most = deflection_at_pad_edge(layout, load.place, roller)
+        deflection = c.travel if load.refused else load.deflection
+        if deflection > most:
+            yield wrong(
+                "calibration.travel",
+                f"the pad of element {load.place.number} swings out from under the roller",
+                c.travel,
+                f"at most {c.travel * most / deflection:.4g} mm",
+            )
+
+
+@fits("calibration")
+def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
+    far = max(max(abs(x), abs(y)) for x, y in pad_middles(layout))
+    travel = layout.design.calibration.stage_travel
+    yield from at_least("calibration.stage_travel", "stages do not reach every pad", travel, far)
+
+
+@fits("calibration")
+def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
+    most = STAGE_HOLE - counterbore_diameter("M4") / 2 - LEAST_AIR
+    yield from at_most(
+        "array.row_arms",
+        "the array's carrier covers the screws of the calibration mount",
+        min(layout.carrier_size) / 2,
+        most,
+        f"at most {most:g} mm from the middle, along or across",
+    )
+
+
+@fits("calibration", "grasping")
+def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
+    c = layout.design.clamp
+    under = under_carrier_screw(RigLayout(layout.design))
+    if not 2.0 - SAME <= under <= FOOT + SAME:
+        low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
+        yield wrong(
+            "clamp.carrier_thickness",
+            f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads",
+            c.carrier_thickness,
+            f"from {low:g} to {high:g} mm",
+        )
+    least = counterbore_diameter(c.mount_thread) + HOLE_WEB
+    what = "heads of the screws into the carrier run into each other"
+    yield from at_least("clamp.mount_pitch_y", what, c.mount_pitch_y, least)
+    offset = c.carrier_screw_offset
+    if 2 * layout.mount_x < least - SAME:
+        yield wrong(
+            "clamp.carrier_screw_offset",
+            "heads of the screws into the carrier run into the other row's",
+            offset,
+            f"at least {offset + 2 * least - 4 * layout.mount_x:g} mm",
+        )
+
+
+@fits("calibration")
+def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
+    yield from carrier_threads_clear(layout, STAGE_HOLE, STAGE_HOLE, "the stage's screws in the array mount")
+
+
+def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:
+    """The carrier's pattern of threads against M4 screws at (x, y): a web between their counterbores."""
+    c = layout.design.clamp
+    apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
+    least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB
+    if apart < least - SAME:
+        yield wrong(
+            "clamp.mount_pitch_y",
+            f"screws into the carrier run into {what}: {apart:.3g} mm apart",
+            c.mount_pitch_y,
+            f"at least {least:g} mm apart",
+        )
+
+
+@fits("calibration")
+def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
+    d, size = layout.design, layout.design.calibration.roller
+    length = next((n for n in dowel_lengths(size) if n >= d.sheet.thickness), None)
+    most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
+    if length is None or length > most + SAME:
+        yield wrong(
+            "calibration.roller",
+            f"no standard pin covers a pad and clears its neighbours: shortest {length} mm",
+            size,
+            f"a pin from {d.sheet.thickness:g} to {most:g} mm long",
+        )
+    out = dowel_diameter(size) / 2
+    yield from at_most(
+        "calibration.travel",
+        "the roller's holder would come down on the neighbouring pads",
+        d.calibration.travel,
+        out - ROLLER_OUT,
+        f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}",
+    )
+    if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
+        yield wrong("calibration.roller", "roller touches the facing pad", size, "a thinner one")

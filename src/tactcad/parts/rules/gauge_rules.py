@@ -1,0 +1,116 @@
+"""Rules on the room that gauges, their leads and the arms beside each other have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import floor
+
+from ..finding import SAME, Finding
+from ..layout import LEAST_GAP, Layout
+from ..plates import SPACER_TOLERANCE
+from .rule import at_least, at_most, rule, wrong
+
+# A lead is AWG 36 (0.127 mm, ASTM B258) with 0.06 mm of insulation around it: 0.25 mm; chosen: three a gauge, so that
+# the leads' own resistance cancels in the bridge.
+LEAD, LEADS = 0.25, 3
+# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air that stays
+# where all tolerances add up, mm; chosen: burrs of the wire are smaller.
+LEAST_ARM_GAP = 0.1
+LEAST_BESIDE = 0.02
+
+
+@rule(after="override_names_element")
+def gauge_fits_face(layout: Layout) -> Iterator[Finding]:
+    d = layout.design
+    if d.element.sides == "two":
+        for p in layout.elements:
+            yield from at_most(
+                "gauge.grid_length", "longer than the slot it is bonded in", d.gauge.grid_length, p.hinge.l
+            )
+        return
+    for p in layout.elements:
+        flat = p.arm - d.element.pad_length - d.element.pad_root_radius
+        yield from at_most(
+            "gauge.carrier_arm_side",
+            f"carrier reaches the pad of element {p.number}",
+            d.gauge.carrier_arm_side,
+            flat,
+            f"at most {flat:g} mm there",
+        )
+        behind = layout.recess_start - p.hinge_x
+        yield from at_most(
+            "gauge.carrier_body_side",
+            f"carrier reaches the wire recess behind element {p.number}",
+            d.gauge.carrier_body_side,
+            behind,
+            f"at most {behind:g} mm there",
+        )
+
+
+@rule(after="override_names_element")
+def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
+    g, sheet = layout.design.gauge, layout.design.sheet.thickness
+    legal = f"at most sheet.thickness = {sheet:g} mm"
+    yield from at_most("gauge.carrier_width", "wider than the element", g.carrier_width, sheet, legal)
+    yield from at_most("gauge.grid_width", "wider than its carrier", g.grid_width, g.carrier_width)
+    if layout.design.element.sides == "one":
+        longest = 2 * min(g.carrier_arm_side, g.carrier_body_side)
+        yield from at_most("gauge.grid_length", "longer than its carrier", g.grid_length, longest)
+
+
+def neighbours_take(layout: Layout) -> float:
+    """By how much tolerances bring an arm nearer to what stands a spacer beside it (mm): half of both sheets', and
+    the spacer's own."""
+    return layout.design.tolerance.sheet_thickness + SPACER_TOLERANCE
+
+
+@rule(after="override_names_element")
+def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
+    with_tolerances = neighbours_take(layout) + LEAST_BESIDE
+    yield from at_least(
+        "array.spacer",
+        "arms too near their neighbours and the end plates to move freely",
+        layout.spacer,
+        max(LEAST_ARM_GAP, with_tolerances),
+        f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + {SPACER_TOLERANCE + LEAST_BESIDE:g} = "
+        f"{with_tolerances:g} mm",
+    )
+
+
+@rule(after="override_names_element")
+def leads_have_room(layout: Layout) -> Iterator[Finding]:
+    """Leads run in the wire recess, as wide as element and spacer; before it under the face, beside the gauge."""
+    d, e = layout.design, layout.design.element
+    if leads_that_fit(layout) < LEADS:
+        rows = -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME)))
+        yield wrong(
+            "element.recess_depth",
+            f"{LEADS} leads of {LEAD:g} mm do not fit into the wire recess of {d.array.pitch:g} mm width",
+            e.recess_depth,
+            f"at least {LEAD * rows:g} mm, and a pitch of {LEAD:g} mm or more",
+        )
+    out, room = gauge_stands_out(layout), gauge_room(layout)
+    if LEAST_GAP - SAME <= room:  # still less is another rule's
+        yield from at_least(
+            "element.pad_height",
+            "the object would touch gauge and leads before the pad",
+            e.pad_height,
+            e.pad_height + out - room,
+        )
+
+
+def leads_that_fit(layout: Layout) -> int:
+    """How many leads lie in the recess of one element."""
+    depth = layout.design.element.recess_depth
+    return floor(layout.design.array.pitch / LEAD + SAME) * floor(depth / LEAD + SAME)
+
+
+def gauge_stands_out(layout: Layout) -> float:
+    """How far gauge and leads stand out of the faces that they lie on, mm."""
+    gauge = layout.design.gauge
+    return LEAD + gauge.grid_height if layout.design.element.sides == "one" else LEAD
+
+
+def gauge_room(layout: Layout) -> float:
+    """From these faces to the pads' plane, mm: a two-sided body's lower face is nearer to it."""
+    return layout.design.element.pad_height + min(layout.body_bottom(p.hinge) for p in layout.elements)

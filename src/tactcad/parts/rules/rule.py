@@ -1,0 +1,61 @@
+"""A rule between fields, and helpers that word what it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from ..finding import SAME, Finding
+from ..layout import Layout
+
+Find = Callable[[Layout], Iterable[Finding]]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A function that says what is wrong, the first thing first.
+
+    after   name of an earlier rule: this one is tried only where that one and all before it are kept, because it
+            would only repeat what they say, or could not be computed
+    scenes  scenes whose rig needs it: a design that breaks it loses these and is not refused
+    """
+
+    find: Find
+    after: str = ""
+    scenes: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return self.find.__name__
+
+    def __call__(self, layout: Layout) -> list[Finding]:
+        """The first finding; empty where the rule is kept."""
+        first = next(iter(self.find(layout)), None)
+        return [replace(first, check=self.name)] if first else []
+
+
+def rule(after: str = "") -> Callable[[Find], Rule]:
+    """Makes a function a rule that every design must keep."""
+    return lambda find: Rule(find, after)
+
+
+def fits(*scenes: str) -> Callable[[Find], Rule]:
+    """Makes a function a rule that an array must keep to have these scenes."""
+    return lambda find: Rule(find, scenes=scenes)
+
+
+def wrong(path: str, what: str, value: object, legal: str) -> Finding:
+    """A finding on the field at `path`; the rule's name is added where the rule is tried."""
+    return Finding("", "fail", path, (), value, legal, what)
+
+
+def at_least(path: str, what: str, value: float, least: float, legal: str = "") -> Iterator[Finding]:
+    """A finding where the value is under what it must be at least, mm if `legal` says nothing else."""
+    if value < least - SAME:
+        yield wrong(path, what, value, legal or f"at least {least:g} mm")
+
+
+def at_most(path: str, what: str, value: float, most: float, legal: str = "") -> Iterator[Finding]:
+    """A finding where the value is over what it may be at most, mm if `legal` says nothing else."""
+    if value > most + SAME:
+        yield wrong(path, what, value, legal or f"at most {most:g} mm")
