@@ -30,11 +30,23 @@ THIN = {
     "gauge.grid_width": 0.4,
 }
 ONE = {"array.row_arms": [[4.0]]}
+FIFTY_A_ROW = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
 TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
 
 # rule -> designs that break it alone: what is changed, and the field that the message points at
 WITNESSES = {
     "override_names_element": [({"element.override.11.hinge_thickness": 0.2}, "element.override.11")],
+    "gaps_name_an_arm": [
+        ({"stop.gaps": {"4.1": 0.05}}, "stop.gaps.4.1"),
+        ({"stop.gaps": {"4": 0.05, "40": 0.05}}, "stop.gaps.40"),
+    ],
+    "stop_plate_stays": [
+        (
+            {**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0, "clamp.stop_plate_thickness": 2.0},
+            "clamp.hold_down_pitch",
+        ),
+        ({**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0}, "clamp.hold_down_pitch"),
+    ],
     "pitch_is_sheet_and_spacer": [
         ({"array.spacer": 1.1}, "array.spacer"),
         ({"array.pitch": 4.5}, "array.spacer"),
@@ -144,7 +156,7 @@ WITNESSES = {
     "stop_gap_above_tolerance": [
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
         ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
-        ({"rating.overload_force": 250.0}, "rating.overload_force"),
+        ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 6.0}, "rating.overload_force"),
     ],
     "stop_keeps_rated_deflection": [({"stop.gaps": {"4": 0.115}}, "stop.gaps.4")],
     "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],

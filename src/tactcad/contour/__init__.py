@@ -2,9 +2,10 @@
 
 from .contour import Contour, chain, circle, rectangle
 from .rounded import Corner, rounded_polygon
-from .segment import Arc, Line, Point, Segment
+from .segment import LEAST_EDGE, Arc, Line, Point, Segment, is_sliver
 
 __all__ = [
+    "LEAST_EDGE",
     "Arc",
     "Contour",
     "Corner",
@@ -13,6 +14,7 @@ __all__ = [
     "Segment",
     "chain",
     "circle",
+    "is_sliver",
     "rectangle",
     "rounded_polygon",
 ]

@@ -16,6 +16,7 @@ import numpy as np
 
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_number
 
 LARGEST_FILE = 50_000_000  # bytes; a calibration of 10 000 elements is 15 MB
 
@@ -179,7 +180,7 @@ def _names(fields: tuple[Field, ...]) -> str:
 
 def _cell(text: str, field: Field, where: str) -> Cell:
     try:
-        value = float(text)
+        value = as_number(text)
     except ValueError:
         raise InputError(
             where, f"column {field.name!r} is not a number", value=text, legal=field.legal

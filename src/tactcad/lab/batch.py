@@ -13,6 +13,7 @@ import numpy as np
 from tactcad.design.csv_table import records
 from tactcad.design.files import read_text, write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
+from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import choose_each
 from tactcad.mechanics.section import OPTIONAL, REQUIRED, HingeSection
@@ -148,7 +149,7 @@ def _section(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -
 
 def _number(path: Path, line: int, column: int, text: str) -> float:
     try:
-        value = float(text) if "_" not in text else math.nan
+        value = as_number(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):

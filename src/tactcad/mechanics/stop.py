@@ -5,8 +5,9 @@ is a beam on two supports. What the force has beyond the one that closed the sto
 both per newton of it:
 
   shear   V = 1 - L/arm goes through the hinge
-  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give L/arm^2, c = arm - L, I = b h^3/12: the arm bends between its
-          supports, and the stop, which takes L/arm of it, gives way by `give` mm for each newton
+  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give S/arm, c = arm - L, I = b h^3/12: the arm bends between its
+          supports, and the stop gives way by `give` mm for each newton of S = L/arm / (1 + K give (L/arm)^2),
+          which is what the hinge, of stiffness K at the load line, leaves to it
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ def stress_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> 
     with K L^2 theta. Divided by L + w, the lever of a force at the load line.
     """
     L, w = s.load_arm, strain.peak_position(s)
-    return ((1.0 - L / arm) * w + stiffness * L**2 * _turn(s, arm, give)) / (L + w)
+    return ((1.0 - L / arm) * w + stiffness * L**2 * _turn(s, stiffness, arm, give)) / (L + w)
 
 
 def deflection_share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     """Force at the load line (N) that would turn the hinge as much as one newton beyond does: K L theta."""
-    return stiffness * s.load_arm * _turn(s, arm, give)
+    return stiffness * s.load_arm * _turn(s, stiffness, arm, give)
 
 
 def largest_closing_force(
@@ -56,8 +57,10 @@ def _share(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     return np.maximum(stress_share(s, stiffness, arm, give), deflection_share(s, stiffness, arm, give))
 
 
-def _turn(s: HingeSection, arm: Array, give: float) -> Array:
+def _turn(s: HingeSection, stiffness: Array, arm: Array, give: float) -> Array:
     """Turn of the arm's end at the hinge, held at the tip, per newton at the load line; rad/N."""
     c = arm - s.load_arm
     inertia = s.width * s.arm_height**3 / 12.0
-    return c * (arm**2 - c**2) / (6.0 * s.youngs_modulus * inertia * arm) + give * s.load_arm / arm**2
+    lever = s.load_arm / arm
+    on_stop = lever / (1.0 + stiffness * give * lever**2)
+    return c * (arm**2 - c**2) / (6.0 * s.youngs_modulus * inertia * arm) + give * on_stop / arm

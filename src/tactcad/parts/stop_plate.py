@@ -56,10 +56,10 @@ class StopPlate:
         return self.rows * self.strip.supported() + self.per_span * along
 
 
-def stop_plate_beams(layout: Layout, pitch: float | None = None, thickness: float | None = None) -> StopPlate:
-    """The design's; with set screws `pitch` mm apart, or `thickness` mm thick, if given, instead."""
+def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
+    """The design's; with set screws `pitch` mm apart, if given, instead."""
     d = layout.design
-    t = d.clamp.stop_plate_thickness if thickness is None else thickness
+    t = d.clamp.stop_plate_thickness
     span = unheld(layout) if pitch is None else pitch
     across = 2 * layout.hold_down_x
     rows = len(d.array.row_arms)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, cos, sin
 
+from tactcad.contour import LEAST_EDGE, is_sliver
+
 from ..element import outline
 from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
@@ -12,9 +14,6 @@ from ..rigs.calibration_loads import calibration_loads
 from ..stop_gap import stop_gap
 from . import misfit
 from .rule import rule, wrong
-
-# A tenth of the finest step that any shop here works to (0.01 mm).
-LEAST_EDGE = 1e-3
 
 
 def turns(layout: Layout) -> list[float]:
@@ -125,7 +124,7 @@ def no_slivers(layout: Layout) -> Iterator[Finding]:
             continue
         seen.add((p.arm, p.hinge, gap))
         for s in outline(layout, p.arm, p.hinge, gap):
-            if s.length < LEAST_EDGE - SAME:
+            if is_sliver(s.length):
                 yield wrong(
                     _FIELD.get(s.name, "element.corner_radius"),
                     f"leaves {s.length:.3g} mm of {s.name or 'edge'} on element {p.number}",

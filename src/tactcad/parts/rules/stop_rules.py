@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import ceil, floor, hypot, pi, sqrt, tan
 
 from ..finding import SAME, Finding
@@ -109,9 +110,10 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
     d, give = layout.design, layout.stop_give
     for p in layout.elements:
         force = d.rating.overload_force * p.load_arm / p.arm
-        allowed = SHARE * stop_limit(layout, p, give=0.0).gap / force
-        if not 0 < allowed < give:
-            continue  # where the gap is nothing, other rules say why
+        gap = stop_limit(layout, p, give=0.0).gap
+        allowed = SHARE * gap / force
+        if gap <= d.stop.tolerance or give <= allowed:
+            continue  # where there is no gap, other rules say why
         what = (
             f"the stop plate gives way by {give * force:.3g} mm under element {p.number} and "
             f"{d.rating.overload_force:g} N, more than a tenth of its gap"
@@ -129,7 +131,8 @@ def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
         if pitch is not None:
             return wrong("clamp.hold_down_pitch", what, c.hold_down_pitch, f"at most {pitch:g} mm")
     for tenths in range(ceil(10 * c.stop_plate_thickness), 201):
-        if stop_plate_beams(layout, thickness=tenths / 10).one <= allowed:
+        thicker = replace(d, clamp=replace(c, stop_plate_thickness=tenths / 10))
+        if Layout(thicker).stop_give <= allowed:  # other set screws reach to it
             return wrong(
                 "clamp.stop_plate_thickness", what, c.stop_plate_thickness, f"at least {tenths / 10:g} mm"
             )
