@@ -10,8 +10,8 @@ from tactcad.design.load import from_table
 from tactcad.parts.library.bearings import BEARINGS
 from tactcad.parts.library.orings import GROOVE_DEPTH, GROOVE_WIDTH, INSIDE
 from tactcad.parts.library.screws import CAP_SCREW_LENGTHS, METRIC
-from tactcad.parts.rigs.layout import RigLayout
-from tactcad.parts.rigs.moving import ballast_range
+from tactcad.parts.rigs.guide_layout import guide_layout
+from tactcad.scenes.moving_axis import ballast_range
 
 M3, M5 = METRIC["M3"], METRIC["M5"]
 # The stand: the post's front behind the sensor's axis, and the guide's front before it (mm, docs/rigs.md).
@@ -103,7 +103,7 @@ def _grasping(d: Draw) -> None:
     # the array's own weight takes the parts to tell
     d.put("grasping.moving_weight", 10.0)
     if not d.once_in(10):
-        low, high = ballast_range(RigLayout(from_table(as_table(d.table))))
+        low, high = ballast_range(guide_layout(from_table(as_table(d.table))))
         d.number("grasping.moving_weight", low, high)
 
 

@@ -13,8 +13,7 @@ from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.designs import load
 from tactcad.parts.library.screws import cap_screw, nut, set_screw, threaded_rod
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.array import DOWN
-from tactcad.scenes.scene import Placement, Scene, Step
+from tactcad.scenes.scene import DOWN, Placement, Scene, Step
 from tactcad.solids.build import build
 
 pytestmark = pytest.mark.cad

@@ -16,16 +16,15 @@ from tactcad.drawing.extent import projected_box
 from tactcad.drawing.units import unit_views
 from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.library.screws import cap_screw
-from tactcad.parts.plates import STEEL
+from tactcad.parts.materials import STAINLESS
 from tactcad.scenes import make_scene, scene_names
-from tactcad.scenes.array import ALONG_Y, DOWN
-from tactcad.scenes.scene import Contact, Placement, Scene
+from tactcad.scenes.scene import ALONG_Y, DOWN, Contact, Placement, Scene
 
 GAP = 5.0
 
 
 def block(name: str, x: float, y: float, z: float) -> Part:
-    return Part(name, name, "milled", STEEL, Extrusion(rectangle(-x / 2, -y / 2, x / 2, y / 2), z))
+    return Part(name, name, "milled", STAINLESS, Extrusion(rectangle(-x / 2, -y / 2, x / 2, y / 2), z))
 
 
 def shifts(scene: Scene, placements=None) -> dict[str, tuple[float, ...]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tactcad.design.messages import InputError
 from tactcad.export.cache import Cache, default_root
 
 DATA = bytes(range(256)) * 40
@@ -25,7 +27,7 @@ def cache(tmp_path, said) -> Cache:
 
 
 def entry(cache: Cache) -> Path:
-    (path,) = (p for p in cache.root.rglob("*") if p.is_file())
+    (path,) = cache.root.glob("??/*")
     return path
 
 
@@ -86,7 +88,7 @@ def test_an_entry_under_another_key_is_noticed(cache, said):
     cache.put("one", b"1")
     one = entry(cache)
     cache.put("two", b"2")
-    (two,) = (p for p in cache.root.rglob("*") if p.is_file() and p != one)
+    (two,) = (p for p in cache.root.glob("??/*") if p != one)
     one.replace(two)
     assert cache.get("two") is None
     assert "damaged" in said[0]
@@ -119,7 +121,7 @@ def test_two_processes_at_once(tmp_path):
 
 def test_where_it_lies(monkeypatch, tmp_path):
     monkeypatch.delenv("TACTCAD_CACHE", raising=False)
-    assert default_root() == Path(__file__).parents[2] / ".cache" / "tactcad"
+    assert default_root() == Path(__file__).parents[2] / ".cache" / "tactcad" / "entries"
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path))
     assert default_root() == tmp_path
 
@@ -131,11 +133,7 @@ def entries(cache: Cache) -> dict[str, int]:
 
 def used(cache: Cache, key: str, seconds: float) -> None:
     """As if the entry had last been used at that time."""
-    (path,) = (
-        p
-        for p in cache.root.rglob("*")
-        if p.is_file() and p.read_bytes().endswith(b"\n" + key.encode() * 1000)
-    )
+    (path,) = (p for p in cache.root.glob("??/*") if p.read_bytes().endswith(b"\n" + key.encode() * 1000))
     os.utime(path, (seconds, seconds))
 
 
@@ -143,7 +141,7 @@ def test_what_was_used_least_recently_goes_first(cache):
     for n, key in enumerate(("old", "middle", "new")):
         cache.put(key, key.encode() * 1000)
         used(cache, key, 1000.0 + n)
-    total = sum(p.stat().st_size for p in cache.root.rglob("*") if p.is_file())
+    total = sum(p.stat().st_size for p in cache.root.glob("??/*"))
     assert cache.trim(total) == 0
     assert cache.trim(total - 1) == 1
     assert set(entries(cache)) == {"middle", "new"}
@@ -207,8 +205,155 @@ for turn in range(300):
 def test_two_processes_trim_at_once(tmp_path):
     runs = [subprocess.Popen([sys.executable, "-c", TRIMMER, str(tmp_path)]) for _ in range(3)]
     assert [run.wait() for run in runs] == [0, 0, 0]
-    assert sum(p.stat().st_size for p in tmp_path.rglob("*") if p.is_file()) <= 20_000
+    assert sum(p.stat().st_size for p in tmp_path.glob("??/*")) <= 20_000
 
 
 def test_trimming_where_there_is_no_cache(cache):
     assert cache.trim() == 0
+
+
+# --- whose folder it is ---
+
+
+def others_files(root: Path) -> dict[str, bytes]:
+    """What somebody else may keep in a folder, some of it named as entries are."""
+    name = "ab" * 32
+    files = {f"ab/{name}": b"1", "ab/thesis.txt": b"2", "zz/.new-plan": b"3", "photo.jpg": b"4"}
+    for path, data in files.items():
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_bytes(data)
+    return files
+
+
+def test_a_folder_of_others_is_refused(tmp_path, said):
+    files = others_files(tmp_path)
+    with pytest.raises(InputError, match="TACTCAD_CACHE"):
+        Cache(tmp_path, said.append)
+    assert {str(p.relative_to(tmp_path)): p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()} == files
+
+
+@pytest.mark.parametrize(
+    "mark", [b"", b"Signature: 8a47", b"Signature: 8a477f597d28d172789f06886806bc55\n# borg\n"]
+)
+def test_a_mark_is_ours_or_a_killed_runs(tmp_path, mark):
+    """Another program's mark is none of ours; our own may be unfinished, as long as nothing else is there."""
+    (tmp_path / "CACHEDIR.TAG").write_bytes(mark)
+    if b"borg" in mark:
+        with pytest.raises(InputError):
+            Cache(tmp_path)
+        return
+    Cache(tmp_path).put("key", DATA)
+    assert Cache(tmp_path).get("key") == DATA
+    (tmp_path / "CACHEDIR.TAG").write_bytes(mark)
+    with pytest.raises(InputError):
+        Cache(tmp_path)
+
+
+def test_trimming_takes_nothing_but_entries(cache):
+    """Files that others put into the cache stay, and so does what links and folders in it lead to."""
+    cache.put("old", DATA)
+    elsewhere = cache.root.parent / "elsewhere"
+    files = others_files(elsewhere)
+    (cache.root / "thesis.txt").write_text("three years")
+    own = entry(cache)
+    (own.parent / "notes").write_text("mine")
+    (own.parent / ("0" * 64)).write_text("another folder's name")
+    (own.parent / f"{own.parent.name}{'0' * 62}").symlink_to(elsewhere / "photo.jpg")
+    (cache.root / ("ab" if own.parent.name != "ab" else "cd")).symlink_to(elsewhere / "ab")
+    left = {p for p in cache.root.rglob("*") if p != own}
+    assert cache.trim(0) == 1
+    assert {*cache.root.rglob("*")} == left
+    assert {
+        str(p.relative_to(elsewhere)): p.read_bytes() for p in elsewhere.rglob("*") if p.is_file()
+    } == files
+
+
+def as_pipe(path: Path) -> None:
+    path.unlink()
+    os.mkfifo(path)
+
+
+def as_link(path: Path) -> None:
+    """To bytes that would do."""
+    path.rename(path.parents[2] / "kept")
+    path.symlink_to(path.parents[2] / "kept")
+
+
+def as_device(path: Path) -> None:
+    path.unlink()
+    path.symlink_to("/dev/zero")
+
+
+def as_folder(path: Path) -> None:
+    path.unlink()
+    path.mkdir()
+
+
+def behind_a_link(path: Path) -> None:
+    path.parent.rename(path.parents[2] / "moved")
+    path.parent.symlink_to(path.parents[2] / "moved")
+
+
+def too_large(path: Path) -> None:
+    os.truncate(path, 10**12)
+
+
+@pytest.mark.parametrize("change", [as_pipe, as_link, as_device, as_folder, behind_a_link, too_large])
+def test_what_is_no_file_is_no_entry(cache, said, change):
+    """And it is not waited for."""
+    cache.put("key", DATA)
+    change(entry(cache))
+    assert cache.get_or_make("key", lambda: b"anew") == b"anew"
+    assert "damaged" in said[0]
+    if change not in (as_folder, behind_a_link):
+        assert cache.get("key") == b"anew"
+
+
+# --- who made an entry ---
+
+
+def test_whoever_knows_no_secret_makes_no_entry(cache, tmp_path, said):
+    """Another installation's entry, and one with its name and a header made without the secret."""
+    cache.put("key", DATA)
+    own, other = entry(cache), Cache(tmp_path / "other", said.append)
+    other.put("key", b"forged")
+    forged = entry(other).read_bytes()
+    entry(other).replace(own)
+    assert cache.get("key") is None
+    bare = hashlib.sha256(b"key\0forged").hexdigest().encode()
+    own.write_bytes(b" ".join([forged.split()[0], bare]) + b"\nforged")
+    assert cache.get("key") is None
+    assert len(said) == 2 and all("damaged" in line for line in said)
+
+
+def test_the_secret_is_its_owners(cache, said):
+    """Nobody else reads it; one that others could read, or that a killed run left short, is drawn anew."""
+    secret = cache.root / "secret"
+    assert secret.stat().st_mode & 0o777 == 0o600 and len(secret.read_bytes()) == 32
+    cache.put("key", DATA)
+    assert Cache(cache.root).get("key") == DATA
+    before = secret.read_bytes()
+    secret.chmod(0o644)
+    assert Cache(cache.root).get("key") is None
+    assert secret.stat().st_mode & 0o777 == 0o600 and secret.read_bytes() != before
+    secret.write_bytes(b"short")
+    Cache(cache.root)
+    assert len(secret.read_bytes()) == 32
+    secret.unlink()
+    secret.symlink_to(cache.root / "CACHEDIR.TAG")
+    assert Cache(cache.root, said.append).get("key") is None
+    assert "going on without" in said[0]
+
+
+def test_the_cache_begins_at_once_in_several_processes(tmp_path):
+    """All of them agree on mark and secret."""
+    script = (
+        "import sys; from pathlib import Path; from tactcad.export.cache import Cache\n"
+        "cache = Cache(Path(sys.argv[1]), sys.exit); print(cache.root.joinpath('secret').read_bytes().hex())"
+    )
+    runs = [
+        subprocess.Popen([sys.executable, "-c", script, tmp_path / "new"], stdout=subprocess.PIPE)
+        for _ in range(4)
+    ]
+    assert len({run.communicate()[0] for run in runs}) == 1
+    assert [run.returncode for run in runs] == [0] * 4

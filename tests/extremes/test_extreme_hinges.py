@@ -77,7 +77,7 @@ def test_strain_and_strength_are_numbers_or_refused_like_the_stiffness(case, two
             strength.yield_force(s, ALLOY)
     else:
         assert 0.0 < float(strength.yield_force(s, ALLOY)) < np.inf
-        assert 0.0 < float(strength.goodman_factor(s, ALLOY, 1.0)) < np.inf
+        assert 0.0 < float(strength.goodman(ALLOY, strain.peak_stress(s, 1.0))) < np.inf
 
 
 @pytest.mark.parametrize("factor", [1 / 25, 1e-3, 25.0, 1e3])

@@ -11,7 +11,7 @@ from variants import variant
 
 from tactcad.fem import elasticity
 from tactcad.parts.layout import Layout
-from tactcad.parts.stop_plate import STEEL_MODULUS, STEEL_POISSON, stop_plate_beams
+from tactcad.parts.stop_give import STEEL_MODULUS, STEEL_POISSON, stop_plate_beams
 
 HELD = 1e7  # N/mm that hold a set screw's point: a thousand times what the plate has
 LONG = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}

@@ -16,11 +16,11 @@ def test_every_check_is_in_the_table():
     assert len(set(labels)) == len(labels)
     assert not mutants.unknown_gates()
 
-    from tactcad.parts.rules import design_rules, scene_rules
-    from tactcad.scenes import NEEDS
+    from tactcad.parts.rules import design_rules
+    from tactcad.scenes import NEEDS, fitting_rules
 
     in_table = {m.name for m in every if m.kind == "rule"}
-    assert in_table == {*design_rules(), *(name for scene in NEEDS for name in scene_rules(scene))}
+    assert in_table == {*design_rules(), *(name for scene in NEEDS for name in fitting_rules(scene))}
     modules = {m.module for m in every if m.kind == "finding"}
     for path in (mutants.SOURCE / "tactcad" / "checks").glob("*.py"):
         text = path.read_text(encoding="utf-8")

@@ -88,10 +88,10 @@ def test_axles_have_a_plain_shank_under_the_bearing():
     """ISO 4762: a screw has 2 d + 12 of thread; shorter ones are threaded to the head."""
     from variants import variant
 
-    from tactcad.parts.rigs.layout import RigLayout
+    from tactcad.parts.rigs.cart_layout import cart_layout
 
     for size, b in BEARINGS.items():
-        rig = RigLayout(variant({"cart.bearing": size, "cart.shim": 0.3}))
+        rig = cart_layout(variant({"cart.bearing": size, "cart.shim": 0.3}))
         shank = rig.axle_length - (2 * b.d + 12)
         assert shank >= 0.3 + b.B
         shorter = [n for n in CAP_SCREW_LENGTHS[rig.axle_thread] if n < rig.axle_length]

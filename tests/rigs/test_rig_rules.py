@@ -9,8 +9,8 @@ from tactcad.design.load import names
 from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
-from tactcad.parts.rules import broken_rules, design_rules, scene_rules
-from tactcad.scenes import NEEDS, chosen_scenes, left_out, scene_names
+from tactcad.parts.rules import broken_rules, design_rules
+from tactcad.scenes import NEEDS, chosen_scenes, fitting_rules, left_out, scene_names
 
 WITNESSES = {
     "axles_carry_wheels": {"cart.bearing": "682-2Z", "cart.shim": 2.0},
@@ -18,7 +18,7 @@ WITNESSES = {
     "cart_cannot_tip": {"cart.wheel_base": 35.0},
     "holder_on_cart": {"cart.width": 47.0},
     "cart_clears_post": {"cart.width": 102.0},
-    "holes_under_sample": {"holder.rings": 2.5},
+    "holes_under_sample": {"holder.rings": 12},
     "vacuum_holds": {"holder.vacuum": 20.0},
     "plenum_takes_port": {"holder.plenum_depth": 6.0},
     "seal_fits_holder": {"holder.vacuum_diameter": 29.9, "sample.side": 32.0, "holder.margin": 3.6},
@@ -52,7 +52,7 @@ MISFITS = {
 def test_there_is_a_witness_for_every_rule():
     of_rigs = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules")
     assert set(WITNESSES) == {n for n, r in design_rules().items() if r.find.__module__.endswith(of_rigs)}
-    assert set(MISFITS) == {name for scene in NEEDS for name in scene_rules(scene)}
+    assert set(MISFITS) == {name for scene in NEEDS for name in fitting_rules(scene)}
 
 
 @pytest.mark.parametrize("rule", WITNESSES)
@@ -68,7 +68,7 @@ def test_a_design_that_breaks_it_is_refused(rule):
 def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
     scene, changes = MISFITS[rule]
     design = variant(changes)
-    assert scene_rules(scene)[rule](Layout(design))
+    assert fitting_rules(scene)[rule](Layout(design))
     assert scene not in scene_names(design)
     assert any(line.startswith(f"scene {scene} left out: rule ") for line in left_out(design))
     with pytest.raises(InputError, match="left out"):

@@ -12,9 +12,9 @@ from variants import variant
 from tactcad.checks.moving_weight import check_moving_weight
 from tactcad.mechanics.rigs import holding_force, inside_by, tipping_margin, tipping_pull
 from tactcad.parts.designs import load
-from tactcad.parts.rigs.layout import RigLayout
+from tactcad.parts.rigs.cart_layout import cart_layout
 from tactcad.scenes import make_scene
-from tactcad.scenes.grasping import moving_weight
+from tactcad.scenes.moving_axis import moving_weight
 from tactcad.scenes.scene import Pose
 from tactcad.solids.build import build
 
@@ -31,7 +31,7 @@ def wheels_can_carry(contacts, forces) -> bool:
 @pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
 def test_no_load_on_the_sample_tips_the_cart(name):
     design = load(name)
-    rig, half = RigLayout(design), design.sample.side / 2
+    rig, half = cart_layout(design), design.sample.side / 2
     margin = tipping_margin(rig.contacts, half)
     assert margin >= 2.0
     for x in np.linspace(-half, half, 5):
@@ -68,7 +68,7 @@ def test_the_pull_that_lifts_a_wheel_is_where_balance_ends():
 def test_vacuum_holds_by_pressure_times_area():
     assert holding_force(100.0, 10.0) == pytest.approx(1.0)  # 0.1 N/mm2 on 10 mm2
     design = load("macro-array")
-    rig = RigLayout(design)
+    rig = cart_layout(design)
     assert len(rig.suction_holes) == 37
     force = holding_force(design.holder.vacuum, 37 * pi * 0.25)
     assert force == pytest.approx(1.162, abs=1e-3)

@@ -86,7 +86,7 @@ def _rows(result: dict, name: str, key: str | None = None) -> list[dict]:
 
 
 def choose(result: dict) -> Figure:
-    """README's plot: what to take for stiffness and for triangles."""
+    """What to take for stiffness and for triangles."""
     rungs = _rung_points(_rows(result, "rungs"), "solid")
     meshes = [
         Point(f"mesh {r['density']}", "solid elements", r["seconds"], r["worst"], r["mean"])

@@ -17,7 +17,7 @@ from tactcad.fem import calculix, elasticity
 from tactcad.fem.convergence import ORDER, richardson
 from tactcad.fem.mesh import plane_mesh
 from tactcad.fem.plane import solve_plane
-from tactcad.fem.shape import HingeShape, reference_shape
+from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.fem.solid import solve_solid
 
 from . import tables, truth
@@ -38,7 +38,7 @@ class Case:
     code: str
     elements: str
     density: int
-    solve: Callable[[HingeShape, float, float], tuple[float, int]]
+    solve: Callable[[ElementShape, float, float], tuple[float, int]]
 
 
 def cases(plan: Plan) -> list[Case]:

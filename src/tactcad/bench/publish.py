@@ -3,7 +3,7 @@
 What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's own, and is named.
 
 Writes benchmarks/results/reference.json and .md, docs/images/bench-*.svg, the converged results that short runs compare
-with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in README.md and docs/.
+with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in docs/.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .figures import figures
 from .run import BENCHMARKS, SCHEMA
 
 REFERENCE = "benchmarks/results/reference.json"
-DOCUMENTS = ("README.md", "docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
+DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
 
 
 def load(*paths: Path) -> dict:

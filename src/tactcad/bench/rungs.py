@@ -9,6 +9,7 @@ import numpy as np
 from tactcad.fit import fit_samples
 from tactcad.fit.fit_samples import Columns, draw_box, section
 from tactcad.mechanics import ladder
+from tactcad.mechanics.register import BY_NAME
 from tactcad.paper.report import sig
 
 from . import tables, truth
@@ -19,16 +20,6 @@ from .timing import interleaved
 TITLE = "Rungs of the model ladder"
 QUESTION = "How wrong is each rung against converged finite elements, and what does it cost?"
 GOAL_MILLION = 0.3  # s for a million designs by a closed form on one core
-
-WHEN = {
-    "short": "orders of magnitude, by hand",
-    "beam": "to see what beams alone explain",
-    "section": "notches with r/t far above 1",
-    "plane": "thin sheet; to compare with plane models",
-    "solid": "design: the default",
-    "fem-plane": "a contour of your own, in plane stress",
-    "fem-solid": "the reference",
-}
 
 
 def measure(plan: Plan) -> dict:
@@ -41,7 +32,7 @@ def measure(plan: Plan) -> dict:
     ]
     seconds = _times(plan)
     for row in rows:
-        row |= seconds[row["rung"]] | {"when": WHEN[row["rung"]]}
+        row |= seconds[row["rung"]] | {"when": BY_NAME[row["rung"]].when}
         row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
     columns = [
         ("rung", "rung", tables.PLAIN),
@@ -87,7 +78,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
     K = np.concatenate([ladder.evaluate(section(c), rung).stiffness for c in samples])
     solid = np.concatenate([truth.solid_stiffness(c) for c in samples])
     row = {"rung": rung} | errors(K, solid, "solid")
-    if rung == "solid":  # it answers another question than plane stress
+    if BY_NAME[rung].against == "solid":  # it answers another question than plane stress
         return row
     return row | errors(K, np.concatenate([c["plane_stiffness"] * c["width"] for c in samples]), "plane")
 

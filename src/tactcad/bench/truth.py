@@ -14,7 +14,7 @@ import numpy as np
 
 from tactcad.fem.convergence import ORDER, richardson
 from tactcad.fem.plane import solve_plane
-from tactcad.fem.shape import HingeShape, reference_shape
+from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.fem.solid import solve_solid
 from tactcad.fit.fit_samples import BOX, Columns, draw_box, draw_edges, joined, load, section, write
 from tactcad.mechanics.section import REFERENCE, HingeSection
@@ -64,14 +64,14 @@ def compute(columns: Columns, solids: int, say: Callable[[str], None]) -> Column
     return columns | {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def plane(shape: HingeShape, nu: float) -> tuple[float, float]:
+def plane(shape: ElementShape, nu: float) -> tuple[float, float]:
     """Stiffness (unit width and modulus), and the share by which the limit differs from the finer mesh."""
     coarse, fine = (solve_plane(shape, 1.0, nu, 1.0, density=d).compliance for d in DENSITIES)
     limit = richardson((coarse, fine), DENSITIES, ORDER)
     return 1.0 / limit, abs(limit / fine - 1.0)
 
 
-def width_factor(shape: HingeShape, nu: float, width: float) -> tuple[float, float]:
+def width_factor(shape: ElementShape, nu: float, width: float) -> tuple[float, float]:
     """K3D/K2D, and its estimated relative error: half of what the choice of the order may change."""
 
     def factor(density: int, across: int) -> float:

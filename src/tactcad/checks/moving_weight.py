@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
-from tactcad.scenes.grasping import moving_weight
+from tactcad.scenes.moving_axis import moving_weight
 from tactcad.scenes.scene import Scene
 
 # Share by which the parts' weight may miss the design's: the ballast is turned to a balance's reading anyway.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.checks.shop import DEFAULT, load_shop
 
     shop = Path(args.shop) if args.shop else DEFAULT
+    if args.report:
+        _refuse_overwriting(Path(args.report), [*args.design, shop])
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
     reports = [_checked(source, args.scene, shop, alone=len(args.design) == 1) for source in args.design]
     if args.report:
@@ -94,6 +97,19 @@ def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> 
     if path:
         report.run("golden", check_golden, design, path)
     return report
+
+
+def _refuse_overwriting(folder: Path, sources: list[str | Path]) -> None:
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.design.load import find
+    from tactcad.design.messages import InputError
+
+    inputs = []
+    for source in sources:
+        with suppress(InputError):  # one of several that is not there is a failed check, told in its turn
+            inputs.append(find(source))
+    for name in ("check.json", "junit.xml"):
+        refuse_overwriting(folder / name, *inputs, option="--report")
 
 
 def _write(folder: Path, files: dict[str, bytes]) -> None:

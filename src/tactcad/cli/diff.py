@@ -25,9 +25,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import write_whole
-    from tactcad.export.sides import compare_sides, not_compared, read_side
+    from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.export.sides import compare_sides, named, not_compared, read_side
 
+    if args.html:
+        refuse_overwriting(args.html, named(args.old), named(args.new), option="--html")
     old, new = read_side(args.old), read_side(args.new)
     changes = compare_sides(old, new)
     left_out = not_compared(old, new)

@@ -64,7 +64,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import make_folder, write_whole
+    from tactcad.design.files import make_folder, refuse_overwriting, write_whole
     from tactcad.fit import fit_samples
     from tactcad.fit.accuracy_table import accuracy_table
     from tactcad.fit.fit import fit
@@ -79,6 +79,7 @@ def run(args: argparse.Namespace) -> int:
             )
     out = Path(args.out)
     make_folder(out)
+    results = [out / name for name in ("ladder.json", "accuracy.json")]
     if args.shipped_samples:
         tables = fit_samples.shipped() | {"range": fit_samples.shipped_table(RANGE_FILE)}
     elif args.reuse:
@@ -86,13 +87,15 @@ def run(args: argparse.Namespace) -> int:
         missing = [str(out / name) for name in files.values() if not (out / name).is_file()]
         if missing:
             raise InputError("--reuse", f"{missing[0]} is not there")
+        for path in results:
+            refuse_overwriting(path, *(out / name for name in files.values()))
         tables = {kind: fit_samples.load(out / name) for kind, name in files.items()}
     else:
         tables = _sample(args, out)
     result = fit(tables["fitted"], tables["held out"], _today())
     accuracy = accuracy_table(tables, result, _today())
-    for name, document in (("ladder.json", result), ("accuracy.json", accuracy)):
-        write_whole(out / name, (json.dumps(document, indent=1) + "\n").encode())
+    for path, document in zip(results, (result, accuracy)):
+        write_whole(path, (json.dumps(document, indent=1) + "\n").encode())
     for side, errors in result["report"]["relative_error"]["held out, box"].items():
         rungs = ("plane, against plane elements", "solid, against solid elements")
         worst = {name: errors[name]["max"] for name in rungs}
@@ -100,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
             f"{side}-sided, held out: "
             + "; ".join(f"{name}: max {100 * e:.2f} %" for name, e in worst.items())
         )
-    print(f"{out / 'ladder.json'} and {out / 'accuracy.json'} written")
+    print(f"{results[0]} and {results[1]} written")
     return 0
 
 

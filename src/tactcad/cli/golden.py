@@ -44,6 +44,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _renew(source: str, shop_file: str | None) -> None:
     from tactcad.checks.shop import DEFAULT, load_shop
+    from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden import accept, changes_against, golden_path
@@ -58,6 +59,7 @@ def _renew(source: str, shop_file: str | None) -> None:
     path = golden_path(find(source), design)
     if path is None:
         raise InputError(source, "has no golden file", legal="a design in a folder hardware/")
+    refuse_overwriting(path, find(source), shop, option=source)
     changes = changes_against(path, design)
 
     from tactcad.checks.run import run_checks

@@ -9,18 +9,17 @@ from __future__ import annotations
 import argparse
 import importlib
 import importlib.util
-import io
 import json
-import os
 import sys
 from collections.abc import Callable
-from contextlib import suppress
 
 from tactcad import __version__
 from tactcad.account import KERNEL, account, text
 from tactcad.design.files import NO_ROOM
 from tactcad.design.messages import CheckFailure, InputError, one_of
+from tactcad.ending import end_on_signals, past_ending
 
+from . import streams
 from .parser import Parser
 
 COMMANDS = {
@@ -44,40 +43,49 @@ COMMANDS = {
 NEED_KERNEL = ("export", "check", "release", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
-INTERRUPTED = 130  # what shells give: 128 + SIGINT
 
 
 def main(argv: list[str] | None = None) -> int:
-    """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input."""
-    argv = sys.argv[1:] if argv is None else argv
-    _mend_streams()
+    """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input.
+
+    Without ARGV it is this process that is the command: its own arguments are taken, its streams may lose their readers,
+    and signals end it.
+    """
+    if argv is None:
+        return _own_process()
+    streams.mend()
     try:
-        status = _dispatch(argv)
-        sys.stdout.flush()
-        return status
+        return _dispatch(argv)
     except InputError as error:
         return _refused(error, BAD_INPUT)
     except CheckFailure as error:
         return _refused(error, FAILED)
-    except BrokenPipeError:  # the reader of our output went away, as in `tactcad schema | head`
-        _drop_output()
-        return DONE
     except OSError as error:
         if error.errno not in NO_ROOM:
             raise
-        _drop_output()
         return _refused(f"the output cannot be written: {error.strerror}", FAILED)
     except ImportError as error:
         if (error.name or "").split(".")[0] not in KERNEL:
             raise
         return _refused(_no_kernel(error), FAILED)
-    except KeyboardInterrupt:
-        return _refused("interrupted; nothing was changed", INTERRUPTED)
+
+
+def _own_process() -> int:
+    end_on_signals()
+    output = streams.own()
+    try:
+        status = main(sys.argv[1:])
+    except SystemExit as ended:  # the parser's help and refusals
+        status = ended.code
+    sys.stdout.flush()
+    past_ending()
+    if output.failed and status == DONE:
+        return _refused(f"the output cannot be written: {output.failed.strerror}", FAILED)
+    return status
 
 
 def _refused(why: object, status: int) -> int:
-    with suppress(OSError):  # the status tells it, even where nobody can be told in words
-        print(f"tactcad: {why}", file=sys.stderr)
+    print(f"tactcad: {why}", file=sys.stderr)
     return status
 
 
@@ -86,24 +94,6 @@ def _no_kernel(error: ImportError | None = None) -> str:
     if error is None or isinstance(error, ModuleNotFoundError):
         return "this needs the CAD kernel, which is not installed: pip install 'tactcad[cad]'"
     return f"the CAD kernel cannot be loaded: {error}; on Debian or Ubuntu: apt-get install libgl1 libx11-6"
-
-
-def _mend_streams() -> None:
-    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its number."""
-    if None in (sys.stdin, sys.stdout, sys.stderr):
-        while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
-            os.set_inheritable(handle, True)
-        os.close(handle)
-        sys.stdout = sys.stdout or open(1, "w", closefd=False)
-        sys.stderr = sys.stderr or open(2, "w", closefd=False)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
-def _drop_output() -> None:
-    """What is still to be written goes nowhere, or Python would complain at its end."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace) -> int:
@@ -117,26 +107,32 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
+def parser_of(command: str) -> Parser:
+    """The parser of one of COMMANDS, as its --help and the reference pages show it."""
+    module = importlib.import_module(f"tactcad.cli.{command}")
+    parser = Parser(
+        prog=f"tactcad {command}",
+        description=COMMANDS[command],
+        epilog=f"examples:\n{module.EXAMPLES}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    module.configure(parser)
+    parser.add_argument(
+        "--profile",
+        action="store_true",
+        help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
+        "made, how often, how long, and how much memory it took (with --json as JSON)",
+    )
+    return parser
+
+
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
-        module = importlib.import_module(f"tactcad.cli.{argv[0]}")
-        parser = Parser(
-            prog=f"tactcad {argv[0]}",
-            description=COMMANDS[argv[0]],
-            epilog=f"examples:\n{module.EXAMPLES}",
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        module.configure(parser)
-        parser.add_argument(
-            "--profile",
-            action="store_true",
-            help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
-            "made, how often, how long, and how much memory it took (with --json as JSON)",
-        )
-        args = parser.parse_args(argv[1:])
+        args = parser_of(argv[0]).parse_args(argv[1:])
         if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
             raise CheckFailure(_no_kernel())
-        return _profiled(module.run, args) if args.profile else module.run(args)
+        run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
+        return _profiled(run, args) if args.profile else run(args)
     parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",

@@ -19,6 +19,10 @@ class Parser(argparse.ArgumentParser):
         self.register("type", int, as_whole)
 
     def parse_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> argparse.Namespace:
+        if args and args[-1] == "--":
+            self.error(
+                str(InputError("--", "nothing follows it", legal="leave it out, or name what it is for"))
+            )
         parsed, unknown = super().parse_known_args(args, namespace)
         if unknown:
             hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
@@ -47,6 +51,26 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""
         self.exit(2, f"tactcad: {message}\n")
+
+
+def add_others(parser: argparse.ArgumentParser) -> None:
+    """--keep and --discard, for commands that write a folder (tactcad.export.publish)."""
+    others = parser.add_mutually_exclusive_group()
+    others.add_argument(
+        "--keep",
+        dest="others",
+        action="store_const",
+        const="keep",
+        default="refuse",
+        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 (default: refuse)",
+    )
+    others.add_argument(
+        "--discard",
+        dest="others",
+        action="store_const",
+        const="discard",
+        help="remove it, unread, with the folder",
+    )
 
 
 def _named(action: argparse.Action) -> str:

@@ -155,7 +155,7 @@ def _section(args: argparse.Namespace, design: Design) -> HingeSection:
     # an arm longer than the array's moves the clamp edge out and keeps the seat behind its slot
     body_length = max(layout.clamp_edge - hinge_x - slot / 2.0, e.seat_length)
     usual = own_parameters(layout.common_hinge, args.load_arm, body_length) | shared_parameters(design)
-    return HingeSection(**(usual | given))
+    return HingeSection.of(**(usual | given))
 
 
 def _report(a: dict) -> str:

@@ -50,19 +50,23 @@ def common_normals(a: Segment, b: Segment) -> Iterator[tuple[Point, Point]]:
     for q in (b.start, b.end):
         for p in feet(a, q):
             yield p, q
-    if isinstance(a, Line) and isinstance(b, Line):
-        yield from _across_parallel_lines(a, b)
-    elif isinstance(a, Line) or isinstance(b, Line):
-        line, arc = (a, b) if isinstance(a, Line) else (b, a)
-        for foot in feet(line, arc.centre):
-            for q in _along_normal(arc, line):
-                yield (foot, q) if a is line else (q, foot)
+    if isinstance(a, Line):
+        yield from _across_parallel_lines(a, b) if isinstance(b, Line) else _line_to_arc(a, b)
+    elif isinstance(b, Line):
+        yield from ((q, foot) for foot, q in _line_to_arc(b, a))
     elif dist(a.centre, b.centre) > ROUNDING_MM:
         for p in feet(a, b.centre):
             for q in feet(b, a.centre):
                 yield p, q
     else:
         yield from _across_concentric_arcs(a, b)
+
+
+def _line_to_arc(line: Line, arc: Arc) -> Iterator[tuple[Point, Point]]:
+    """Points of the line, each with one of the arc, on the normals from the arc's centre."""
+    for foot in feet(line, arc.centre):
+        for q in _along_normal(arc, line):
+            yield foot, q
 
 
 def _across_parallel_lines(a: Line, b: Line) -> Iterator[tuple[Point, Point]]:
@@ -107,10 +111,8 @@ def meeting_points(a: Segment, b: Segment) -> list[Point]:
     """Points in which two segments meet, within rounding; of a stretch in common, its ends."""
     if not _discs_meet(a, b):
         return []
-    if isinstance(a, Line) and isinstance(b, Line):
-        found = _lines_meet(a, b)
-    elif isinstance(a, Line):
-        found = _line_and_circle(a, b)
+    if isinstance(a, Line):
+        found = _lines_meet(a, b) if isinstance(b, Line) else _line_and_circle(a, b)
     elif isinstance(b, Line):
         found = _line_and_circle(b, a)
     else:

@@ -90,11 +90,12 @@ def _joint(before: _Moved, after: _Moved, to_the_right: float) -> _Joint:
 
 def _between(s: Segment, start: Point, end: Point, by: float) -> Segment:
     """The segment cut to new ends that lie on it, in its old direction."""
+    cut: Segment
     if isinstance(s, Arc):
-        cut = Arc(start, end, s.centre, s.ccw, s.name)
+        cut = arc = Arc(start, end, s.centre, s.ccw, s.name)
         if s.start == s.end:
             return cut
-        turned = abs(cut.sweep) > abs(s.sweep) + 1e-9
+        turned = abs(arc.sweep) > abs(s.sweep) + 1e-9
     else:
         cut = Line(start, end, s.name)
         ux, uy = direction(s, s.start)

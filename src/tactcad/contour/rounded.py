@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 from .contour import Contour
@@ -47,15 +47,15 @@ def rounded_polygon(corners: list[Corner]) -> Contour:
         if room > ROUNDING_MM:
             pieces.append(Line(start, end, corner.edge))
         elif there and here:  # the edge is used up: both arcs end at the same point
-            arcs[after] = Arc(start, there.end, there.centre, there.ccw, there.name)
+            arcs[after] = longer = replace(there, start=start)
             if after == 0:
-                pieces[0] = arcs[0]
+                pieces[0] = longer
         elif there:
-            arcs[after] = Arc(corner.at, there.end, there.centre, there.ccw, there.name)
+            arcs[after] = longer = replace(there, start=corner.at)
             if after == 0:
-                pieces[0] = arcs[0]
+                pieces[0] = longer
         elif here:
-            pieces[-1] = Arc(here.start, corners[after].at, here.centre, here.ccw, here.name)
+            pieces[-1] = replace(here, end=corners[after].at)
     return Contour(tuple(_merged(pieces)))
 
 
@@ -82,24 +82,23 @@ def _merged(pieces: list[Segment]) -> list[Segment]:
     """Join neighbouring arcs of one circle (a full round is one arc, not two)."""
     merged: list[Segment] = []
     for piece in pieces:
-        if merged and _same_circle(merged[-1], piece):
-            merged[-1] = _joined(merged[-1], piece)
+        if merged and (joined := _joined(merged[-1], piece)):
+            merged[-1] = joined
         else:
             merged.append(piece)
-    if len(merged) > 1 and _same_circle(merged[-1], merged[0]):
-        merged[0] = _joined(merged.pop(), merged[0])
+    if len(merged) > 1 and (joined := _joined(merged[-1], merged[0])):
+        merged.pop()
+        merged[0] = joined
     return merged
 
 
-def _joined(a: Arc, b: Arc) -> Arc:
-    return Arc(a.start, b.end, a.centre, a.ccw, a.name)
-
-
-def _same_circle(a: Segment, b: Segment) -> bool:
+def _joined(a: Segment, b: Segment) -> Arc | None:
+    """The one arc that two neighbouring arcs of one circle make, else None."""
     if not (isinstance(a, Arc) and isinstance(b, Arc)):
-        return False
+        return None
     near = hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) < ROUNDING_MM
-    return near and abs(a.radius - b.radius) < ROUNDING_MM and a.ccw == b.ccw
+    same = near and abs(a.radius - b.radius) < ROUNDING_MM and a.ccw == b.ccw
+    return Arc(a.start, b.end, a.centre, a.ccw, a.name) if same else None
 
 
 def _unit(a: Point, b: Point) -> Point:

@@ -7,15 +7,18 @@ import os
 import signal
 from contextlib import suppress
 
+from tactcad.ending import past_ending
+
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2)
 
 
 def end_with(parent: int) -> None:
-    """Let this process be killed when its parent, of that number, is gone.
+    """Let this process be killed when its parent, of that number, is gone, and by nothing else that ends the parent.
 
     A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock of the
-    export's folder among it. Systems without prctl leave it waiting.
+    export's folder among it. Systems without prctl leave it waiting. Ctrl-C reaches it too, but it is the parent that answers.
     """
+    past_ending()
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from tactcad.design.files import read_json
+from tactcad.design.load import find
 from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 
@@ -55,6 +56,12 @@ class Side:
             return {}
         files = [f.path for f in read_manifest(self.folder).files if f.kind == "picture"]
         return {path: (self.folder / path).read_bytes() for path in files}
+
+
+def named(source: str) -> Path:
+    """The file or folder that `source` names. Raises InputError where it is no path, and no design of that name."""
+    path = Path(source)
+    return path if os.path.isdir(path) or path.suffix == ".json" else find(source)
 
 
 def read_side(source: str) -> Side:
@@ -127,6 +134,10 @@ def _exported_bills(folder: Path, manifest: Manifest) -> Record:
     for file in manifest.files:
         if file.kind == "bom" and file.path.endswith(".json"):
             bill = read_json(folder / file.path, MOST_BYTES, "a bill of materials")
+            if not all(
+                isinstance(name, str) for name in (bill["scene"], *(r["part_no"] for r in bill["rows"]))
+            ):
+                raise ValueError(f"{file.path}: a scene or part number is no text")
             scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
     return scenes
 

@@ -62,7 +62,7 @@ def write_solid(mesh: PlaneMesh, E: float, nu: float, width: float, across: int,
 def run(path: Path, force: Array) -> float:
     """Solve the input file; work-conjugate displacement f.u of the forces, mm."""
     job = path.with_suffix("")
-    subprocess.run([executable(), "-i", job.name], cwd=path.parent, check=True, capture_output=True)
+    subprocess.run([executable() or "ccx", "-i", job.name], cwd=path.parent, check=True, capture_output=True)
     return float(np.sum(force * _displacements(job.with_suffix(".dat"), force.shape)))
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import log
 
 from .plane import PlaneSolution, solve_plane
-from .shape import HingeShape
+from .shape import ElementShape
 from .solid import SolidSolution, solve_solid
 
 # Of nine-node elements' energy on this geometry, observed: 4 but for the clamp's corners (tests/fem).
@@ -20,43 +18,10 @@ SHARE_ORDER = 2.5
 NO_POISSON = 1e-9  # relative: plane stress and plane strain are one problem, and so is the solid
 
 
-@dataclass(frozen=True)
-class Refinement:
-    """Compliances (mm/N) on meshes of growing density, each the double of the one before."""
-
-    densities: tuple[int, ...]
-    unknowns: tuple[int, ...]
-    compliance: tuple[float, ...]
-
-    @property
-    def rates(self) -> tuple[float, ...]:
-        """Observed orders: log of the ratio of successive changes to the base of the density's ratio."""
-        changes = [b - a for a, b in zip(self.compliance, self.compliance[1:])]
-        ratio = log(self.densities[1] / self.densities[0])
-        return tuple(log(abs(a / b)) / ratio for a, b in zip(changes, changes[1:]))
-
-    @property
-    def extrapolated(self) -> float:
-        """Richardson's compliance from the last two meshes, by the last observed order or the known one."""
-        order = self.rates[-1] if self.rates else ORDER
-        return richardson(self.compliance[-2:], self.densities[-2:], order)
-
-    @property
-    def error(self) -> float:
-        """Relative error of the finest mesh by Richardson's estimate."""
-        return self.compliance[-1] / self.extrapolated - 1.0
-
-
 def richardson(compliance: tuple[float, float], densities: tuple[int, int], order: float) -> float:
     """Limit of c(h) = c + k h^order from two meshes, mm/N."""
     coarse, fine = compliance
     return fine + (fine - coarse) / ((densities[1] / densities[0]) ** order - 1.0)
-
-
-def refine(solve: Callable[[int], PlaneSolution | SolidSolution], densities: tuple[int, ...]) -> Refinement:
-    """Solve on each density."""
-    solutions = [solve(d) for d in densities]
-    return Refinement(densities, tuple(s.unknowns for s in solutions), tuple(s.compliance for s in solutions))
 
 
 @dataclass(frozen=True)
@@ -74,7 +39,7 @@ class Converged:
 
 
 def converged_plane(
-    shape: HingeShape, E: float, nu: float, width: float, *, plane_strain: bool = False
+    shape: ElementShape, E: float, nu: float, width: float, *, plane_strain: bool = False
 ) -> Converged:
     """Rung fem-plane: two meshes and Richardson's limit; the error is what the limit adds to the finer."""
     pair = [solve_plane(shape, E, nu, width, density=d, plane_strain=plane_strain) for d in PLANE_DENSITIES]
@@ -83,7 +48,7 @@ def converged_plane(
 
 
 def converged_solid(
-    shape: HingeShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
+    shape: ElementShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
 ) -> Converged:
     """Rung fem-solid on meshes of density mesh - 1 and `mesh` (2 or 3); `error` is what the limit adds to the finer.
 
@@ -111,13 +76,13 @@ def converged_solid(
     return Converged(limit, abs(between(shares[mesh, 1] + across) / limit - 1.0) + stress.error, fine)
 
 
-def _share(shape: HingeShape, E: float, nu: float, width: float, density: int, across: int) -> float:
+def _share(shape: ElementShape, E: float, nu: float, width: float, density: int, across: int) -> float:
     solid = solve_solid(shape, E, nu, width, density=density, across=across)
     return _share_of(solid, shape, E, nu, width, density)
 
 
 def _share_of(
-    solid: SolidSolution, shape: HingeShape, E: float, nu: float, width: float, density: int
+    solid: SolidSolution, shape: ElementShape, E: float, nu: float, width: float, density: int
 ) -> float:
     """Where the solid stands between plane stress (0) and plane strain (1) of its own mesh in the plane."""
     stress, strain = (

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, onenormest
 from . import elasticity
 from .mesh import PlaneMesh
 from .plane import end_nodes, fixed_unknowns, parabola, solve_plane
-from .shape import HingeShape
+from .shape import ElementShape
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Health:
     unknowns: int
 
 
-def plane_health(shape: HingeShape, E: float, nu: float, width: float, density: int) -> Health:
+def plane_health(shape: ElementShape, E: float, nu: float, width: float, density: int) -> Health:
     """Of the plane-stress problem that `solve_plane` solves on that density."""
     solution = solve_plane(shape, E, nu, width, density=density)
     basis, mesh = solution.basis, solution.mesh

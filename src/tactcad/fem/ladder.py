@@ -10,7 +10,7 @@ from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.section import HingeSection
 
 from .convergence import SOLID_MESH, Converged, converged_plane, converged_solid
-from .shape import HingeShape, reference_shape
+from .shape import ElementShape, reference_shape
 from .surface import face_strain
 
 
@@ -36,7 +36,7 @@ def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
 
 
 def converged(
-    s: HingeSection, rung: str, shape: HingeShape | None = None, mesh: int = SOLID_MESH
+    s: HingeSection, rung: str, shape: ElementShape | None = None, mesh: int = SOLID_MESH
 ) -> Converged:
     """The rung's solution on the shape cut from a contour, or on the reference shape."""
     require_range(s, rung)
@@ -52,7 +52,7 @@ def converged(
 
 
 def solve(
-    s: HingeSection, rung: str, grid_length: float, shape: HingeShape | None = None, mesh: int = SOLID_MESH
+    s: HingeSection, rung: str, grid_length: float, shape: ElementShape | None = None, mesh: int = SOLID_MESH
 ) -> ElementResult:
     """One design (scalars) by finite elements, on the shape cut from its contour or on the reference shape.
 

@@ -27,7 +27,7 @@ from skfem.mesh import MeshHex, MeshQuad
 
 from tactcad.design.messages import CheckFailure
 
-from .shape import Block, HingeShape
+from .shape import Block, ElementShape
 
 Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
 
@@ -50,7 +50,7 @@ class PlaneMesh:
     """
 
     cells: NDArray[np.float64]
-    shape: HingeShape
+    shape: ElementShape
     half: bool
     middle: float
 
@@ -63,7 +63,7 @@ class PlaneMesh:
         return self.shape.body.end
 
 
-def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> PlaneMesh:
+def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False) -> PlaneMesh:
     """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way.
 
     A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
@@ -78,7 +78,7 @@ def plane_mesh(shape: HingeShape, density: int = 1, whole: bool = False) -> Plan
     if not whole and _symmetric(shape, middle):
         return PlaneMesh(upper, shape, True, middle)
     for block in (shape.arm, shape.body):
-        low, high = block.low_fillet, block.high_fillet
+        low, high = block.slot_corner(upper=False), block.slot_corner(upper=True)
         if abs(low.wall - high.wall) > 1e-9 or abs(low.radius - high.radius) > 1e-9:
             raise CheckFailure(
                 "slots from both faces differ in length or radius; the mapped mesh cannot join them"
@@ -154,7 +154,7 @@ def _first_of_group(keys: NDArray[np.int64]) -> NDArray[np.int64]:
     return first[index.ravel()]
 
 
-def _without_slivers(shape: HingeShape) -> HingeShape:
+def _without_slivers(shape: ElementShape) -> ElementShape:
     """A straight part that is next to nothing would be a sliver: the fillets take it and meet."""
 
     def met(block: Block, other: Block, side: str) -> Block:
@@ -171,25 +171,26 @@ def _without_slivers(shape: HingeShape) -> HingeShape:
     return replace(shape, arm=arm, body=body)
 
 
-def _symmetric(shape: HingeShape, middle: float) -> bool:
+def _symmetric(shape: ElementShape, middle: float) -> bool:
     def mirrored(block: Block) -> bool:
-        low, high = block.low_fillet, block.high_fillet
+        low, high = block.slot_corner(upper=False), block.slot_corner(upper=True)
         gaps = (block.low + block.high - 2.0 * middle, low.wall - high.wall, low.radius - high.radius)
         return max(map(abs, gaps)) < 1e-9
 
     return mirrored(shape.arm) and mirrored(shape.body)
 
 
-def _half(shape: HingeShape, middle: float, upper: bool, density: int) -> NDArray[np.float64]:
+def _half(shape: ElementShape, middle: float, upper: bool, density: int) -> NDArray[np.float64]:
     """Elements on one side of the line z = middle."""
     sign = 1.0 if upper else -1.0
     strip_height = (shape.high if upper else shape.low) - middle
-    fillets = [(b, b.high_fillet if upper else b.low_fillet) for b in (shape.arm, shape.body)]
+    fillets = [(b, b.slot_corner(upper)) for b in (shape.arm, shape.body)]
     centre = sum(f.wall for _, f in fillets) / 2.0
     arm_direction = 1.0 if shape.arm.end > shape.body.end else -1.0
     column = COLUMN * shape.thickness
-    straight = [max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets]
-    grids = [_strip(*straight, sign * strip_height, column, density)] if sum(straight) > 0.0 else []
+    to_arm, to_body = (max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets)
+    straight = to_arm + to_body > 0.0
+    grids = [_strip(to_arm, to_body, sign * strip_height, column, density)] if straight else []
     for block, fillet in fillets:
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]

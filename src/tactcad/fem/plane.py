@@ -12,7 +12,7 @@ from tactcad.account import making
 
 from . import elasticity
 from .mesh import PlaneMesh, plane_mesh, quad_mesh
-from .shape import HingeShape
+from .shape import ElementShape
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class PlaneSolution:
 
 
 def solve_plane(
-    shape: HingeShape,
+    shape: ElementShape,
     E: float,
     nu: float,
     width: float,
@@ -49,7 +49,7 @@ def solve_plane(
 
 
 def _solved(
-    shape: HingeShape, E: float, nu: float, width: float, density: int, plane_strain: bool, whole: bool
+    shape: ElementShape, E: float, nu: float, width: float, density: int, plane_strain: bool, whole: bool
 ) -> PlaneSolution:
     mesh = plane_mesh(shape, density, whole)
     quads = quad_mesh(mesh)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
+from typing import Literal
 
 from tactcad.contour import Arc, Contour, Corner, Line, rounded_polygon
 from tactcad.contour.cut import ON_LINE_MM, between, crossings, cut
@@ -36,9 +37,16 @@ class Block:
     low_fillet: Fillet | None  # None where the hinge's lower face is the block's
     high_fillet: Fillet | None
 
+    def slot_corner(self, upper: bool) -> Fillet:
+        """The fillet at the slot above or below the hinge, which must be there."""
+        fillet = self.high_fillet if upper else self.low_fillet
+        if fillet is None:
+            raise ValueError("the hinge has no slot on that side")
+        return fillet
+
 
 @dataclass(frozen=True)
-class HingeShape:
+class ElementShape:
     """Hinge between z = low and high, and the blocks that it joins (mm)."""
 
     low: float
@@ -55,7 +63,7 @@ class HingeShape:
         return self.arm.low_fillet is not None
 
 
-def outline(shape: HingeShape) -> Contour:
+def outline(shape: ElementShape) -> Contour:
     """The contour of the shape, counter-clockwise; slot corners and walls are named."""
     left, right = sorted((shape.arm, shape.body), key=lambda block: block.end)
     names = {id(shape.arm): "arm", id(shape.body): "body"}
@@ -103,7 +111,7 @@ def _renamed(corners: list[Corner]) -> list[Corner]:
     return named
 
 
-def reference_shape(s: HingeSection) -> HingeShape:
+def reference_shape(s: HingeSection) -> ElementShape:
     """One reference element (scalars): arm cut off at the load line, hinge centre at x = 0, arm to +x."""
     t, half, r = float(s.hinge_thickness), float(s.hinge_length) / 2.0, float(s.fillet_radius)
     h, Hb = float(s.arm_height), float(s.body_height)
@@ -119,7 +127,7 @@ def reference_shape(s: HingeSection) -> HingeShape:
         return Block(end, *face, fillet if bool(s.two_sided) else None, fillet)
 
     arm = block(float(s.load_arm), half, faces[0])
-    return HingeShape(low, high, arm, block(-half - float(s.body_length), -half, faces[1]))
+    return ElementShape(low, high, arm, block(-half - float(s.body_length), -half, faces[1]))
 
 
 def reference_contour(s: HingeSection) -> Contour:
@@ -127,7 +135,7 @@ def reference_contour(s: HingeSection) -> Contour:
     return outline(reference_shape(s))
 
 
-def cut_element(contour: Contour, clamp_x: float, load_x: float) -> HingeShape:
+def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape:
     """The part's contour between clamp edge and load line (mm), without what stands out of its faces there.
 
     Pad, stop land and the rear body's corner fillet are left out, as in the reference designs. Raises
@@ -140,7 +148,7 @@ def cut_element(contour: Contour, clamp_x: float, load_x: float) -> HingeShape:
     return read(piece, load_x)
 
 
-def read(contour: Contour, load_x: float) -> HingeShape:
+def read(contour: Contour, load_x: float) -> ElementShape:
     """The hinge shape enclosed by a contour that ends at the load line x = load_x (mm).
 
     Raises CheckFailure where the contour is not one hinge between two rectangles.
@@ -170,7 +178,7 @@ def read(contour: Contour, load_x: float) -> HingeShape:
             Fillet(high.wall, high.radius) if high else None,
         )
 
-    shape = HingeShape(floor_low, floor_high, block(True), block(False))
+    shape = ElementShape(floor_low, floor_high, block(True), block(False))
     _require_same(outer, shape)
     return shape
 
@@ -193,7 +201,7 @@ def _hinge_fillets(outer: Contour) -> list[_SlotCorner]:
         c
         for i, s in enumerate(outer.segments)
         if isinstance(s, Arc) and not s.ccw
-        for c in _slot_corners(outer, i)
+        for c in _slot_corners(outer, s, i)
     ]
     if not corners:
         raise CheckFailure("the contour has no slot with rounded corners between clamp edge and load line")
@@ -201,17 +209,17 @@ def _hinge_fillets(outer: Contour) -> list[_SlotCorner]:
     return [c for c in corners if c.high - c.low <= thinnest * (1.0 + 1e-9)]
 
 
-def _slot_corners(outer: Contour, index: int) -> list[_SlotCorner]:
-    """The slot corners that a clockwise arc makes: one for a quarter turn, two for a full round."""
-    arc = outer.segments[index]
+def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
+    """The slot corners that a clockwise arc, the segment `index`, makes: one for a quarter turn, two for a
+    full round."""
     count = len(outer)
     (cx, cz), r = arc.centre, arc.radius
     turn = -arc.sweep
     if abs(turn - pi) < ANGLE and abs(arc.start[1] - cz) < ANGLE * r:
-        ends = ((arc.start, -1), (arc.end, 1))
+        ends = [(arc.start, -1), (arc.end, 1)]
     elif abs(turn - pi / 2) < ANGLE:
         # a quarter turn has one end beside its centre (at the wall) and one above or below (at the floor)
-        ends = ((arc.start, -1),) if abs(arc.start[1] - cz) < ANGLE * r else ((arc.end, 1),)
+        ends = [(arc.start, -1)] if abs(arc.start[1] - cz) < ANGLE * r else [(arc.end, 1)]
         if abs(ends[0][0][1] - cz) > ANGLE * r:
             return []
     else:
@@ -239,12 +247,12 @@ def _slot_above(arc: Arc) -> bool:
     return arc.at(0.5)[1] < arc.centre[1]
 
 
-def _require_same(outer: Contour, shape: HingeShape) -> None:
+def _require_same(outer: Contour, shape: ElementShape) -> None:
     """The contour must be the shape's outline, but for what stands out of its faces at a cut.
 
     That is pad and stop land at the load line, and the fillet of the rear body's corner at the clamp edge.
     """
-    middle = (shape.arm.high_fillet or shape.arm.low_fillet).wall
+    middle = shape.arm.slot_corner(upper=shape.arm.high_fillet is not None).wall
     pieces = {"arm": shape.arm, "body": shape.body}
     x0, _, x1, _ = outer.box
     drawn = outline(shape)
@@ -256,8 +264,8 @@ def _require_same(outer: Contour, shape: HingeShape) -> None:
             real = between(outer, *span)
         except ValueError:
             raise CheckFailure(f"the {name} of the element is not one piece") from None
-        for face, keep in ((block.low, "above"), (block.high, "below")):
-            real = _without_pad(real, face, keep, block.end, name)
+        real = _without_pad(real, block.low, "above", block.end, name)
+        real = _without_pad(real, block.high, "below", block.end, name)
         if (
             abs(real.area - between(drawn, *span).area) > SAME_AREA * drawn.area
             or abs(real.length - between(drawn, *span).length) > SAME_AREA * drawn.length
@@ -268,7 +276,9 @@ def _require_same(outer: Contour, shape: HingeShape) -> None:
             )
 
 
-def _without_pad(contour: Contour, face: float, keep: str, end_x: float, name: str) -> Contour:
+def _without_pad(
+    contour: Contour, face: float, keep: Literal["below", "above"], end_x: float, name: str
+) -> Contour:
     """What lies inside the block's face; beyond it only what stands at the cut itself may be left out."""
     beyond = cut(contour, "y", face, "below" if keep == "above" else "above")
     if any(min(abs(c.box[0] - end_x), abs(c.box[2] - end_x)) > ON_LINE_MM for c in beyond):

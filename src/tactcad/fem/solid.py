@@ -12,7 +12,7 @@ from tactcad.account import making
 from . import elasticity
 from .mesh import PlaneMesh, hex_mesh, plane_mesh
 from .plane import Array, end_nodes, fixed_unknowns, parabola
-from .shape import HingeShape
+from .shape import ElementShape
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class SolidSolution:
 
 
 def solve_solid(
-    shape: HingeShape, E: float, nu: float, width: float, *, density: int = 2, across: int | None = None
+    shape: ElementShape, E: float, nu: float, width: float, *, density: int = 2, across: int | None = None
 ) -> SolidSolution:
     """Clamped at the body's end, shear of 1 N on the arm's end, parabolic in z and even in y.
 
@@ -43,7 +43,9 @@ def solve_solid(
         return _solved(shape, E, nu, width, density, across)
 
 
-def _solved(shape: HingeShape, E: float, nu: float, width: float, density: int, across: int) -> SolidSolution:
+def _solved(
+    shape: ElementShape, E: float, nu: float, width: float, density: int, across: int
+) -> SolidSolution:
     mesh = plane_mesh(shape, density)
     hexes = hex_mesh(mesh, width / 2.0, across)
     basis = Basis(hexes, ElementHex2(), intorder=5)
@@ -53,8 +55,8 @@ def _solved(shape: HingeShape, E: float, nu: float, width: float, density: int, 
     y = np.unique(basis.doflocs[2, end])
     z = basis.doflocs[1, end[:: len(y)]]
     along = elasticity.line_load(z, lambda z: parabola(z, mesh))
-    across = elasticity.line_load(y, lambda y: np.full_like(y, 1.0 / width))
-    f[3 * end + 1] = np.outer(along, across).ravel()
+    sideways = elasticity.line_load(y, lambda y: np.full_like(y, 1.0 / width))
+    f[3 * end + 1] = np.outer(along, sideways).ravel()
     u = elasticity.solve(A, f, fixed_unknowns(basis.doflocs, mesh, 3))
     # by symmetry the meshed part carries 1/2 or 1/4 of the force, and as much of the energy
     compliance = (4.0 if mesh.half else 2.0) * (f @ u)

@@ -66,7 +66,7 @@ def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrai
     upper = face == "slot" or shape.two_sided
     nodes = solution.basis.doflocs
     on_plane = np.ones(nodes.shape[1], dtype=bool) if len(nodes) == 2 else nodes[2] < 1e-9
-    fillets = (shape.arm.high_fillet, shape.body.high_fillet)
+    fillets = (shape.arm.slot_corner(upper=True), shape.body.slot_corner(upper=True))
     centre = (fillets[0].wall + fillets[1].wall) / 2.0
     edges = _face_edges(mesh.cells, shape, upper)
     index = _lookup(nodes[:2, on_plane], edges)
@@ -94,7 +94,7 @@ def _face_edges(cells: Array, shape, upper: bool) -> Array:
     if not upper:
         return sides[np.all(np.abs(z - shape.low) < near, axis=1)]
     on = np.abs(z - shape.high) < near
-    fillets = [shape.arm.high_fillet, shape.body.high_fillet]
+    fillets = [shape.arm.slot_corner(upper=True), shape.body.slot_corner(upper=True)]
     inside = (x > min(f.wall for f in fillets) - near) & (x < max(f.wall for f in fillets) + near)
     faces = np.all(on & inside, axis=1)
     for block, fillet in zip((shape.arm, shape.body), fillets):

@@ -9,7 +9,7 @@ from tactcad.contour import Contour
 
 from . import elasticity
 from .free_mesh import Fine, triangle_mesh
-from .shape import HingeShape
+from .shape import ElementShape
 
 LARGEST = 0.6  # mm of an element far from anything
 
@@ -17,7 +17,7 @@ LARGEST = 0.6  # mm of an element far from anything
 def uncut_compliance(
     outer: Contour,
     holes: tuple[Contour, ...],
-    shape: HingeShape,
+    shape: ElementShape,
     spacer: tuple[float, float, float],
     pad: tuple[float, float, float],
     E: float,

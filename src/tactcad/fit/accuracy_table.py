@@ -10,9 +10,10 @@ from datetime import date
 
 import numpy as np
 
-from tactcad.mechanics import accuracy, beams, ladder, solid, validity
-from tactcad.mechanics import plane as form
+from tactcad.mechanics import accuracy, ladder, validity
 from tactcad.mechanics.accuracy import CANDIDATES, Candidate
+from tactcad.mechanics.plane import compliance_by
+from tactcad.mechanics.register import REGISTER
 
 from .accuracy_samples import SECONDS, SEED
 from .fit_samples import Columns, joined, section
@@ -65,28 +66,23 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
 def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
     """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
 
-    K_solid is fem-solid's, on the finest meshes that the design was solved on. The closed form solid is a product
-    of the plane rung and a width factor; its error counts where only the plane part was measured, too.
+    K_solid is fem-solid's, on the finest meshes that the design was solved on. A closed form that knows the width is a
+    product of the plane rung and a width factor; its error counts where only the plane part was measured, too.
     """
     s = section(columns)
     plane = columns["plane_stiffness"] * columns["width"]
     truth = plane * columns["width_factor"]
     for name in ("solid_mesh_2", "solid_mesh_3", "solid_mesh_4"):
         truth = np.where(np.isfinite(columns[name]), columns[name], truth)
-    two = columns["two_sided"] == 1.0
-    flat = np.where(two, *(form.compliance(s, ladder_data["root"][side]) for side in ("two", "one")))
-    width = np.where(
-        two, *(solid.width_factor(s, flat, ladder_data["width"][side]) for side in ("two", "one"))
-    )
-    compliance = {
-        "short": beams.short_hinge(s),
-        "beam": beams.beam(s),
-        "section": beams.section_integral(s),
-        "plane": flat,
-        "solid": flat / width,
+    errors = {
+        rung.name: np.abs(1.0 / (rung.compliance(s, ladder_data) * truth) - 1.0)
+        for rung in REGISTER
+        if rung.compliance
     }
-    errors = {rung: np.abs(1.0 / (C * truth) - 1.0) for rung, C in compliance.items()}
-    errors["solid"] = np.fmax(errors["solid"], np.abs(1.0 / (flat * plane) - 1.0))
+    flat = compliance_by(s, ladder_data)
+    for rung in REGISTER:
+        if rung.compliance and "width" in rung.fitted:
+            errors[rung.name] = np.fmax(errors[rung.name], np.abs(1.0 / (flat * plane) - 1.0))
     errors["fem-plane"] = np.abs(plane / truth - 1.0)
     finest = np.where(np.isfinite(columns["solid_mesh_4"]), columns["solid_mesh_4"], np.nan)
     errors["fem-solid, mesh 3"] = np.abs(columns["solid_mesh_3"] / finest - 1.0)

@@ -124,7 +124,7 @@ def joined(tables: Sequence[Columns]) -> Columns:
 def section(columns: Columns) -> HingeSection:
     """The designs as one section of unit Young's modulus (stiffness is proportional to it)."""
     names = set(BOX) | {"two_sided"}
-    return HingeSection(youngs_modulus=1.0, **{k: v for k, v in columns.items() if k in names})
+    return HingeSection.of(youngs_modulus=1.0, **{k: v for k, v in columns.items() if k in names})
 
 
 def plane_results(s: HingeSection) -> dict[str, float]:

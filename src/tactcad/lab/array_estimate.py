@@ -94,7 +94,7 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
         gauge = strain.gauge(s, 1.0, grid, rung)
     except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
         gauge = np.nan
-    if rung in ladder.WITH_ROOTS:
+    if rung in ladder.FITTED:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus

@@ -21,6 +21,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 
 from . import validity
+from .register import REGISTER
 from .section import Array, HingeSection
 
 MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is where errors were measured
@@ -28,7 +29,7 @@ MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is wh
 
 @dataclass(frozen=True)
 class Candidate:
-    """A rung as it can be chosen; `mesh` is the density of fem-solid's finer mesh, None for all other rungs."""
+    """A rung as it can be chosen; `mesh` is the density of fem-solid's finer mesh, None for rungs without that choice."""
 
     rung: str
     mesh: int | None = None
@@ -38,11 +39,7 @@ class Candidate:
         return self.rung if self.mesh is None else f"{self.rung}, mesh {self.mesh}"
 
 
-CANDIDATES = (
-    *(Candidate(rung) for rung in ("short", "beam", "section", "plane", "solid", "fem-plane")),
-    Candidate("fem-solid", 2),
-    Candidate("fem-solid", 3),
-)
+CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in rung.meshes)
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ def fillet_integrals(depth: Array) -> tuple[Array, Array, Array, Array]:
 
 
 @lru_cache(maxsize=1)
-def _gauss() -> tuple[tuple[float, float, float, float], ...]:
+def _gauss() -> tuple[tuple[float, float, float], ...]:
     """Rows of weight x cos phi, sin^2 phi, and 1 - cos phi at the Gauss points of 0..pi/2."""
     x, w = np.polynomial.legendre.leggauss(NODES)
     phi = (x + 1.0) * np.pi / 4.0

@@ -17,7 +17,9 @@ and arm on one mid-line. Both slot corners are rounded by the fillet radius r.
 
 from __future__ import annotations
 
-from dataclasses import MISSING, dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,34 +27,43 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
+def _none() -> Array:
+    return np.zeros(())
+
+
 @dataclass(frozen=True)
 class HingeSection:
-    """Parameters of one element or of many: scalars or arrays that broadcast together.
+    """Parameters of one element or of many: arrays (of no dimension for one) that broadcast together.
 
-    Lengths in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools. `pad_height`
+    Numbers and lists are taken too, and made arrays; where types are checked, by `HingeSection.of`. Lengths in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools. `pad_height`
     (mm, from the hinge's face towards the object to the contact) and `friction` there only act
     together, see `friction.factor`.
     """
 
-    hinge_thickness: ArrayLike
-    hinge_length: ArrayLike
-    fillet_radius: ArrayLike
-    load_arm: ArrayLike
-    arm_height: ArrayLike
-    body_height: ArrayLike
-    body_length: ArrayLike
-    poisson: ArrayLike
-    youngs_modulus: ArrayLike
-    width: ArrayLike
-    two_sided: ArrayLike
-    pad_height: ArrayLike = 0.0
-    friction: ArrayLike = 0.0
+    hinge_thickness: Array
+    hinge_length: Array
+    fillet_radius: Array
+    load_arm: Array
+    arm_height: Array
+    body_height: Array
+    body_length: Array
+    poisson: Array
+    youngs_modulus: Array
+    width: Array
+    two_sided: NDArray[np.bool_]
+    pad_height: Array = field(default_factory=_none)
+    friction: Array = field(default_factory=_none)
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            kind = bool if field.name == "two_sided" else float
-            object.__setattr__(self, field.name, np.asarray(getattr(self, field.name), dtype=kind))
+        for each in fields(self):
+            kind = bool if each.name == "two_sided" else float
+            object.__setattr__(self, each.name, np.asarray(getattr(self, each.name), dtype=kind))
         np.broadcast_shapes(*(getattr(self, f.name).shape for f in fields(self)))
+
+    @classmethod
+    def of(cls, **parameters: ArrayLike) -> HingeSection:
+        """A section from numbers, lists or arrays."""
+        return cls(**{name: np.asarray(value) for name, value in parameters.items()})
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -76,27 +87,29 @@ class HingeSection:
 
     def with_(self, **changes: ArrayLike) -> HingeSection:
         """A copy with some parameters replaced."""
-        return replace(self, **changes)
+        return replace(self, **{name: np.asarray(value) for name, value in changes.items()})
 
-    def rows(self, index: object) -> HingeSection:
+    def rows(self, index: int | slice | Sequence[int] | NDArray[Any]) -> HingeSection:
         """The designs at `index` of the flattened common shape; what is one for all stays one."""
         shape = self.shape
         picked = {}
-        for field in fields(self):
-            value = getattr(self, field.name)
+        for each in fields(self):
+            value = getattr(self, each.name)
             if value.size == 1:
-                picked[field.name] = value.reshape(())
+                picked[each.name] = value.reshape(())
             else:
-                picked[field.name] = np.broadcast_to(value, shape).reshape(-1)[index]
+                picked[each.name] = np.broadcast_to(value, shape).reshape(-1)[index]
         return HingeSection(**picked)
 
 
 # Names of the numbers that make a section: those without which there is none, and the others' defaults.
-REQUIRED = tuple(f.name for f in fields(HingeSection) if f.default is MISSING and f.name != "two_sided")
-OPTIONAL = {f.name: f.default for f in fields(HingeSection) if f.default is not MISSING}
+REQUIRED = tuple(
+    f.name for f in fields(HingeSection) if f.default_factory is MISSING and f.name != "two_sided"
+)
+OPTIONAL = {f.name: 0.0 for f in fields(HingeSection) if f.default_factory is not MISSING}
 
 # The element that three independent codes were compared on, mm and MPa.
-REFERENCE = HingeSection(
+REFERENCE = HingeSection.of(
     hinge_thickness=0.25,
     hinge_length=0.75,
     fillet_radius=0.15,

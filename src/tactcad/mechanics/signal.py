@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import gauge_signal, ladder, readout
@@ -36,7 +37,7 @@ def predict(
     gain = readout.volts_per_strain(gauge.factor, electronics)
     per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
     per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)
-    strain = per_mm * deflection
+    strain = per_mm * np.asarray(deflection, dtype=float)
     volts = readout.output(strain, gauge.factor, electronics)
     return Signal(
         gain * per_mm,

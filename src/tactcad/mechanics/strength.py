@@ -6,7 +6,7 @@ import numpy as np
 
 from tactcad.design.materials import Alloy
 
-from . import ladder, strain, validity
+from . import strain, validity
 from .section import Array, HingeSection
 
 
@@ -32,19 +32,9 @@ def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:
     return alloy.yield_strength / strain.face_stress(s, 1.0)
 
 
-def deflection_at_yield(s: HingeSection, alloy: Alloy, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Tip deflection at which the fillet yields, mm. Raises CheckFailure out of the rung's range."""
-    return yield_force(s, alloy) / ladder.stiffness(s, rung)
-
-
 def yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
     """Yield strength over the fillet's stress; below 1 the hinge does not stay elastic."""
     return yield_force(s, alloy) / force
-
-
-def face_yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
-    """Yield strength over the gauge face's stress."""
-    return face_yield_force(s, alloy) / force
 
 
 def rated_force(s: HingeSection, alloy: Alloy, requested, factor: float) -> Array:
@@ -63,11 +53,6 @@ def surface_factor(tensile_strength: float) -> float:
     Fitted on steels; for a wire-cut aluminium surface no better published figure was found.
     """
     return min(1.0, 4.51 * tensile_strength**-0.265)
-
-
-def goodman_factor(s: HingeSection, alloy: Alloy, force) -> Array:
-    """Safety against fatigue at 5e8 cycles of a force that goes between 0 and `force` (N)."""
-    return goodman(alloy, strain.peak_stress(s, force))
 
 
 def goodman(alloy: Alloy, peak_stress) -> Array:

@@ -129,7 +129,7 @@ def _grid(s: HingeSection, rung: str) -> np.ndarray:
     r, l = np.meshgrid(RADII, LENGTHS, indexing="ij")  # noqa: E741
     wide = {name: np.broadcast_to(getattr(s, name), s.shape) for name in s.__dataclass_fields__}
     clamp = wide["body_length"] + wide["hinge_length"] / 2  # the clamp's edge stays where it is
-    grid = HingeSection(**wide).with_(
+    grid = HingeSection.of(**wide).with_(
         fillet_radius=np.broadcast_to(r[..., None], (*r.shape, *s.shape)),
         hinge_length=np.broadcast_to(l[..., None], (*r.shape, *s.shape)),
         body_length=clamp - l[..., None] / 2,

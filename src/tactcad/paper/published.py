@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib.resources import files
-from math import isclose
 from pathlib import Path
 
 import numpy as np
 
-from tactcad.design import csv_table
-from tactcad.design.csv_table import Field, Rows, read, refuse_duplicates
+from tactcad.design.csv_table import Field, Rows, half_step, read, refuse_duplicates
 from tactcad.design.messages import InputError
 
 TABLE_1_FIELDS = (
@@ -161,17 +159,9 @@ def _figures(path) -> tuple[dict, dict, dict, dict]:
     lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
         1:
     ]
-    cells = {name: csv_table.Cell(text, float(text)) for name, text, _, _ in lines}
     return (
-        {name: cell.value for name, cell in cells.items()},
-        {name: cell.half_step for name, cell in cells.items()},
+        {name: float(text) for name, text, _, _ in lines},
+        {name: half_step(text) for name, text, _, _ in lines},
         {name: unit for name, _, unit, _ in lines},
         {name: place for name, _, _, place in lines},
     )
-
-
-def row_of_measuring(data: Published, row: int) -> int | None:
-    """Row of Table 1 whose stiffness Table 2's row `row` prints as K_m, or None."""
-    k = data.table2.measuring_stiffness.value[row]
-    found = [i for i, v in enumerate(data.table1.stiffness.value) if isclose(v, k, rel_tol=1e-9)]
-    return found[0] if found else None

@@ -14,7 +14,7 @@ from .layout import ElementPlace, HingeShape, Layout
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
     """Section parameters of the elements at `places`, arrays of shape (len(places),); mm, MPa."""
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
-    return HingeSection(
+    return HingeSection.of(
         **{name: [each[name] for each in own] for name in own[0]}, **shared_parameters(layout.design)
     )
 

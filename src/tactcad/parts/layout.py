@@ -13,7 +13,7 @@ from functools import cached_property
 from tactcad.design.tree import Design
 
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
-from .stop_plate import derived_pitch, stop_plate_beams
+from .stop_give import derived_pitch, stop_plate_beams
 
 # Least gap between parts that must not meet, in mm; chosen: a hair.
 LEAST_GAP = 0.1

@@ -1,4 +1,4 @@
-"""Materials of the plates."""
+"""Materials that no design names, and the plates' alloy."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ from tactcad.design.tree import Design
 
 from .description import Material
 
+# Densities in kg/m3: usual values of these materials.
+ALUMINIUM = Material("aluminium", 2700)
+BRASS = Material("brass, nickel plated", 8500)
+CARBON_STEEL = Material("steel", 7850)
+RUBBER = Material("rubber", 1200)
+STAINLESS = Material("1.4301 stainless steel", 7900)
+
 
 def plate_material(design: Design) -> Material:
-    """End plates and carrier: the alloy of [clamp] plate_alloy."""
+    """End plates, carrier and the rigs' plates: the alloy of [clamp] plate_alloy."""
     return Material(design.clamp.plate_alloy, ALLOYS[design.clamp.plate_alloy].density)

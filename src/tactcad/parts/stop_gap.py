@@ -86,7 +86,7 @@ def _limit(
     give: float,
 ) -> StopLimit:
     """`stop_limit` of the section with these parameters, whose fillet may bear `stress` (MPa)."""
-    section = HingeSection(**dict(parameters))
+    section = HingeSection.of(**dict(parameters))
     fitted = ladder.evaluate(section, "solid")
     K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
     rated = stress / strain.stress_beyond_the_fit(section, 1.0)

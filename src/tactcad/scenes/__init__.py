@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 from tactcad.account import making
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.tree import Design
+from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
-from tactcad.parts.rules import misfit
+from tactcad.parts.rules import scene_rules
+from tactcad.parts.rules.rule import Rule
 
 if TYPE_CHECKING:
     from .scene import Pose, Scene
@@ -29,19 +31,35 @@ NEEDS: dict[str, tuple[str, ...]] = {
 
 def scene_names(design: Design) -> tuple[str, ...]:
     """Names of the scenes that this design has: the tables are there, and the rig takes the array."""
-    return tuple(name for name in _with_tables(design) if misfit(Layout(design), name) is None)
+    return tuple(name for name in _with_tables(design) if _misfit(design, name) is None)
 
 
 def left_out(design: Design) -> list[str]:
     """Why scenes whose tables the design has are not among its scenes, a line each."""
     lines = []
     for name in _with_tables(design):
-        why = misfit(Layout(design), name)
+        why = _misfit(design, name)
         if why:
             lines.append(
                 f"scene {name} left out: rule {why.check}: {why.message} ({why.part} = {why.value}; legal: {why.limit})"
             )
     return lines
+
+
+def fitting_rules(scene: str) -> dict[str, Rule]:
+    """Rules that an array must keep to have that scene, by name; what asks for placements stands in this room."""
+    rules = scene_rules(scene)
+    if scene == "grasping":
+        from .moving_axis import ballast_trims_moving_weight as trimmed
+
+        rules[trimmed.name] = trimmed
+    return rules
+
+
+def _misfit(design: Design, scene: str) -> Finding | None:
+    """Why the scene's rig cannot take this array; None where it can."""
+    layout = Layout(design)
+    return next((found for rule in fitting_rules(scene).values() for found in rule(layout)), None)
 
 
 def _with_tables(design: Design) -> list[str]:

@@ -1,4 +1,4 @@
-"""Collects placements, contacts, groups and assembly steps of a rig's scene."""
+"""Collects placements, contacts, groups and assembly steps of a scene."""
 
 from __future__ import annotations
 
@@ -8,8 +8,19 @@ from tactcad.parts.consumables import Supply
 from tactcad.parts.description import Part, Vector
 from tactcad.parts.library import screws
 
-from .array import AGAINST_Y, ALONG_Y, DOWN
-from .scene import UPRIGHT, Contact, ContactKind, Motion, Placement, Rotation, Scene, Step
+from .scene import (
+    AGAINST_Y,
+    ALONG_Y,
+    DOWN,
+    UPRIGHT,
+    Contact,
+    ContactKind,
+    Motion,
+    Placement,
+    Rotation,
+    Scene,
+    Step,
+)
 
 POINTING: dict[Vector, Rotation] = {
     (0, 0, 1): UPRIGHT,
@@ -20,7 +31,8 @@ POINTING: dict[Vector, Rotation] = {
 
 
 class Builder:
-    """Placements in assembly order. A group or a step takes what is placed while it is open."""
+    """Placements in order. A group or a step takes what is placed while it is open; `placed_in` keeps what was placed
+    for a step that is named where the part is."""
 
     def __init__(self) -> None:
         self.placements: list[Placement] = []
@@ -28,6 +40,7 @@ class Builder:
         self.supplies: list[Supply] = []
         self.groups: dict[str, list[str]] = {}
         self.steps: list[Step] = []
+        self.placed_in: dict[str, list[str]] = {}
         self._numbers: dict[str, int] = {}
         self._group: str | None = None
         self._stepped = 0
@@ -48,8 +61,14 @@ class Builder:
         self._numbers[prefix] = self._numbers.get(prefix, 0) + 1
         return f"{prefix}{self._numbers[prefix]}"
 
-    def place(self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT) -> str:
-        return self._add(Placement(self.name(prefix), part, _rounded(origin), rotation))
+    def place(
+        self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT, step: str = ""
+    ) -> str:
+        """Put a part in place, in the step of that title where one is given; returns its designator."""
+        name = self._add(Placement(self.name(prefix), part, _rounded(origin), rotation))
+        if step:
+            self.placed_in.setdefault(step, []).append(name)
+        return name
 
     def _add(self, placement: Placement) -> str:
         self.placements.append(placement)

@@ -6,20 +6,21 @@ from math import floor
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
+from tactcad.parts import rigs
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
-from tactcad.parts.rigs import bought, carried
 from tactcad.parts.rigs.calibration_loads import calibration_loads
-from tactcad.parts.rigs.layout import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, RigLayout, pad_middles
+from tactcad.parts.rigs.carrier_screws import CARRIER_SCREW, carrier_pattern, under_carrier_screw
+from tactcad.parts.rigs.frame import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, pad_middles
+from tactcad.parts.rigs.stand_layout import StandLayout
 
-from .array import DOWN, array
+from .array import array
 from .builder import Builder
 from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
-from .scene import REST, Motion, Pose, Rotation, Scene
+from .scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
-OUT_OF_Y: Rotation = ((1, 0, 0), (0, 0, -1), (0, 1, 0))  # local z runs along -y
 
 
 def calibration(design: Design, pose: Pose = REST) -> Scene:
@@ -27,7 +28,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 
     pose.height lifts the roller. Raises InputError where the array has no such element.
     """
-    rig = RigLayout(design)
+    rig = StandLayout(design)
     pads = pad_middles(rig.array)
     if not 1 <= pose.element <= len(pads):
         raise InputError(
@@ -61,15 +62,15 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     return b.scene("calibration", _motions(design, pads, px, py), cover=b.groups["axis"])
 
 
-def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
+def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
     b.unit("stages")
     c = rig.design.calibration
-    fixed, moving = bought.stage_fixed(c.stage_travel), bought.stage_moving(c.stage_travel)
-    head = bought.micrometer(c.stage_travel, 0.01)
+    fixed, moving = rigs.stage_fixed(c.stage_travel), rigs.stage_moving(c.stage_travel)
+    head = rigs.micrometer(c.stage_travel, 0.01)
     t, half = STAGE_PLATE, STAGE / 2
     below, at = STAND, (0.0, 0.0)
-    for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", OUT_OF_Y, (0, -1)))):
+    for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
         b.group(None if axis == "x" else "stage-x")
         low = b.place("SF", fixed, (*at, z))
@@ -101,12 +102,12 @@ def _stages(b: Builder, rig: RigLayout, dx: float, dy: float) -> str:
     return below
 
 
-def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float, pose: Pose) -> None:
+def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: float, pose: Pose) -> None:
     """The array on its mount, pads up, on the upper stage."""
     z = 4 * STAGE_PLATE
     b.group("stage-y")
     b.unit("array on its mount")
-    mount = b.place("AM", carried.array_mount(rig), (dx, dy, z))
+    mount = b.place("AM", rigs.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
     roller = dowel_diameter(rig.design.calibration.roller) / 2
@@ -118,9 +119,9 @@ def _mounted_array(b: Builder, rig: RigLayout, under: str, dx: float, dy: float,
     )
     b.subassembly(array(rig.design, deflected, stops=False), BACK_DOWN, (dx, dy, z + PLATE + carrier_top))
     b.meet(mount, "CA1")
-    for x, y in carried.carrier_pattern(rig):
-        at = (dx + x, dy + y, z + PLATE - carried.under_carrier_screw(rig))
-        b.screw(rig.design.clamp.mount_thread, carried.CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
+    for x, y in carrier_pattern(rig.array):
+        at = (dx + x, dy + y, z + PLATE - under_carrier_screw(rig.design))
+        b.screw(rig.design.clamp.mount_thread, CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
     b.step(
         "Array on its mount",
         (0, 0, 120),

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+from tactcad.parts import rigs
 from tactcad.parts.consumables import Supply
 from tactcad.parts.library import dowels, orings
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
-from tactcad.parts.rigs import bought, cart, holder, stand
-from tactcad.parts.rigs.layout import (
+from tactcad.parts.rigs.cart_layout import CartLayout
+from tactcad.parts.rigs.force_gauge import GAUGE_THREADS
+from tactcad.parts.rigs.frame import (
     BASE,
     GAUGE_SHAFT,
     PLATE,
     PLATE_SCREW,
     POST,
+    POST_Y,
     STAGE_HOLE,
     STAGE_PLATE,
-    RigLayout,
 )
+from tactcad.parts.rigs.gauge_plate import GAUGE_SCREW_X, GAUGE_SCREW_Z
+from tactcad.parts.rigs.post import BASE_SCREW, POST_SCREWS
+from tactcad.parts.rigs.stand_layout import StandLayout
 
-from .array import AGAINST_Y, ALONG_Y
 from .builder import Builder
+from .scene import AGAINST_Y, ALONG_Y
 
 CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
@@ -27,16 +32,16 @@ AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 
 
-def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
+def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     """Base plate (STAND) and post; returns the post's designator."""
     b.unit("stand")
-    base = b.place("BP", stand.base_plate(rig, stages), (0, 0, -BASE[1]))
-    post = b.place("PO", stand.post(rig), (0, rig.post_y, 0), ALONG_Y)
+    base = b.place("BP", rigs.base_plate(rig, stages), (0, 0, -BASE[1]))
+    post = b.place("PO", rigs.post(rig), (0, POST_Y, 0), ALONG_Y)
     b.meet(base, post)
     head = METRIC["M5"].head_height
-    for x, y in stand.POST_SCREWS:
-        at = (x, rig.post_y + POST[1] / 2 + y, -BASE[1] + head)
-        b.screw("M5", stand.BASE_SCREW, at, (0, 0, 1), base, post)
+    for x, y in POST_SCREWS:
+        at = (x, POST_Y + POST[1] / 2 + y, -BASE[1] + head)
+        b.screw("M5", BASE_SCREW, at, (0, 0, 1), base, post)
     b.step(
         "Stand",
         (0, 0, 0) if stages else (0, 0, -60),
@@ -51,13 +56,13 @@ def place_stand(b: Builder, rig: RigLayout, stages: bool) -> str:
     return post
 
 
-def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float = 0.0) -> str:
+def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float = 0.0) -> str:
     """Cart for the base plate, with holder and sample; returns the sample's designator."""
     b.group("cart")
     b.unit("cart with holder and sample")
     c, bear = rig.cart, rig.bearing
-    plate = b.place("CT", cart.cart_plate(rig), (roll, 0, c.clearance))
-    shim, wheel = cart.axle_shim(rig), bearing(c.bearing)
+    plate = b.place("CT", rigs.cart_plate(rig), (roll, 0, c.clearance))
+    shim, wheel = rigs.axle_shim(rig), bearing(c.bearing)
     side, outer = c.width / 2, c.width / 2 + c.shim + bear.B
     b.step("Cart plate", (0, 0, 25), "Lay the cart plate ready, holder's threads up.")
     for sy, which in ((-1, "front"), (1, "back")):
@@ -92,7 +97,7 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
             fan=True,
         )
     h, under = rig.holder_screw, rig.holder_fixing[1]
-    body = b.place("HB", holder.holder_body(rig), (roll, 0, rig.cart_top))
+    body = b.place("HB", rigs.holder_body(rig), (roll, 0, rig.cart_top))
     top = rig.cart_top + rig.holder_body
     ring = b.place("OR", orings.o_ring(rig.o_ring), (roll, 0, top - orings.GROOVE_DEPTH))
     b.meet(plate, body)
@@ -104,7 +109,7 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
         fan=True,
     )
     fitting = b.place(
-        "HF", bought.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
+        "HF", rigs.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
     )
     b.meet(fitting, body, "thread")
     b.step(
@@ -112,7 +117,7 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
         (0, -40, 45),
         "Screw the hose fitting in by hand and a quarter turn more; its washer seals.",
     )
-    lid = b.place("HL", holder.holder_lid(rig), (roll, 0, top))
+    lid = b.place("HL", rigs.holder_lid(rig), (roll, 0, top))
     b.meet(body, lid)
     b.meet(ring, lid)
     for sx, sy in CORNERS:
@@ -125,7 +130,7 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
         "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may not pull the cart.",
         fan=True,
     )
-    object_ = b.place("SA", holder.sample(rig, dents, depth), (roll, 0, rig.lid_top))
+    object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
     b.meet(lid, object_)
     b.step(
         "Sample", (0, 0, 82), "Lay the sample on the middle of the lid, clean and dry, and open the vacuum."
@@ -151,22 +156,24 @@ def place_cart(b: Builder, rig: RigLayout, roll: float, dents=(), depth: float =
     return object_
 
 
-def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height: float, roller: bool) -> str:
+def place_force_axis(
+    b: Builder, rig: StandLayout, post: str, touch: float, height: float, roller: bool
+) -> str:
     """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's) designator."""
     b.unit("force axis")
     travel = rig.design.calibration.axis_travel
     resolution = rig.design.calibration.micrometer_resolution
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
-    y = rig.post_y
-    fixed = b.place("SF", bought.stage_fixed(travel), (0, y, zs), AGAINST_Y)
+    y = POST_Y
+    fixed = b.place("SF", rigs.stage_fixed(travel), (0, y, zs), AGAINST_Y)
     b.meet(post, fixed)
     for sx, sy in CORNERS:
         at = (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE)
         b.screw(THREAD, LENGTH, at, (0, 1, 0), fixed, post)
-    head = b.place("MM", bought.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
+    head = b.place("MM", rigs.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
     b.meet(fixed, head)
     b.group("axis")
-    moving = b.place("SM", bought.stage_moving(travel), (0, y - STAGE_PLATE, z), AGAINST_Y)
+    moving = b.place("SM", rigs.stage_moving(travel), (0, y - STAGE_PLATE, z), AGAINST_Y)
     b.meet(fixed, moving)
     b.group(None)
     b.step(
@@ -179,7 +186,7 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     )
     b.group("axis")
     back = y - 2 * STAGE_PLATE
-    plate = b.place("AP", stand.axis_plate(rig), (0, back - PLATE, z), ALONG_Y)
+    plate = b.place("AP", rigs.axis_plate(rig), (0, back - PLATE, z), ALONG_Y)
     b.meet(moving, plate)
     for sx, sy in CORNERS:
         b.screw(
@@ -187,11 +194,11 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
         )
     b.step("Axis plate", (0, -80, AXIS_LIFT), "Screw the axis plate on the stage's moving half.")
     front = back - 2 * PLATE
-    gauge_plate = b.place("GP", stand.gauge_plate(rig), (0, front, z), ALONG_Y)
+    gauge_plate = b.place("GP", rigs.gauge_plate(rig), (0, front, z), ALONG_Y)
     gauge_end = rig.gauge_bottom(touch) + height - GAUGE_SHAFT
-    gauge = b.place("FG", bought.force_gauge(rig), (0, 0, gauge_end))
+    gauge = b.place("FG", rigs.force_gauge(rig), (0, 0, gauge_end))
     b.meet(gauge_plate, gauge)
-    for dz in bought.GAUGE_THREADS:
+    for dz in GAUGE_THREADS:
         b.screw(THREAD, LENGTH, (0, front + UNDER, z + dz), (0, -1, 0), gauge_plate, gauge)
     b.step(
         "Force gauge",
@@ -201,7 +208,7 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     )
     b.meet(plate, gauge_plate)
     for sx, sy in CORNERS:
-        at = (sx * stand.GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * stand.GAUGE_SCREW_Z)
+        at = (sx * GAUGE_SCREW_X, front + PLATE - UNDER, z + sy * GAUGE_SCREW_Z)
         b.screw(THREAD, LENGTH, at, (0, 1, 0), gauge_plate, plate)
     b.step(
         "Gauge on its axis",
@@ -211,19 +218,19 @@ def place_force_axis(b: Builder, rig: RigLayout, post: str, touch: float, height
     tip_z = touch + height
     if roller:
         r = dowels.dowel_diameter(rig.design.calibration.roller) / 2
-        tip = b.place("TI", stand.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
+        tip = b.place("TI", rigs.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
         length = roller_length(rig)
         contact = b.place(
             "RO", dowels.dowel(rig.design.calibration.roller, length), (0, length / 2, tip_z + r), AGAINST_Y
         )
     else:
-        tip = contact = b.place("TI", stand.flat_tip(rig), (0, 0, tip_z))
+        tip = contact = b.place("TI", rigs.flat_tip(rig), (0, 0, tip_z))
     b.meet(gauge, tip, "thread")
     b.group(None)
     return contact
 
 
-def roller_length(rig: RigLayout) -> float:
+def roller_length(rig: StandLayout) -> float:
     """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
     wide = rig.design.sheet.thickness
     lengths = dowels.dowel_lengths(rig.design.calibration.roller)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from tactcad.design.tree import Design
-from tactcad.parts.rigs.layout import RigLayout
+from tactcad.parts.rigs.cart_layout import cart_layout
+from tactcad.parts.rigs.stand_layout import StandLayout
 
 from .builder import Builder
 from .common import AXIS_LIFT, place_cart, place_force_axis, place_stand
@@ -12,12 +13,13 @@ from .scene import REST, Motion, Pose, Scene
 
 def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     """Scene `sample-stiffness`: tip on the middle of the sample, pose.deflection mm into it or pose.height over it."""
-    rig = RigLayout(design)
+    rig, cart = StandLayout(design), cart_layout(design)
+    assert cart is not None, "scenes/__init__.NEEDS has its tables"
     b = Builder()
     dents = ((-pose.cart, 0.0),) if pose.deflection else ()
-    sample = place_cart(b, rig, pose.cart, dents, pose.deflection)
+    sample = place_cart(b, cart, pose.cart, dents, pose.deflection)
     post = place_stand(b, rig, stages=False)
-    contact = place_force_axis(b, rig, post, rig.sample_top, pose.height - pose.deflection, roller=False)
+    contact = place_force_axis(b, rig, post, cart.sample_top, pose.height - pose.deflection, roller=False)
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),

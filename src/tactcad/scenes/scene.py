@@ -11,6 +11,9 @@ from tactcad.parts.description import Part, Vector
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
 
 UPRIGHT: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+ALONG_Y: Rotation = ((-1, 0, 0), (0, 0, 1), (0, 1, 0))  # local z runs along +y
+AGAINST_Y: Rotation = ((1, 0, 0), (0, 0, -1), (0, 1, 0))  # local z runs along -y
+DOWN: Rotation = ((1, 0, 0), (0, -1, 0), (0, 0, -1))  # local z runs along -z
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from tactcad.contour import chain
 
 from ..description import Material, Part, Purchase, Revolution
+from .tables import number, rows
 
 BEARING_STEEL = Material("bearing steel 100Cr6", 7850)
 
 
 @dataclass(frozen=True)
 class Bearing:
-    """Bore d, outside diameter D, width B (ISO 15:2017), and largest diameter that may press on the inner ring.
+    """Bore d, outside diameter D, width B, and largest diameter that may press on the inner ring (mm).
 
-    `inner` is the shoulder's diameter where a maker's list was read (623, 624: SKF's d1 as in
-    bd_warehouse 0.4.0), else d + 0.3 (D - d), which those two keep to within 0.1 mm. Mass in g, None: the body's.
+    Mass in g, None: the body's. data/bearings.csv says where each is from.
     """
 
     d: float
@@ -27,10 +27,11 @@ class Bearing:
 
 
 BEARINGS = {
-    "623-2Z": Bearing(3, 10, 4, 5.2, 1.5),
-    "624-2Z": Bearing(4, 13, 5, 6.7, 3.1),
-    "683-2Z": Bearing(3, 7, 3, 4.2),
-    "682-2Z": Bearing(2, 5, 2.3, 2.9),
+    row["size"]: Bearing(
+        *(number(row[name]) for name in ("d", "D", "B", "inner")),
+        number(row["mass"]) if row["mass"] else None,
+    )
+    for row in rows("bearings")
 }
 
 

@@ -7,43 +7,12 @@ from math import pi, sqrt
 from tactcad.contour import chain
 
 from ..description import Material, Part, Purchase, Revolution
+from .tables import number, rows
 
 NITRILE = Material("NBR 70", 1200)
 SECTION = 1.78
-# Inside diameter by size code, ISO 3601-1:2012 table 2.
-INSIDE = {
-    "010": 6.07,
-    "011": 7.65,
-    "012": 9.25,
-    "013": 10.82,
-    "014": 12.42,
-    "015": 14.00,
-    "016": 15.60,
-    "017": 17.17,
-    "018": 18.77,
-    "019": 20.35,
-    "020": 21.95,
-    "021": 23.52,
-    "022": 25.12,
-    "023": 26.70,
-    "024": 28.30,
-    "025": 29.87,
-    "026": 31.47,
-    "027": 33.05,
-    "028": 34.65,
-    "029": 37.82,
-    "030": 41.00,
-    "031": 44.17,
-    "032": 47.35,
-    "033": 50.52,
-    "034": 53.70,
-    "035": 56.87,
-    "036": 60.05,
-    "037": 63.22,
-    "038": 66.40,
-    "039": 69.57,
-    "040": 72.75,
-}
+# Inside diameter by size code, mm.
+INSIDE = {row["code"]: number(row["inside"]) for row in rows("orings")}
 # Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse 0.4.0).
 GROOVE_DEPTH = 1.32
 GROOVE_WIDTH = 2.4

@@ -7,12 +7,13 @@ the bearing face at z = 0, the screw pointing along +z.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
 
 from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution, drill_point_height
+from .tables import number, rows
 
 STAINLESS = Material("stainless steel A2-70", 7900)
 STAINLESS_SET = Material("stainless steel A2-21H", 7900)
@@ -20,54 +21,39 @@ STAINLESS_SET = Material("stainless steel A2-21H", 7900)
 
 @dataclass(frozen=True)
 class Metric:
-    """Coarse thread: d, pitch (ISO 261), tap drill (ISO 2306), clearance hole, medium (ISO 273)."""
+    """Sizes of one coarse thread, its screws and nut (mm); data/screws.csv names the standard of each."""
 
     d: float
     pitch: float
     tap_drill: float
-    clearance: float
-    head: float  # ISO 4762 dk, plain head
-    head_height: float  # ISO 4762 k
-    key: float  # ISO 4762 s
-    key_depth: float  # ISO 4762 t, least
-    set_key: float  # ISO 4026 s
-    set_key_depth: float  # ISO 4026 t, least for long screws
-    set_point: float  # ISO 4026 dp
-    nut: float  # ISO 4032 s
-    nut_height: float  # ISO 4032 m, largest
-    torque: float  # N m, for A2-70, friction 0.12, about half of proof: fits aluminium threads of 1.5 d
+    clearance: float  # hole
+    head: float
+    head_height: float
+    key: float
+    key_depth: float
+    set_key: float
+    set_key_depth: float
+    set_point: float
+    nut: float  # across flats
+    nut_height: float
+    torque: float  # N m
 
 
-METRIC = {
-    "M2": Metric(2, 0.4, 1.6, 2.4, 3.8, 2, 1.5, 1.0, 0.9, 1.7, 1.0, 4, 1.6, 0.15),
-    "M2.5": Metric(2.5, 0.45, 2.05, 2.9, 4.5, 2.5, 2, 1.1, 1.3, 2.0, 1.5, 5, 2.0, 0.3),
-    "M3": Metric(3, 0.5, 2.5, 3.4, 5.5, 3, 2.5, 1.3, 1.5, 2.0, 2.0, 5.5, 2.4, 0.55),
-    "M4": Metric(4, 0.7, 3.3, 4.5, 7, 4, 3, 2.0, 2, 2.5, 2.5, 7, 3.2, 1.2),
-    "M5": Metric(5, 0.8, 4.2, 5.5, 8.5, 5, 4, 2.5, 2.5, 3.0, 3.5, 8, 4.7, 2.5),
-}
-
+_ROWS = rows("screws")
+METRIC = {row["thread"]: Metric(**{f.name: number(row[f.name]) for f in fields(Metric)}) for row in _ROWS}
+# Preferred lengths of ISO 4762 and ISO 4026, of which each size has those between its shortest and longest.
 _SERIES = (2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30, 35, 40, 45, 50)
 
 
-def _between(low: float, high: float) -> tuple[float, ...]:
-    return tuple(float(length) for length in _SERIES if low <= length <= high)
+def _lengths(kind: str) -> dict[str, tuple[float, ...]]:
+    ends = {row["thread"]: (number(row[f"{kind}_shortest"]), number(row[f"{kind}_longest"])) for row in _ROWS}
+    return {
+        thread: tuple(float(n) for n in _SERIES if low <= n <= high) for thread, (low, high) in ends.items()
+    }
 
 
-# Preferred lengths, ISO 4762:2004 table 1 and ISO 4026:2003 table 1.
-CAP_SCREW_LENGTHS = {
-    "M2": _between(3, 20),
-    "M2.5": _between(4, 25),
-    "M3": _between(5, 30),
-    "M4": _between(6, 40),
-    "M5": _between(8, 50),
-}
-SET_SCREW_LENGTHS = {
-    "M2": _between(2, 10),
-    "M2.5": _between(2.5, 12),
-    "M3": _between(3, 16),
-    "M4": _between(4, 20),
-    "M5": _between(5, 25),
-}
+CAP_SCREW_LENGTHS = _lengths("cap")
+SET_SCREW_LENGTHS = _lengths("set")
 
 # Threads in aluminium: engaged 1.5 d (common practice for aluminium against steel's 1 d).
 ENGAGED = 1.5

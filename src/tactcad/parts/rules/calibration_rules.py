@@ -11,8 +11,9 @@ from ..layout import HOLE_WEB, Layout
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import counterbore_diameter
 from ..rigs.calibration_loads import calibration_loads
-from ..rigs.carried import CARRIER_SCREW, under_carrier_screw
-from ..rigs.layout import FOOT, STAGE_HOLE, RigLayout, pad_middles
+from ..rigs.carrier_screws import CARRIER_SCREW, under_carrier_screw
+from ..rigs.frame import FOOT, STAGE_HOLE, pad_middles
+from ..rigs.stand_layout import StandLayout
 from . import misfit
 from .cart_rules import LEAST_AIR
 from .rule import at_least, at_most, fits, rule, wrong
@@ -25,7 +26,7 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     if d.calibration is None:
         return
-    rig, c = RigLayout(d), d.calibration
+    rig, c = StandLayout(d), d.calibration
     down = max(c.travel, d.sample.travel if d.sample else 0.0)
     for touch in rig.touches:
         rest = rig.axis_middle(touch) - rig.stage_middle(touch)
@@ -91,7 +92,7 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
 @fits("calibration", "grasping")
 def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     c = layout.design.clamp
-    under = under_carrier_screw(RigLayout(layout.design))
+    under = under_carrier_screw(layout.design)
     if not 2.0 - SAME <= under <= FOOT + SAME:
         low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
         yield wrong(

@@ -10,7 +10,8 @@ from tactcad.mechanics.rigs import tipping_margin
 from ..finding import SAME, Finding
 from ..layout import HOLE_WEB, Layout
 from ..library.screws import METRIC
-from ..rigs.layout import RigLayout
+from ..rigs.cart_layout import CartLayout, cart_layout
+from ..rigs.frame import POST_Y
 from .rule import Find, at_least, at_most, rule, wrong
 
 WALL = 0.8  # least material beside an axle's hole, mm; as for free-standing aluminium walls
@@ -18,20 +19,20 @@ LEAST_TIPPING = 2.0  # mm that any load on the sample stays inside the wheels; c
 LEAST_AIR = 0.5  # between things that pass each other, mm
 
 
-def on_cart(find: Callable[[RigLayout], Iterable[Finding]]) -> Find:
+def on_cart(find: Callable[[CartLayout], Iterable[Finding]]) -> Find:
     """A rule on cart, holder and sample: it says nothing where the design has none."""
 
     @wraps(find)
     def found(layout: Layout) -> Iterable[Finding]:
-        rig = RigLayout(layout.design)
-        return find(rig) if rig.has_cart else ()
+        rig = cart_layout(layout.design)
+        return find(rig) if rig is not None else ()
 
     return found
 
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def axles_carry_wheels(rig: RigLayout) -> Iterator[Finding]:
+def axles_carry_wheels(rig: CartLayout) -> Iterator[Finding]:
     if rig.axle_length is None:
         what = f"no ISO 4762 {rig.axle_thread} has so long a plain shank"
         yield wrong("cart.shim", what, rig.cart.shim, "thinner shims")
@@ -39,7 +40,7 @@ def axles_carry_wheels(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def axles_fit_plate(rig: RigLayout) -> Iterator[Finding]:
+def axles_fit_plate(rig: CartLayout) -> Iterator[Finding]:
     if rig.axle_length is None:
         return
     m, c = METRIC[rig.axle_thread], rig.cart
@@ -68,8 +69,8 @@ def axles_fit_plate(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def cart_cannot_tip(rig: RigLayout) -> Iterator[Finding]:
-    margin = tipping_margin(rig.contacts, rig.design.sample.side / 2)
+def cart_cannot_tip(rig: CartLayout) -> Iterator[Finding]:
+    margin = tipping_margin(rig.contacts, rig.sample.side / 2)
     if margin < LEAST_TIPPING - SAME:
         yield wrong(
             "cart.wheel_base",
@@ -81,7 +82,7 @@ def cart_cannot_tip(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def holder_on_cart(rig: RigLayout) -> Iterator[Finding]:
+def holder_on_cart(rig: CartLayout) -> Iterator[Finding]:
     most = min(rig.cart.width, rig.cart.length)
     legal = f"at most {most:g} mm in all"
     yield from at_most("holder.margin", "holder larger than the cart", rig.holder_side, most, legal)
@@ -89,8 +90,8 @@ def holder_on_cart(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def cart_clears_post(rig: RigLayout) -> Iterator[Finding]:
-    over = rig.cart_half - rig.post_y + LEAST_AIR
+def cart_clears_post(rig: CartLayout) -> Iterator[Finding]:
+    over = rig.cart_half - POST_Y + LEAST_AIR
     if over > 0.0:
         most = rig.cart.width - 2 * over
         yield wrong("cart.width", "cart reaches the post", rig.cart.width, f"at most {most:g} mm")

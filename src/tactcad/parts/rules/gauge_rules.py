@@ -7,7 +7,7 @@ from math import floor
 
 from ..finding import SAME, Finding
 from ..layout import LEAST_GAP, Layout
-from ..plates import SPACER_TOLERANCE
+from ..spacer import SPACER_TOLERANCE
 from .rule import at_least, at_most, rule, wrong
 
 # A lead is AWG 36 (0.127 mm, ASTM B258) with 0.06 mm of insulation around it: 0.25 mm; chosen: three a gauge, so that

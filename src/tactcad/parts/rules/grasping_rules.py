@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from ..finding import SAME, Finding
 from ..layout import Layout
 from ..library.screws import counterbore_diameter
-from ..rigs.carried import BAR_MIDDLE, BAR_SCREW_X
-from ..rigs.layout import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT, RigLayout
-from ..rigs.moving import ballast_range
+from ..rigs.bar import BAR_MIDDLE, BAR_SCREW_X
+from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
+from ..rigs.guide_layout import guide_layout
 from .calibration_rules import carrier_threads_clear
 from .cart_rules import LEAST_AIR
 from .rule import at_most, fits, rule, wrong
@@ -22,8 +22,6 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
         return
     most = 2 * (BAR_FRONT + BAR + RAIL_HEIGHT - 6.5 - LEAST_AIR)
     yield from at_most("grasping.weight_diameter", "weights rub on the guide", g.weight_diameter, most)
-    if g.weights != round(g.weights):
-        yield wrong("grasping.weights", "not a whole number", g.weights, "0, 1, 2 ...")
 
 
 @fits("grasping")
@@ -45,7 +43,10 @@ def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
 
 @fits("grasping")
 def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
-    rig, g = RigLayout(layout.design), layout.design.grasping
+    rig = guide_layout(layout.design)
+    if rig is None:
+        return
+    g = rig.grasping
     path, length = "grasping.rail_length", g.rail_length
     if abs(length / 20 - round(length / 20)) > SAME:
         yield wrong(path, "not a multiple of the rail's hole pitch", length, "a multiple of 20 mm")
@@ -56,18 +57,3 @@ def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     if top < g.lift - SAME or bottom < 1.0:
         what = f"carriage can rise {top:.3g} mm and fall {bottom:.3g} mm"
         yield wrong(path, what, length, f"rise at least {g.lift:g}, fall at least 1 mm")
-
-
-@fits("grasping")
-def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
-    wanted = layout.design.grasping.moving_weight
-    try:
-        low, high = ballast_range(RigLayout(layout.design))
-    except (AttributeError, ValueError):
-        return  # parts that cannot be drawn: the design is refused for that
-    if low <= wanted <= high:
-        return
-    within = f"from {low:.4g} to {high:.4g} N"
-    legal = within if low < high else "fewer or larger weights: their stack is too high"
-    what = "no ballast under the weights brings what moves to it"
-    yield wrong("grasping.moving_weight", what, wanted, legal)

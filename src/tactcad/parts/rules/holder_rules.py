@@ -11,22 +11,21 @@ from ..finding import SAME, Finding
 from ..layout import Layout
 from ..library import orings
 from ..library.screws import METRIC, counterbore_diameter
-from ..rigs.bought import FITTING_RADIUS
-from ..rigs.layout import GROOVE_WALL, TIP_LAND, RigLayout, pad_middles
+from ..rigs.cart_layout import GROOVE_WALL, CartLayout
+from ..rigs.frame import TIP_LAND, pad_middles
+from ..rigs.hose_fitting import FITTING_RADIUS
 from .cart_rules import LEAST_AIR, on_cart
 from .rule import at_least, at_most, fits, rule, wrong
 
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def holes_under_sample(rig: RigLayout) -> Iterator[Finding]:
+def holes_under_sample(rig: CartLayout) -> Iterator[Finding]:
     h = rig.holder
-    if h.rings != round(h.rings):
-        yield wrong("holder.rings", "not a whole number", h.rings, "1, 2, 3 ...")
-    largest = rig.design.sample.side - 2.0
+    largest = rig.sample.side - 2.0
     what = "holes at the sample's edge draw air"
     yield from at_most("holder.vacuum_diameter", what, h.vacuum_diameter, largest)
-    pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / max(1.0, h.rings)
+    pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings
     least = h.hole_diameter + LEAST_AIR
     if pitch < least - SAME:
         yield wrong(
@@ -36,7 +35,7 @@ def holes_under_sample(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def vacuum_holds(rig: RigLayout) -> Iterator[Finding]:
+def vacuum_holds(rig: CartLayout) -> Iterator[Finding]:
     h = rig.holder
     area = len(rig.suction_holes) * pi * h.hole_diameter**2 / 4
     force = holding_force(h.vacuum, area)
@@ -51,7 +50,7 @@ def vacuum_holds(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def plenum_takes_port(rig: RigLayout) -> Iterator[Finding]:
+def plenum_takes_port(rig: CartLayout) -> Iterator[Finding]:
     h, m5 = rig.holder, METRIC["M5"]
     short = orings.GROOVE_DEPTH + 1.0 + m5.d / 2 - rig.port_depth
     what = "port's thread meets the seal's groove"
@@ -71,7 +70,7 @@ def plenum_takes_port(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def seal_fits_holder(rig: RigLayout) -> Iterator[Finding]:
+def seal_fits_holder(rig: CartLayout) -> Iterator[Finding]:
     h = rig.holder
     if rig.o_ring is None:
         yield wrong(
@@ -91,7 +90,7 @@ def seal_fits_holder(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def holder_can_be_screwed(rig: RigLayout) -> Iterator[Finding]:
+def holder_can_be_screwed(rig: CartLayout) -> Iterator[Finding]:
     if rig.holder_fixing is None:
         yield wrong(
             "holder.lid_thickness",
@@ -103,15 +102,15 @@ def holder_can_be_screwed(rig: RigLayout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def screws_clear_sample(rig: RigLayout) -> Iterator[Finding]:
+def screws_clear_sample(rig: CartLayout) -> Iterator[Finding]:
     margin = rig.holder.margin
-    free = rig.holder_screw - counterbore_diameter("M3") / 2 - rig.design.sample.side / 2
+    free = rig.holder_screw - counterbore_diameter("M3") / 2 - rig.sample.side / 2
     yield from at_least("holder.margin", "sample lies on the lid's screws", margin, margin - free)
 
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def port_clears_cart(rig: RigLayout) -> Iterator[Finding]:
+def port_clears_cart(rig: CartLayout) -> Iterator[Finding]:
     if rig.cart.width <= rig.holder_side + SAME:
         return
     floor = rig.holder.floor

@@ -9,7 +9,7 @@ from math import ceil, floor, hypot, pi, sqrt, tan
 from ..finding import SAME, Finding
 from ..layout import Layout
 from ..stop_gap import land_room, stop_gap, stop_limit
-from ..stop_plate import SHARE, shortest_pitch, stop_plate_beams
+from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
 from .rule import at_least, at_most, rule, wrong
 
 # Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's

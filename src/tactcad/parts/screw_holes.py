@@ -1,9 +1,9 @@
-"""Screw holes of the rigs' plates."""
+"""Screw holes of plates."""
 
 from __future__ import annotations
 
-from ..description import Hole, Vector
-from ..library.screws import DRILL_REACH, METRIC, blind_thread, counterbore_diameter
+from .description import Hole, Vector
+from .library.screws import DRILL_REACH, METRIC, TAP_REACH, blind_thread, counterbore_diameter
 
 # Full thread deeper than this many diameters only breaks taps; chosen: usual advice is 2 to 3.
 DEEPEST_THREAD = 2.5
@@ -26,6 +26,12 @@ def tapped(name: str, thread: str, at: Vector, axis: Vector, thickness: float, e
     if thickness > DRILL_REACH * m.tap_drill:
         return tapped_blind(name, thread, at, axis, full)
     return Hole(name, at, axis, m.tap_drill, thickness, True, thread=thread, thread_depth=full)
+
+
+def tapped_through(name: str, thread: str, at: Vector, axis: Vector, depth: float) -> Hole:
+    """Drilled through `depth` mm, and tapped from `at` as deep as a tap reaches."""
+    full = min(depth, TAP_REACH * METRIC[thread].d)
+    return Hole(name, at, axis, METRIC[thread].tap_drill, depth, True, thread=thread, thread_depth=full)
 
 
 def tapped_blind(name: str, thread: str, at: Vector, axis: Vector, full: float | None = None) -> Hole:

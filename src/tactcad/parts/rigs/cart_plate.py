@@ -1,4 +1,10 @@
-"""The wheeled cart: plate, axles and shims. Its wheels are ball bearings, its axles cap screws.
+r"""Plate of the wheeled cart: the axles' threads in its sides, the holder's in its face.
+
+  +-o---------o-+   axles: cap screws into the sides
+  |  o       o  |   ^ y
+  |             |   |     holder's four M3 threads
+  |  o       o  |   +-> x
+  +-o---------o-+
 
 The inner rings are clamped between shims, the outer rings stand a shim free of plate and head: nothing can
 bind. The shanks' play in the bores (up to 0.14 mm) lets all four wheels be set on a flat plate before
@@ -7,24 +13,17 @@ the axles are tightened.
 
 from __future__ import annotations
 
-from tactcad.contour import circle, rectangle
-from tactcad.design.materials import ALLOYS
+from tactcad.contour import rectangle
 
-from ..description import Characteristic, Extrusion, Hole, Material, Part
+from ..description import Characteristic, Extrusion, Hole, Part
 from ..library.screws import METRIC
-from .holes import tapped
-from .layout import RigLayout
-
-STEEL = Material("1.4301 stainless steel", 7900)
-COLOUR = "#8d99a6"
-
-
-def plate_alloy(rig: RigLayout) -> Material:
-    """The rigs' plates: the alloy of the array's."""
-    return Material(rig.design.clamp.plate_alloy, ALLOYS[rig.design.clamp.plate_alloy].density)
+from ..materials import plate_material
+from ..screw_holes import tapped
+from .cart_layout import CartLayout
+from .frame import COLOUR
 
 
-def cart_plate(rig: RigLayout) -> Part:
+def cart_plate(rig: CartLayout) -> Part:
     """Plate with the axles' threads in its sides and the holder's in its face; z = 0 is the underside."""
     c, t = rig.cart, rig.cart.thickness
     m = METRIC[rig.axle_thread]
@@ -57,7 +56,7 @@ def cart_plate(rig: RigLayout) -> Part:
         part_no=f"{rig.design.name}-cart-plate",
         name="Cart plate",
         process="milled",
-        material=plate_alloy(rig),
+        material=plate_material(rig.design),
         body=Extrusion(rectangle(-x, -y, x, y), t),
         features=axles + holder,
         colour=COLOUR,
@@ -71,21 +70,4 @@ def cart_plate(rig: RigLayout) -> Part:
                 rig.axle_z - c.clearance - 0.05,
             ),
         ),
-    )
-
-
-def axle_shim(rig: RigLayout) -> Part:
-    """Ring beside an inner ring, narrower than the shield: the outer ring stays free."""
-    b, t = rig.bearing, rig.cart.shim
-    bore = round(b.d + 0.1, 6)
-    outside = round(b.inner - 0.1, 6)
-    return Part(
-        part_no=f"SHIM-{bore:g}x{outside:g}x{t:g}-ring",
-        name=f"Shim ring {bore:g}x{outside:g}x{t:g}",
-        process="turned",
-        material=STEEL,
-        body=Extrusion(circle((0, 0), outside), t, (circle((0, 0), bore),)),
-        colour="#5c6066",
-        finish="faces parallel within 0.01, burr-free",
-        spares=2,
     )

@@ -1,0 +1,59 @@
+"""Standard output and standard error: whatever becomes of their readers, the work goes on."""
+
+from __future__ import annotations
+
+import io
+import os
+import select
+import sys
+
+
+class Lossy(io.FileIO):
+    """A stream's file. What cannot be written to it is lost, and `error` says why."""
+
+    error: OSError | None = None
+
+    def __init__(self, handle: int) -> None:
+        super().__init__(handle, "w", closefd=False)
+        self.terminal = self.isatty()
+
+    def write(self, data: bytes) -> int:
+        try:
+            while (count := super().write(data)) is None:  # a pipe that does not wait for its reader
+                select.select([], [self], [])
+            return count
+        except OSError as error:
+            self.error = self.error or error
+            return len(data)
+
+    @property
+    def failed(self) -> OSError | None:
+        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal that hung
+        up."""
+        return None if self.terminal or isinstance(self.error, ConnectionError) else self.error
+
+
+def mend() -> None:
+    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its number."""
+    if None in (sys.stdin, sys.stdout, sys.stderr):
+        while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+            os.set_inheritable(handle, True)
+        os.close(handle)
+        sys.stdout = sys.stdout or open(1, "w", closefd=False)
+        sys.stderr = sys.stderr or open(2, "w", closefd=False)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def own() -> Lossy:
+    """Let this process's output and messages go through such files; returns that of standard output."""
+    mend()
+    sys.stdout, sys.stderr = _lossy(sys.stdout), _lossy(sys.stderr)
+    return sys.stdout.buffer.raw
+
+
+def _lossy(stream: io.TextIOWrapper) -> io.TextIOWrapper:
+    at_once = stream.line_buffering or stream.write_through
+    file = io.BufferedWriter(Lossy(stream.fileno()))
+    return io.TextIOWrapper(file, stream.encoding, "backslashreplace", line_buffering=at_once)

@@ -1,0 +1,17 @@
+"""Tables of standard sizes beside this file: CSV, lines that start with # name the standards."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+
+def rows(name: str) -> list[dict[str, str]]:
+    """The rows of data/NAME.csv, in its order."""
+    text = (Path(__file__).parent / "data" / f"{name}.csv").read_text(encoding="utf-8")
+    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+
+
+def number(text: str) -> float:
+    """A cell's number, mm where its table says nothing else; a whole one stays whole, as part numbers print it."""
+    return float(text) if "." in text else int(text)

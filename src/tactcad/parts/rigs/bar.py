@@ -1,0 +1,45 @@
+r"""Vertical bar on the guide's carriage: foot below, platform above.
+
++--o---o--+   M4 threads into the ends
+|         |
+|  O   O  |   ^ z
+|  O   O  |   |     sunk M3 into the carriage
++--o---o--+   +-> x
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from ..description import Extrusion, Feature, Part
+from ..materials import plate_material
+from ..screw_holes import sunk, tapped_blind
+from .frame import BAR, BAR_FRONT, BAR_HEIGHT, BAR_WIDTH, CARRIAGE_ON_BAR
+from .guide_layout import GuideLayout
+
+BAR_SCREW_X = 7.0
+BAR_MIDDLE = BAR_FRONT + BAR / 2
+BAR_UNDER_HEAD = 5.3  # of the carriage's screws: 2.7 mm in its 3 mm of thread
+
+
+def bar(rig: GuideLayout) -> Part:
+    """Vertical bar on the carriage. Contour in (x, z), front face at local z = 0, lower end at y = 0."""
+    features: list[Feature] = [
+        sunk("carriage", "M3", (sx * 7.5, CARRIAGE_ON_BAR + sy * 5.0, 0.0), (0, 0, 1), BAR, BAR_UNDER_HEAD)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    ]
+    for sx in (-1, 1):
+        features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, BAR / 2), (0, 1, 0)))
+        features.append(tapped_blind("platform", "M4", (sx * BAR_SCREW_X, BAR_HEIGHT, BAR / 2), (0, -1, 0)))
+    return Part(
+        part_no=f"{rig.design.name}-bar",
+        name="Bar",
+        process="milled",
+        material=plate_material(rig.design),
+        body=Extrusion(rectangle(-BAR_WIDTH / 2, 0, BAR_WIDTH / 2, BAR_HEIGHT), BAR),
+        features=tuple(features),
+        colour="#7c8794",
+        finish="Ra 1.6, back face and ends square within 0.02",
+        notes=("break edges 0.2",),
+    )

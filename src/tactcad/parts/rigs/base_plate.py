@@ -1,0 +1,50 @@
+r"""Base plate of the stand: the cart or the stages on it, the post behind.
+
++---------------------------+
+|          O O              |   the post's four screws, from below
+|          O O              |   ^ y
+|       o       o           |   |
+|                           |   +-> x
+|       o       o           |   the stages' four threads
++---------------------------+
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from ..description import Extrusion, Feature, Part
+from ..library.screws import METRIC
+from ..materials import plate_material
+from ..screw_holes import sunk, tapped_blind
+from .frame import BASE, POST, POST_Y, STAGE_HOLE
+from .post import POST_SCREWS
+from .stand_layout import StandLayout
+
+
+def base_plate(rig: StandLayout, stages: bool) -> Part:
+    """Base plate under the post; with the threads of the horizontal stages where `stages` stand on it."""
+    t, x = BASE[1], rig.base_length / 2
+    middle = POST_Y + POST[1] / 2
+    m5 = METRIC["M5"]
+    features: list[Feature] = [
+        sunk("post", "M5", (px, middle + py, 0.0), (0, 0, 1), t, t - m5.head_height) for px, py in POST_SCREWS
+    ]
+    if stages:
+        features += [
+            tapped_blind("stage", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1))
+            for sx in (-1, 1)
+            for sy in (-1, 1)
+        ]
+    kind = "stages" if stages else "cart"
+    return Part(
+        part_no=f"{rig.design.name}-base-{kind}",
+        name=f"Base plate, for {kind}",
+        process="milled",
+        material=plate_material(rig.design),
+        body=Extrusion(rectangle(-x, rig.base_front, x, rig.base_back), t),
+        features=tuple(features),
+        colour="#6f7a86",
+        finish="upper face ground or fly-cut, Ra 0.8, flat within 0.02",
+        notes=("break edges 0.5",),
+    )

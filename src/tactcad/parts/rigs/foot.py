@@ -1,0 +1,49 @@
+r"""Plate on the array's carrier, the bar at its back edge.
+
++---------------+
+|    (o) (o)    |   bar, sunk from below
+|  O         O  |   ^ y
+|  O         O  |   |   carrier, sunk from above
++---------------+   +-> x
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from ..description import Extrusion, Feature, Part
+from ..library.screws import METRIC
+from ..materials import plate_material
+from ..screw_holes import sunk
+from .bar import BAR_MIDDLE, BAR_SCREW_X
+from .carrier_screws import carrier_pattern, under_carrier_screw
+from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, COLOUR, FOOT
+from .guide_layout import GuideLayout
+
+FOOT_UNDER_HEAD = 3.6  # of the bar's screws, heads sunk by 0.4
+
+
+def foot(rig: GuideLayout) -> Part:
+    """Plate on the array's carrier, with the bar at its back edge. z = 0 is the carrier's side."""
+    x = round(max(rig.array.mount_x + METRIC[rig.design.clamp.mount_thread].head / 2, BAR_WIDTH / 2) + 2.0, 3)
+    y = round(rig.design.clamp.mount_pitch_y / 2 + METRIC[rig.design.clamp.mount_thread].head / 2 + 2.0, 3)
+    mount = rig.design.clamp.mount_thread
+    features: list[Feature] = [
+        sunk("carrier", mount, (px, py, FOOT), (0, 0, -1), FOOT, under_carrier_screw(rig.design))
+        for px, py in carrier_pattern(rig.array)
+    ]
+    features += [
+        sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, 0.0), (0, 0, 1), FOOT, FOOT_UNDER_HEAD)
+        for sx in (-1, 1)
+    ]
+    return Part(
+        part_no=f"{rig.design.name}-foot",
+        name="Foot of the bar",
+        process="milled",
+        material=plate_material(rig.design),
+        body=Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR + BEHIND_BAR)), FOOT),
+        features=tuple(features),
+        colour=COLOUR,
+        finish="Ra 1.6, clear anodised after machining",
+        notes=("break edges 0.2",),
+    )

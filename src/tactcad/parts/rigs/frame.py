@@ -1,0 +1,40 @@
+"""What all rigs have in common: their frame, sizes that no design changes, and the pads' places.
+
+Frame (mm): x along the arms, y along the rows, z = 0 on the base plate, + up. The force sensor's axis,
+the sample's middle and the array's middle are x = y = 0; the post stands behind, at + y.
+"""
+
+from __future__ import annotations
+
+from ..layout import Layout
+
+# Micro-stages: two plates of this size and thickness that slide on each other, threads at +-STAGE_HOLE.
+STAGE, STAGE_PLATE, STAGE_HOLE = 60.0, 10.0, 25.0
+PLATE = 10.0  # plates between stage, sensor and array: one thickness, so that one screw length fits all
+PLATE_SCREW = ("M4", 12.0, 5.6)  # thread, length, plate under its sunk head: 6.4 mm engaged, 1.6 d
+GAUGE_SIZE = (66.0, 36.0, 230.0)  # force gauge along x, y, z
+GAUGE_SHAFT = 10.0  # free length of its M6 shaft
+TIP = 18.0  # tip on that shaft, to where it touches
+TIP_LAND = 2.0  # how far the flat tip's land stands out of its body
+TIP_GAP = 1.0  # tip to the gauge's housing
+BASE = (200.0, 12.0)  # base plate along x, thickness
+POST = (60.0, 20.0)  # post along x, y
+ROW_PITCH = 10.0  # rows of threads in the post
+FOOT, BAR, BAR_WIDTH, BAR_HEIGHT, PLATFORM = 8.0, 8.0, 23.0, 60.0, 8.0  # what the guide's carriage carries
+RAIL_HEIGHT = 10.0  # guide: mounting face of the carriage over the rail's
+RISER_PITCH = 40.0  # riser's screws over and under its middle
+CARRIAGE_ON_BAR = 30.0  # carriage's middle over the bar's lower end
+BAR_FRONT = 16.0  # y of the bar's front: behind the carrier's threads
+BEHIND_BAR = 1.5  # foot and platform behind the bar's back: material beside its screws
+CARRIAGE_LENGTH = 28.9
+# Front of the post: force gauge, its two plates and the stage stand before it.
+POST_Y = GAUGE_SIZE[1] / 2 + 2 * PLATE + 2 * STAGE_PLATE
+PIN = 8.0  # of the weight platform, diameter
+COLOUR = "#8d99a6"  # plates of the rigs
+STANDARD_GRAVITY = 9.80665  # m/s2, by definition (CGPM 1901)
+
+
+def pad_middles(layout: Layout) -> tuple[tuple[float, float], ...]:
+    """Middles (x, y) of all pads, mm."""
+    middle = (layout.pad_inner + layout.pad_outer) / 2
+    return tuple((middle if place.row == 1 else -middle, place.y) for place in layout.elements)

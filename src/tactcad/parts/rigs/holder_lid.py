@@ -1,0 +1,43 @@
+r"""Lid of the vacuum holder under the sample: suction holes in hexagonal rings.
+
++-----------+
+| O       O |
+|    . .    |   . suction holes
+|   . . .   |
+|    . .    |
+| O       O |   O screws through body into the cart, sunk
++-----------+
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from ..description import Extrusion, Hole, Part
+from ..materials import plate_material
+from ..screw_holes import sunk
+from .cart_layout import CartLayout
+
+
+def holder_lid(rig: CartLayout) -> Part:
+    """Plate under the sample with the suction holes; z = 0 is the underside."""
+    t, s, h = rig.holder.lid_thickness, rig.holder_side / 2, rig.holder_screw
+    holes = [
+        Hole("suction", (x, y, t), (0, 0, -1), rig.holder.hole_diameter, t, True)
+        for x, y in rig.suction_holes
+    ]
+    under = rig.holder_fixing[1]
+    screws = [
+        sunk("screw", "M3", (sx * h, sy * h, t), (0, 0, -1), t, under) for sx in (-1, 1) for sy in (-1, 1)
+    ]
+    return Part(
+        part_no=f"{rig.design.name}-holder-lid",
+        name="Sample holder, lid",
+        process="milled",
+        material=plate_material(rig.design),
+        body=Extrusion(rectangle(-s, -s, s, s), t),
+        features=tuple(holes + screws),
+        colour="#aab2ba",
+        finish="Ra 0.8 both faces, flat within 0.02",
+        notes=("suction holes burr-free, not countersunk: rubber would be drawn in",),
+    )

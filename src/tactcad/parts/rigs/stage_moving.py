@@ -1,0 +1,35 @@
+r"""Moving half of a micro-stage, bought: slideway down, threads up.
+
+o-----------o    z = thickness: four M4 threads at +-STAGE_HOLE
+|           |
+o-----------o    z = 0: slideway
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from ..description import Extrusion, Part, Purchase
+from ..materials import ALUMINIUM
+from ..screw_holes import tapped
+from .frame import STAGE, STAGE_HOLE, STAGE_PLATE
+
+
+def stage_moving(travel: float) -> Part:
+    """Moving half: slideway at z = 0, threads from the face at the top."""
+    half, t = STAGE / 2, STAGE_PLATE
+    threads = tuple(
+        tapped("mount", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t)
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    )
+    return Part(
+        part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-MOVING",
+        name=f"Micro-stage {STAGE:g} x {STAGE:g}, moving half",
+        process="bought",
+        material=ALUMINIUM,
+        body=Extrusion(rectangle(-half, -half, half, half), t),
+        features=threads,
+        colour="#59626e",
+        purchase=Purchase("moving half, comes with the fixed half", alternates="as the fixed half"),
+    )

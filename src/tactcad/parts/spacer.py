@@ -1,0 +1,38 @@
+r"""Spacer between neighbouring elements, over the clamped rear body only.
+
+clamp edge +--------------------+
+           |  o      O      o   |   z up, x ->
+           +--------------------+
+"""
+
+from __future__ import annotations
+
+from tactcad.contour import rectangle
+
+from .description import Characteristic, Extrusion, Part
+from .element import mounting_holes, sheet_material
+from .layout import Layout
+
+SPACER_TOLERANCE = 0.01  # mm, plus and minus; chosen: shim stock is rolled to less
+
+
+def spacer(layout: Layout) -> Part:
+    """Wire-cut sheet between neighbouring elements, over the clamped rear body only."""
+    d = layout.design
+    z0, z1 = layout.spacer_z
+    return Part(
+        part_no=f"{d.name}-spacer",
+        name="Spacer",
+        process="wire-cut",
+        material=sheet_material(d),
+        body=Extrusion(
+            rectangle(layout.clamp_edge, z0, layout.rear_end, z1), layout.spacer, mounting_holes(layout)
+        ),
+        colour="#9aa4ae",
+        notes=("burr-free, flat faces as rolled",),
+        characteristics=(
+            Characteristic(
+                "thickness", layout.spacer, layout.spacer + SPACER_TOLERANCE, layout.spacer - SPACER_TOLERANCE
+            ),
+        ),
+    )

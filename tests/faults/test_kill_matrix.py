@@ -1,0 +1,177 @@
+"""Five commands that write, ended by four signals at moments spread over each one's run: whole or untouched, and no litter.
+
+What lies there before is what the command made of input A, after it what it makes of B; whatever ends it in between, one of
+the two is there. Nothing here knows how anything is written.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import re
+import secrets
+import shutil
+import signal
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from command_line import MODULE, ROOT, contents, environment, tactcad_run
+
+SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
+STATUS = {"SIGKILL": -9, "SIGTERM": 143, "SIGINT": 130, "SIGHUP": 129}
+COMMANDS = {  # N is A or B
+    "export": "export N.toml --guide --drawings --out there/out",
+    "release": "release N.toml --out there",
+    "golden": "golden hardware/N.toml",
+    "validate": "validate --table1 N-table1.csv --out there/report",
+    "calibrate": "calibrate N-readings.csv --out there/table.csv",
+}
+OTHERS = ("home", "cache")  # where libraries and the cache keep theirs
+
+
+@dataclass(frozen=True)
+class Case:
+    """A command in a folder of its own: seconds of a run, and what lies there after a run with either input."""
+
+    work: Path
+    words: str
+    seconds: float
+    whole: dict[str, dict[str, bytes]]
+
+    def line(self, name: str) -> list[str]:
+        return [re.sub(r"\bN\b", name, word) for word in self.words.split()]
+
+    def run(self, name: str) -> None:
+        done = tactcad_run(*self.line(name), cwd=self.work, env=environment(self.work))
+        assert done.returncode == 0, done.stderr.decode()
+
+
+def prepared(bench, work: Path, words: str) -> Case:
+    """The inputs, both outputs made undisturbed, A's last: that is what lies there now."""
+    readings = (ROOT / "hardware" / "examples" / "calibration.csv").read_text("utf-8")
+    table = (ROOT / "src" / "tactcad" / "paper" / "data" / "table1.csv").read_text("utf-8")
+    inputs = {
+        "A-readings.csv": readings,
+        "B-readings.csv": readings.partition("\n10,")[0] + "\n",  # without its last element
+        "A-table1.csv": table,
+        "B-table1.csv": table.replace("\n1,40.12,", "\n1,40.13,"),
+    }
+    for name, text in bench.texts.items():
+        inputs[f"hardware/{name}.toml"] = text
+        # one file name for both releases
+        inputs[f"{name}.toml"] = re.sub('^revision = ".*"$', 'revision = "A"', text, flags=re.MULTILINE)
+    for folder in ("hardware", "there"):
+        (work / folder).mkdir()
+    for path, text in inputs.items():
+        (work / path).write_text(text, encoding="utf-8")
+    shutil.copytree(bench.cache, work / "cache")
+    environment(work)
+    whole, seconds = {}, 0.0
+    for name in "BA":
+        start = time.monotonic()
+        Case(work, words, 0.0, {}).run(name)
+        seconds = time.monotonic() - start
+        whole[name] = lying(work)
+    assert whole["A"] != whole["B"] and not any(map(hidden, whole["A"]))
+    return Case(work, words, seconds, whole)
+
+
+def lying(work: Path) -> dict[str, bytes | None]:
+    """Every file but those of others, and every empty folder, hidden ones too."""
+    found = dict(contents(work))
+    for folder in work.rglob("*"):
+        if folder.is_dir() and not any(folder.iterdir()):
+            found[folder.relative_to(work).as_posix()] = None
+    return {path: data for path, data in found.items() if path.split("/")[0] not in OTHERS}
+
+
+def hidden(path: str) -> bool:
+    return path.startswith("tmp/") or any(part.startswith(".") for part in path.split("/"))
+
+
+def ended(case: Case, name: str, sent: str, share: float) -> bool:
+    """Send the signal at that share of a run's time: whether that ended the command, by the signal's status and in one line."""
+    with subprocess.Popen(
+        [*MODULE, *case.line(name)],
+        cwd=case.work,
+        env=environment(case.work),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    ) as process:
+        began = time.monotonic()
+        while not takes_signals(process.pid) and process.poll() is None:
+            time.sleep(0.002)  # until it is tactcad's turn, Python answers
+        try:
+            said = process.communicate(timeout=max(0.0, began + share * case.seconds - time.monotonic()))[1]
+        except subprocess.TimeoutExpired:
+            process.send_signal(getattr(signal, sent))
+            said = process.communicate(timeout=120)[1]
+    text = said.decode()
+    assert process.returncode in (0, STATUS[sent]), text
+    assert "Traceback" not in text and "Exception" not in text, text
+    if process.returncode > 0:
+        assert text.splitlines()[-1].startswith("tactcad: ") and text.count("tactcad: ") == 1, text
+    return process.returncode != 0
+
+
+def takes_signals(process: int) -> bool:
+    try:
+        status = Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return False
+    caught = int(re.search(r"^SigCgt:\s*(\w+)$", status, re.MULTILINE)[1], 16)
+    return bool(caught >> (signal.SIGTERM - 1) & 1)
+
+
+def end_at(case: Case, standing: str, sent: str, moments: int, every: bool) -> tuple[str, int]:
+    """End runs at that many moments; what stands there at last, and how many moments came before the run's end.
+
+    With `every`, each is followed by an undisturbed run, and every second one has to make everything anew.
+    """
+    chance = random.Random(f"{SEED} {case.words} {sent}")
+    early = 0
+    for n in range(moments):
+        wanted = "AB"[standing == "A"]
+        if every and n % 2:
+            shutil.rmtree(case.work / "cache", ignore_errors=True)
+        share = (n + chance.random()) / moments
+        about = f"TACTCAD_SEED={SEED}: {case.words}, {sent} at {share:.3f}"
+        early += ended(case, wanted, sent, share)
+        found = lying(case.work)
+        visible = {path: data for path, data in found.items() if not hidden(path)}
+        assert visible in (case.whole[standing], case.whole[wanted]), about
+        assert sent == "SIGKILL" or found == visible, f"{about} left {sorted(set(found) - set(visible))}"
+        standing = wanted if visible == case.whole[wanted] else standing
+        if every:
+            run_after(case, wanted, about)
+            standing = wanted
+    return standing, early
+
+
+def run_after(case: Case, wanted: str, about: str) -> None:
+    """The next run finishes, and leaves nothing of the others'."""
+    case.run(wanted)
+    assert lying(case.work) == case.whole[wanted], about
+    assert not list((case.work / "cache").rglob(".new-*")), about
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_two_moments_of_each_signal(bench, tmp_path, command):
+    """With a warm cache, one after the other; then one run to the end."""
+    case, standing = prepared(bench, tmp_path, COMMANDS[command]), "A"
+    for sent in STATUS:
+        standing, _ = end_at(case, standing, sent, 2, every=False)
+    run_after(case, "AB"[standing == "A"], f"TACTCAD_SEED={SEED}")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("command", COMMANDS)
+def test_twenty_moments_of_each_signal(bench, tmp_path, command, record_property):
+    case, standing = prepared(bench, tmp_path, COMMANDS[command]), "A"
+    for sent in STATUS:
+        standing, early = end_at(case, standing, sent, 20, every=True)
+        record_property(f"{command}, {sent}", f"20 moments, {early} before the run's end, seed {SEED}")
+        assert early >= 8
