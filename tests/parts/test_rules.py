@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
-from variants import table, variant
+from variants import DROP, table, variant
 
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
@@ -186,7 +186,7 @@ WITNESSES = {
         ({"element.seat_length": 1.7}, "element.seat_length"),
         ({"clamp.stop_plate_gap": 0.85}, "clamp.stop_plate_gap"),
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
-        ({"clamp.stop_plate_thickness": 0.5}, "clamp.stop_plate_thickness"),
+        ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
     ],
     "carrier_holes_apart": [
@@ -387,3 +387,15 @@ def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_draw
     design: Design = from_table(tree)
     if not broken_rules(design):
         make_scene(design, "array")
+
+
+def test_what_the_stop_plate_s_rule_calls_legal_is_legal():
+    """Its own word put back; and left out, the pitch is one that holds, thin plate or usual."""
+    soft = {**FIFTY_A_ROW, "clamp.stop_plate_thickness": 2.0, "clamp.hold_down_pitch": 200.0}
+    (found,) = broken_rules(variant(soft))
+    assert (found.part, found.value) == ("clamp.hold_down_pitch", 200.0)
+    most = float(str(found.limit).split()[2])
+    assert broken_rules(variant({**soft, "clamp.hold_down_pitch": most})) == []
+    for thickness in (2.0, 4.0):
+        derived = {**soft, "clamp.stop_plate_thickness": thickness, "clamp.hold_down_pitch": DROP}
+        assert broken_rules(variant(derived)) == []
