@@ -27,7 +27,7 @@ test: environment ## every test but the long ones
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails
 	@status=0; \
 	$(BIN)/ruff check || status=1; \
-	$(BIN)/ruff format --check || status=1; \
+	$(BIN)/ruff format --check src tests benchmarks packaging || status=1; \
 	$(BIN)/mypy || status=1; \
 	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
 	exit $$status

@@ -6,7 +6,6 @@ read with nothing but json and hashlib, agrees with every file below it.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
@@ -100,13 +99,9 @@ def assert_sound(folder: Path) -> None:
 
 
 def assert_tidy(out: Path, work: Path) -> None:
-    """Beside the export lie its builds, finished ones only, and a lock that nobody holds; nothing in other places."""
-    beside = {p.name for p in out.parent.iterdir()}
-    assert beside == {out.name, f".{out.name}.builds", f".{out.name}.lock"}
-    builds = {p.name for p in (out.parent / f".{out.name}.builds").iterdir()}
-    assert len(builds) <= 2 and all(name.isdecimal() for name in builds)
-    with (out.parent / f".{out.name}.lock").open("rb") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    """Beside the export lies nothing, nor in other places."""
+    assert [p.name for p in out.parent.iterdir()] == [out.name]
+    assert out.is_dir() and not out.is_symlink()
     assert not list((work / "tmp").iterdir())
     assert not list((work / "cache").rglob(".new-*"))
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from tactcad.mechanics.register import BY_NAME
 from tactcad.paper.report import sig
-
-from .rungs import WHEN
 
 TESSELLATION = {
     0.5: "a first look",
@@ -29,7 +28,7 @@ def choice(result: dict) -> str:
     for row in _rows(result, "rungs"):
         error = f"{sig(100 * row['solid worst'], 2)} %"
         lines.append(
-            f"| rung, per element | `{row['rung']}` | {error} | {duration(row['seconds'])} | | {WHEN[row['rung']]} |"
+            f"| rung, per element | `{row['rung']}` | {error} | {duration(row['seconds'])} | | {BY_NAME[row['rung']].when} |"
         )
     for row in _rows(result, "tessellation"):
         when = TESSELLATION.get(row["angular"])
