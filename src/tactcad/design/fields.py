@@ -43,7 +43,8 @@ class Number:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one too."""
+    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one
+    too."""
 
     low: int
     high: int

@@ -1,4 +1,5 @@
-"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one left.
+"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one
+left.
 
 Whoever makes one holds a lock (flock) on it, which goes with the process however that ends. Only names of our
 own form, nobody's lock on them and, for folders, our mark in them: then it is a killed run's.
@@ -52,7 +53,8 @@ def held_folder(parent: Path, stem: str, settle: Settle = lambda folder: None) -
 
 
 def sweep_folders(parent: Path, stem: str, settle: Settle = lambda folder: None) -> tuple[str, ...]:
-    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold others."""
+    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold
+    others."""
     holders = []
     for folder in _of_our_form(parent, stem, ""):
         if folder.is_symlink() or not folder.is_dir():

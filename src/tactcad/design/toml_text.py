@@ -8,14 +8,15 @@ from typing import Any
 
 from .messages import InputError
 
-# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes minutes for keys
-# of many thousand names, so they are refused before it sees them.
+# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes
+# minutes for keys of many thousand names, so they are refused before it sees them.
 # Possessive, hence linear in the length of the text; 16 names are few enough to parse at once.
 _LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){16}""")
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not TOML."""
+    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not
+    TOML."""
     text = text.replace("\r\n", "\n")
     long = _LONG_KEY.search(text)
     if long:

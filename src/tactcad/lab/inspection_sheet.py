@@ -1,8 +1,8 @@
 """Reads a filled-in inspection sheet back. Every refusal names file, line and column.
 
 What spreadsheets do to a CSV file is undone where it can only mean one thing: a byte order mark, a first line
-"sep=;", semicolons or tabs between the columns, other order of rows and columns, further columns, empty rows and
-cells at the end, and decimal commas where every number of a sheet with semicolons or tabs is written so.
+"sep=;", semicolons or tabs between the columns, other order of rows and columns, further columns, empty rows
+and cells at the end, and decimal commas where every number of a sheet with semicolons or tabs is written so.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ class Reading:
 
     @property
     def verdict(self) -> str:
-        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a limit."""
+        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a
+        limit."""
         if self.measured is None:
             return "blank"
         u, d = self.uncertainty or 0.0, self.dimension
@@ -64,7 +65,8 @@ class Reading:
 def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     """Every row of the sheet, by element number and in the order of its dimensions.
 
-    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled in.
+    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled
+    in.
     """
     shown, text = str(path), read_text(path, LARGEST_FILE, "an inspection sheet (CSV)")
     first, text = _without_hint(text)
@@ -160,7 +162,8 @@ def _fitted(shown: str, line: int, row: list[str], width: int) -> list[str]:
 
 
 def _all_commas(rows: list[_Row]) -> bool:
-    """Whether the sheet's own numbers were all written again with a decimal comma, so that a comma has one meaning."""
+    """Whether the sheet's own numbers were all written again with a decimal comma, so that a comma has one
+    meaning."""
     own = [row[name] for row in rows for name in LIMITS]
     return any("," in text for text in own) and not any("." in text for text in own)
 
