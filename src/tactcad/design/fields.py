@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from .messages import InputError, in_brackets, near
+from .messages import InputError, hidden, in_brackets, near, visible
 
 REQUIRED = object()
 
@@ -101,12 +101,22 @@ class Text:
     unit: str = ""
 
     def read(self, value: Any, where: str) -> str:
-        if not isinstance(value, str) or not re.fullmatch(self.pattern, value):
+        if not isinstance(value, str) or not re.fullmatch(self.pattern, value) or not visible(value):
             raise InputError(where, "not usable text", value=value, legal=self.legal)
-        return value
+        return shown_text(value, where, self.legal)
 
     def schema(self) -> dict:
         return {"type": "string", "pattern": f"^(?:{self.pattern})$"}
+
+
+def shown_text(value: Any, where: str, legal: str) -> str:
+    """Text of any length that shows as it is read. Raises InputError where it is empty or holds hidden
+    characters."""
+    if not isinstance(value, str) or not visible(value):
+        raise InputError(where, "not text", value=value, legal=legal)
+    if found := hidden(value):
+        raise InputError(where, f"not usable text: it holds {found}", value=value, legal=legal)
+    return value
 
 
 @dataclass(frozen=True)

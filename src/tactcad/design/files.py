@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from .held import held_file, held_folder, sweep_folders
-from .messages import CheckFailure, InputError, shortened
+from .messages import CheckFailure, InputError, hidden, shortened
 
 # what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
@@ -98,7 +98,7 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
-        return json.loads(text, parse_constant=_no_number, parse_float=_finite)
+        value = json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_within_floats)
     except json.JSONDecodeError as error:
         raise InputError(
             f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}", legal=kind
@@ -107,6 +107,28 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
         raise InputError(str(path), "nested too deeply", legal=kind) from None
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
+    if not text.isascii() or "\\u" in text:
+        _refuse_hidden(value, str(path), kind)
+    return value
+
+
+def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
+    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+    text."""
+    left = [value]
+    while left:
+        item = left.pop()
+        if isinstance(item, dict):
+            left += [*item, *item.values()]
+        elif isinstance(item, list):
+            left += item
+        elif isinstance(item, str) and (found := hidden(item)):
+            raise InputError(shown, f"a text holds {found}", value=item, legal=kind)
+
+
+def _within_floats(text: str) -> int:
+    _finite(text)
+    return int(text)
 
 
 def _finite(text: str) -> float:

@@ -19,7 +19,7 @@ IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands w
 
 
 def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters, not only spaces", meaning)
+    return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
 
 
 @dataclass(frozen=True)

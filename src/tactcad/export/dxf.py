@@ -8,6 +8,7 @@ with the last cut. The file holds the nominal contour: wire compensation belongs
 from __future__ import annotations
 
 import io
+import logging
 from dataclasses import dataclass
 from itertools import combinations
 from math import degrees, dist, isclose
@@ -122,10 +123,13 @@ def read_dxf(file: str | Path | bytes) -> CutFile:
     """
     import ezdxf
 
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it says of a damaged file is in our one line
     try:
         as_text = io.StringIO(file.decode("cp1252")) if isinstance(file, bytes) else None
         drawing = ezdxf.read(as_text) if as_text else ezdxf.readfile(file)
-    except (ezdxf.DXFError, OSError, UnicodeDecodeError) as error:
+    except (
+        Exception
+    ) as error:  # its parser raises whatever a damaged file makes it meet: IndexError, StopIteration, ...
         raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
