@@ -74,6 +74,14 @@ def tactcad_run(
     )
 
 
+def running(process: int) -> bool:
+    """Whether it lives: an ended one may wait for whoever inherits it."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def refused(done: subprocess.CompletedProcess[bytes], status: int = 2) -> str:
     """The one line that a refusal says. No traceback, nothing on standard output."""
     said = done.stderr.decode("utf-8", "backslashreplace")

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import MODULE, assert_sound, assert_tidy, contents, environment, tactcad_run
+from command_line import MODULE, assert_sound, assert_tidy, contents, environment, running, tactcad_run
 
 # TACTCAD_SEED repeats a run's moments.
 SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
@@ -93,14 +93,6 @@ def test_killed_while_helpers_draw(bench, work):
     assert done.returncode == 0 and b"waiting" not in done.stderr, done.stderr.decode()
     assert contents(work / "exports" / "out") == bench.files["A"]
     assert_tidy(work / "exports" / "out", work)
-
-
-def running(process: int) -> bool:
-    """Whether it lives: an ended one may wait for whoever inherits it."""
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
 
 
 def test_killed_among_others_that_wait(bench, work):

@@ -1,4 +1,5 @@
-"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one left.
+"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one
+left.
 
 Whoever makes one holds a lock (flock) on it, which goes with the process however that ends. Only names of our
 own form, nobody's lock on them and, for folders, our mark in them: then it is a killed run's.
@@ -16,18 +17,28 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from tactcad.ending import unfinished
+
 MARK = "written-by-tactcad"  # in every folder of ours; holds the process's number
 OWN = ".tactcad-"  # in every name of ours, before eight characters drawn by chance
+MAKING = "making"  # in a folder of ours, what is of no use before it is finished
 DRAWN = "[a-z0-9_]{8}"  # as tempfile draws them
 
 Settle = Callable[[Path], None]
 
 
+def _nothing(_folder: Path) -> None:
+    pass
+
+
 @contextmanager
-def held_folder(parent: Path, stem: str, settle: Settle = lambda folder: None) -> Iterator[Path]:
+def held_folder(
+    parent: Path, stem: str, settle: Settle = _nothing, clear: Settle = _nothing
+) -> Iterator[Path]:
     """A folder `parent/STEM.tactcad-XXXXXXXX` of this process alone, gone when the block ends.
 
-    `settle` is called with it before it goes, to save what is not ours to remove.
+    `settle` is called with it before it goes, to save what is not ours to remove. When a signal ends the
+    program `clear` is called instead; where it leaves more than MAKING the next run settles.
     """
     while True:
         folder = Path(tempfile.mkdtemp(prefix=stem + OWN, dir=parent))
@@ -41,18 +52,26 @@ def held_folder(parent: Path, stem: str, settle: Settle = lambda folder: None) -
         if _take(handle) is not False and (folder / MARK).exists():
             break
         os.close(handle)
-    try:
-        with suppress(OSError):  # a full disk: the number is for messages only
-            os.write(handle, f"{os.getpid()}".encode())
-        yield folder
-    finally:
-        with suppress(OSError):  # the next run sweeps
-            _remove(folder, settle)
-        os.close(handle)
+    with unfinished(lambda: _put_away(folder, settle, clear)):
+        try:
+            with suppress(OSError):  # a full disk: the number is for messages only
+                os.write(handle, f"{os.getpid()}".encode())
+            yield folder
+        finally:
+            with suppress(OSError):  # the next run sweeps
+                _remove(folder, settle)
+            os.close(handle)
 
 
-def sweep_folders(parent: Path, stem: str, settle: Settle = lambda folder: None) -> tuple[str, ...]:
-    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold others."""
+def _put_away(folder: Path, settle: Settle, clear: Settle) -> None:
+    clear(folder)
+    if settle is _nothing or set(os.listdir(folder)) <= {MARK, MAKING}:
+        _remove(folder, _nothing)
+
+
+def sweep_folders(parent: Path, stem: str, settle: Settle = _nothing) -> tuple[str, ...]:
+    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold
+    others."""
     holders = []
     for folder in _of_our_form(parent, stem, ""):
         if folder.is_symlink() or not folder.is_dir():
@@ -94,11 +113,12 @@ def held_file(place: Path) -> Iterator[Path]:
         if _take(handle) is not False and part.exists():
             break
         os.close(handle)  # another process took it for a killed run's
-    try:
-        yield part
-    finally:
-        part.unlink(missing_ok=True)
-        os.close(handle)
+    with unfinished(lambda: part.unlink(missing_ok=True)):
+        try:
+            yield part
+        finally:
+            part.unlink(missing_ok=True)
+            os.close(handle)
 
 
 def _of_our_form(parent: Path, stem: str, suffix: str) -> list[Path]:

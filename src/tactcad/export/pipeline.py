@@ -95,13 +95,14 @@ def export(
             _refuse_unprintable(design)
     elif not left_unfinished(out):
         return _unchanged(out, there, progress)
+    cache = Cache(default_root(), progress.line)
     with turn(out, manifests.SCHEMA, others, progress.line) as work:
         why = _reasons(work.earlier, inputs)
         if not why:
             return _unchanged(out, work.earlier, progress)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(design, options, Path(out), work, inputs, tuple(why), progress)
+        return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
 
 
 def _unchanged(out: str | os.PathLike[str], there: Contents, progress: Progress) -> Exported:
@@ -141,6 +142,7 @@ def _rebuild(
     options: ExportOptions,
     out: Path,
     work: Work,
+    cache: Cache,
     inputs: Inputs,
     why: tuple[str, ...],
     progress: Progress,
@@ -151,7 +153,6 @@ def _rebuild(
     from .products import assembly_products, drawing_products, guide_products, part_products, scene_products
     from .shapes import Shapes
 
-    cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
     scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())

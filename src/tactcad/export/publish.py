@@ -28,7 +28,7 @@ from itertools import count
 from pathlib import Path
 
 from tactcad.design.files import absolute, flush_entry, refusal
-from tactcad.design.held import OWN, Settle, held_folder, sweep_folders
+from tactcad.design.held import MAKING, OWN, Settle, held_folder, sweep_folders
 from tactcad.design.messages import CheckFailure, InputError
 
 from .contents import NAME, NOTHING, Contents, contents, remove, sealed, sha256_of
@@ -38,6 +38,7 @@ POLL_SECONDS = 0.1
 SHOWN = 5  # names in a message
 REFUSE, KEEP, DISCARD = "refuse", "keep", "discard"  # what to do with files that are not ours
 LEGAL = "a new name, an empty folder, or one that tactcad wrote and nobody changed"
+FINISHED = "finished"
 AT_FDCWD, NOREPLACE, EXCHANGE = -100, 1, 2
 
 Say = Callable[[str], None]
@@ -117,7 +118,7 @@ class Work:
 
     @property
     def folder(self) -> Path:
-        return self.own / "making"
+        return self.own / MAKING
 
     def write(self, files: Mapping[str, bytes]) -> None:
         """Write the files and a manifest of them, and publish them."""
@@ -133,7 +134,7 @@ class Work:
         if self.out.is_dir():
             self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
         _flush(self.folder)
-        finished = self.folder.rename(self.own / "finished")
+        finished = self.folder.rename(self.own / FINISHED)
         earlier = _put_in_place(finished, self.out, self.own / "earlier")
         flush_entry(self.out.parent)
         if earlier:
@@ -178,12 +179,17 @@ def turn(
     def settle(left: Path) -> None:
         _recover(left, out, schema, kept)
 
+    def clear(own: Path) -> None:
+        seen = contents(own / FINISHED, schema)  # the new folder, or the earlier one exchanged for it
+        if seen.states and not seen.foreign:
+            remove(own / FINISHED, seen)
+
     with _in_one_line(out):
         looked_at(out, schema, others)
         out.parent.mkdir(parents=True, exist_ok=True)
         try:
             with ExitStack() as stack:
-                own = _own_folder(out, settle, stack, say, time.monotonic() + wait)
+                own = _own_folder(out, settle, clear, stack, say, time.monotonic() + wait)
                 work = Work(out, schema, others, say, own, looked_at(out, schema, others), kept)
                 if work.earlier.foreign and others == DISCARD:
                     say(f"{out}: to be discarded: {_named(work.earlier.foreign)}")
@@ -199,7 +205,7 @@ def turn(
         )
 
 
-def _own_folder(out: Path, settle: Settle, stack: ExitStack, say: Say, until: float) -> Path:
+def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say: Say, until: float) -> Path:
     """Our unfinished folder beside DIR, once no other process has one."""
     said = False
     while True:
@@ -214,7 +220,7 @@ def _own_folder(out: Path, settle: Settle, stack: ExitStack, say: Say, until: fl
             holders = sweep_folders(out.parent, f".{out.name}", settle)
         try:
             if holders == ():
-                return stack.enter_context(held_folder(out.parent, f".{out.name}", settle))
+                return stack.enter_context(held_folder(out.parent, f".{out.name}", settle, clear))
         finally:
             os.close(parent)
         holder = f"process {holders[0]}" if holders else "which looks around"
@@ -233,7 +239,7 @@ def _recover(left: Path, out: Path, schema: str, kept: list[str]) -> None:
     if os.path.lexists(left / "earlier") and not os.path.lexists(out):
         os.rename(left / "earlier", out)
     work = Work(out, schema, REFUSE, _print, left, NOTHING, kept)
-    for name in ("finished", "earlier"):
+    for name in (FINISHED, "earlier"):
         if os.path.lexists(left / name):
             work.settle(left / name)
 
