@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check golden review release bench reference nightly clean
+.PHONY: help environment export test check golden review release bench docs reference nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -27,7 +27,7 @@ test: environment ## every test but the long ones
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails
 	@status=0; \
 	$(BIN)/ruff check || status=1; \
-	$(BIN)/ruff format --check || status=1; \
+	$(BIN)/ruff format --check src tests benchmarks packaging || status=1; \
 	$(BIN)/mypy || status=1; \
 	$(BIN)/tactcad check $(DESIGNS) --report exports/check || status=1; \
 	exit $$status
@@ -49,7 +49,10 @@ release: environment ## one zip a shop can quote from, of every design no check 
 bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
 	$(BIN)/tactcad bench --out exports/bench
 
-reference: environment ## the published benchmarks again, in full, on a quiet machine: README, docs, benchmarks/results
+docs: environment ## the documentation as a site that opens offline: exports/docs/index.html; warnings are errors
+	packaging/docs.sh
+
+reference: environment ## the published benchmarks again, in full, on a quiet machine: docs, benchmarks/results
 	$(BIN)/tactcad bench --full --out exports/bench
 	$(BIN)/python -m tactcad.bench.publish exports/bench
 

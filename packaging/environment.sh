@@ -10,7 +10,7 @@ stamp=.venv/complete
 
 key() { # $1: a Python
     {
-        cat requirements/*.txt pyproject.toml packaging/ocp-shim/pyproject.toml packaging/environment.sh
+        cat requirements/pins.txt pyproject.toml packaging/ocp-shim/pyproject.toml packaging/environment.sh
         "$1" -c 'import sys; print(sys.version)'
         pwd -P
     } | sha256sum | cut -d' ' -f1

@@ -1,4 +1,4 @@
-"""What README and docs show of the benchmarks is made from the reference results, which say where they come from."""
+"""What docs/ shows of the benchmarks is made from the reference results, which say where they come from."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def test_every_block_is_the_reference_results(document):
         assert text == blocks[name], f"{document}: {name}; `python -m tactcad.bench.publish` writes it"
 
 
-def test_readme_lets_one_choose():
-    found = dict(BLOCK.findall((ROOT / "README.md").read_text("utf-8")))
+def test_benchmarks_page_lets_one_choose():
+    found = dict(BLOCK.findall((ROOT / "docs/benchmarks.md").read_text("utf-8")))
     table = found["bench choose"]
     rungs = {row["rung"]: row for row in RESULT["benchmarks"]["rungs"]["tables"]["rungs"]["rows"]}
     assert all(f"`{rung}`" in table for rung in rungs)

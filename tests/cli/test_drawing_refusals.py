@@ -41,7 +41,7 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
     assert captured.out == "" and "Traceback" not in captured.err
     out = place / "out"
     visible = [p for p in out.rglob("*") if not p.is_dir()] if out.exists() else []
-    assert visible == [] and not list(place.glob(".out.builds/*"))
+    assert visible == [] and not list(place.glob(".out.*"))
     return status, captured.err.splitlines()[-1]
 
 

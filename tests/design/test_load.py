@@ -38,6 +38,8 @@ BAD_VALUES = {
     "missing rows": ({"array.row_arms": DROP}, "array.row_arms", "missing", "one or two rows"),
     "missing table": ({"sheet": DROP}, "sheet", "missing", "[sheet]"),
     "value instead of a table": ({"sheet": 3.0}, "sheet", "table", "[sheet]"),
+    "fraction of a ring": ({"holder.rings": 2.5}, "holder.rings", "not a whole number", "from 1 to 12"),
+    "too many rings": ({"holder.rings": 13}, "holder.rings", "out of range", "from 1 to 12"),
     "truth value": (
         {"element.hinge_thickness": True},
         "element.hinge_thickness",
@@ -327,3 +329,9 @@ def test_an_alloy_gives_what_the_file_leaves_out():
 def test_messages_cannot_be_forged_by_a_file_name(tmp_path):
     error = refused(read, str(tmp_path / "x\ntactcad: all is well.toml"))
     assert not re.search(r"^tactcad: all is well", str(error), re.MULTILINE)
+
+
+def test_a_whole_number_may_be_written_with_a_point_and_is_an_integer():
+    for written in (10, 10.0):
+        weights = variant({"grasping.weights": written}).grasping.weights
+        assert (weights, type(weights)) == (10, int)

@@ -42,11 +42,12 @@ def complaints(value, schema, path="$") -> list[str]:
         "maxItems",
     }
     assert set(schema) <= known, f"{path}: unknown words {set(schema) - known}"
-    kinds = {"object": dict, "array": list, "string": str, "number": (int, float)}
-    if not isinstance(value, kinds[schema["type"]]) or isinstance(value, bool):
+    kinds = {"object": dict, "array": list, "string": str, "number": (int, float), "integer": (int, float)}
+    whole = schema["type"] != "integer" or (isinstance(value, (int, float)) and value == int(value))
+    if not isinstance(value, kinds[schema["type"]]) or isinstance(value, bool) or not whole:
         return [f"{path}: not a {schema['type']}"]
     found = []
-    if schema["type"] == "number":
+    if schema["type"] in ("number", "integer"):
         if not schema.get("minimum", -math.inf) <= value <= schema.get("maximum", math.inf):
             found.append(f"{path}: out of range")
     elif schema["type"] == "string":
@@ -121,6 +122,17 @@ def test_ranges_in_the_schema_are_the_loaders(path):
         assert accepted(table({path: value})), value
         assert complaints(table({path: value}), SCHEMA) == []
     for value in (math.nextafter(low, -math.inf), math.nextafter(high, math.inf)):
+        assert not accepted(table({path: value})), value
+        assert complaints(table({path: value}), SCHEMA)
+
+
+@pytest.mark.parametrize("path", [p for p in spec_paths() if schema_of(p)["type"] == "integer"])
+def test_whole_numbers_in_the_schema_are_the_loaders(path):
+    low, high = schema_of(path)["minimum"], schema_of(path)["maximum"]
+    for value in (low, high, float(low)):
+        assert accepted(table({path: value})), value
+        assert complaints(table({path: value}), SCHEMA) == []
+    for value in (low - 1, high + 1, low + 0.5):
         assert not accepted(table({path: value})), value
         assert complaints(table({path: value}), SCHEMA)
 

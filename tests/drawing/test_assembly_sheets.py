@@ -206,7 +206,7 @@ def _views(sheets) -> dict[str, dict]:
     """By title: letter, labels in balloons, and items that are numbered in another view, with its letter."""
     labels = balloons(sheets)
     views = {}
-    for page, runs in enumerate(pdf_runs(pdf_bytes(sheets, "x", "y"))):
+    for page, runs in enumerate(pdf_runs(pdf_bytes(sheets, "x", "y", "2026-11-21"))):
         for match in filter(None, (re.fullmatch(r"([A-Z]): (.+), exploded", run) for run in runs)):
             also = " ".join(run for run in runs if run.startswith("Also here: "))
             elsewhere = {int(n): letter for n, letter in re.findall(r"(\d+) \(see ([A-Z])\)", also)}
@@ -219,7 +219,7 @@ def _views(sheets) -> dict[str, dict]:
 @pytest.mark.parametrize("assembly", SCENES + OTHERS, ids="-".join, indirect=True)
 def test_no_shipped_design_falls_back_on_parts_side_by_side(assembly):
     design, scene, rows, _, sheets = assembly
-    pdf = pdf_bytes(sheets, "x", "y")
+    pdf = pdf_bytes(sheets, "x", "y", "2026-11-21")
     runs = [run for page in pdf_runs(pdf) for run in page]
     assert not [run for run in runs if run.startswith("One of each part") or "the views before it" in run]
     assert assembly_faults(pdf, f"{design.name}-{scene.name}", design.design.revision, rows) == []
@@ -231,14 +231,17 @@ def test_no_shipped_design_falls_back_on_parts_side_by_side(assembly):
 
 def test_the_parts_list_is_the_bill(assembly):
     design, scene, rows, _, sheets = assembly
-    pages = pdf_runs(pdf_bytes(sheets, "x", "y"))
+    pages = pdf_runs(pdf_bytes(sheets, "x", "y", "2026-11-21"))
     text = "".join(run for page in pages for run in page).replace(" ", "")
     for row in rows:
         quantity = f"{row.qty:g}" + ("" if row.unit == "pcs" else row.unit)
         assert f"{row.item}{quantity}{row.part_no}{row.description}".replace(" ", "") in text, row.part_no
     assert (
         assembly_faults(
-            pdf_bytes(sheets, "x", "y"), f"{design.name}-{scene.name}", design.design.revision, rows
+            pdf_bytes(sheets, "x", "y", "2026-11-21"),
+            f"{design.name}-{scene.name}",
+            design.design.revision,
+            rows,
         )
         == []
     )
@@ -278,7 +281,7 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     number, revision = f"{design.name}-{scene.name}", design.design.revision
 
     def faults(sheets, rows=rows, r=revision):
-        return assembly_faults(pdf_bytes(sheets, "x", "y"), number, r, rows)
+        return assembly_faults(pdf_bytes(sheets, "x", "y", "2026-11-21"), number, r, rows)
 
     page = next(
         n for n, s in enumerate(sheets) if any(isinstance(i, Fill) and i.role == "leader" for i in s.items)
@@ -297,9 +300,9 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)
 def test_a_draft_is_marked_on_every_page(assembly):
-    pages = pdf_runs(pdf_bytes([preliminary(sheet) for sheet in assembly[4]], "x", "y"))
+    pages = pdf_runs(pdf_bytes([preliminary(sheet) for sheet in assembly[4]], "x", "y", "2026-11-21"))
     assert all(page.count("PRELIMINARY") == 1 for page in pages)
-    assert all("PRELIMINARY" not in page for page in pdf_runs(pdf_bytes(assembly[4], "x", "y")))
+    assert all("PRELIMINARY" not in page for page in pdf_runs(pdf_bytes(assembly[4], "x", "y", "2026-11-21")))
 
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)

@@ -30,7 +30,7 @@ from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.scale import SERIES
 from tactcad.drawing.sheets import Order, all_written, part_sheet, title_of, written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
-from tactcad.export.pipeline import export
+from tactcad.export.pipeline import ExportOptions, export
 from tactcad.parts.description import Characteristic, Extrusion, Material, Part
 from tactcad.scenes import make_scene, scene_names
 
@@ -57,7 +57,7 @@ def finished(orders):
 
 
 def pdf(sheet) -> bytes:
-    return pdf_bytes([sheet], "title", "author")
+    return pdf_bytes([sheet], "title", "author", "2026-11-21")
 
 
 def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro):
@@ -157,7 +157,7 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
         "'macro-array-other' is missing" in fault
         for fault in drawing_faults(pdf(sheet), sheet, other, macro.design.revision)
     )
-    two = pdf_bytes([sheet, sheet], "t", "a")
+    two = pdf_bytes([sheet, sheet], "t", "a", "2026-11-21")
     assert drawing_faults(two, sheet, part, macro.design.revision) == ["2 pages instead of 1"]
     scribbled = replace(sheet, items=(*sheet.items, Text(value.at, "again", 2.5)))
     assert any(
@@ -226,7 +226,7 @@ SMALL = {"array.row_arms": [[4.0, 6.0]]}
 def test_a_missing_font_stops_the_export_before_anything_is_written(monkeypatch, tmp_path):
     monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf"):
-        export(variant(SMALL), ("array",), tmp_path / "out", Silent(), drawings=True)
+        export(variant(SMALL), ExportOptions(("array",), drawings=True), tmp_path / "out", Silent())
     assert not (tmp_path / "out").exists()
 
 

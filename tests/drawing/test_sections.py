@@ -279,11 +279,11 @@ def test_a_cut_thread_is_drawn_as_iso_6410_says(sheets):
 
 def test_letters_stand_once_at_each_end_and_once_over_the_section(orders, sheets):
     for number in (*CUT, ACROSS_Y):
-        (runs,) = pdf_runs(pdf_bytes([sheets[number]], "t", "a"))
+        (runs,) = pdf_runs(pdf_bytes([sheets[number]], "t", "a", "2026-11-21"))
         assert runs.count("S") == 2 and runs.count("S-S") == 1, number
         assert layout_faults(sheets[number]) == []
     for number in WHOLE:
-        (runs,) = pdf_runs(pdf_bytes([sheets[number]], "t", "a"))
+        (runs,) = pdf_runs(pdf_bytes([sheets[number]], "t", "a", "2026-11-21"))
         assert "S" not in runs and "S-S" not in runs
 
 

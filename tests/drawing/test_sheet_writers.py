@@ -61,7 +61,7 @@ def sheet(paper=A3, **changes) -> Sheet:
 
 
 def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
-    reader = PdfReader(io.BytesIO(pdf_bytes([sheet(), sheet(A4)], "title", "author")))
+    reader = PdfReader(io.BytesIO(pdf_bytes([sheet(), sheet(A4)], "title", "author", "2026-11-21")))
     assert len(reader.pages) == 2
     for page, paper in zip(reader.pages, (A3, A4)):
         points = [float(v) * 25.4 / 72 for v in page.mediabox[2:]]
@@ -90,7 +90,7 @@ def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
     """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too much."""
     text = Text((40, 60), "Qg±⌀(12)", 10, angle=90)
     bare = Sheet("n", "t", A4.size, (text,))
-    (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a"))
+    (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a", "2026-11-21"))
     subprocess.run(["pdftoppm", "-r", "127", "-gray", tmp_path / "a.pdf", tmp_path / "a"], check=True)
     data = next(tmp_path.glob("a*.pgm")).read_bytes()
     w, h = map(int, data.split(b"\n", 3)[1].split())
@@ -115,11 +115,11 @@ def test_svg_holds_the_same_texts_at_the_same_places():
         )
 
 
-def test_equal_bytes_in_two_processes_with_other_hash_seeds():
+def test_equal_bytes_in_processes_with_other_hash_seeds_zones_and_dates():
     script = (
         "import sys, hashlib; sys.path[:0] = sys.argv[1:]\n"
         "from test_sheet_writers import sheet, pdf_bytes, svg_bytes\n"
-        "print(hashlib.sha256(pdf_bytes([sheet()], 't', 'a') + svg_bytes(sheet())).hexdigest())"
+        "print(hashlib.sha256(pdf_bytes([sheet()], 't', 'a', '2026-11-21') + svg_bytes(sheet())).hexdigest())"
     )
     here = Path(__file__).parent
     seen = {
@@ -128,17 +128,28 @@ def test_equal_bytes_in_two_processes_with_other_hash_seeds():
             capture_output=True,
             text=True,
             check=True,
-            env={**os.environ, "PYTHONHASHSEED": seed, "TZ": zone},
+            env={**os.environ, "PYTHONHASHSEED": seed, "TZ": zone, "SOURCE_DATE_EPOCH": epoch},
         ).stdout.strip()
-        for seed, zone in (("1", "UTC"), ("77", "Asia/Tokyo"))
+        for seed, zone, epoch in (("1", "UTC", "1"), ("77", "Asia/Tokyo", "1700000000"))
     }
-    assert seen == {hashlib.sha256(pdf_bytes([sheet()], "t", "a") + svg_bytes(sheet())).hexdigest()}
+    assert seen == {
+        hashlib.sha256(pdf_bytes([sheet()], "t", "a", "2026-11-21") + svg_bytes(sheet())).hexdigest()
+    }
+
+
+def test_the_date_is_the_designs():
+    metadata = PdfReader(io.BytesIO(pdf_bytes([sheet()], "t", "a", "2026-11-21"))).metadata
+    assert (
+        metadata.creation_date.isoformat()
+        == metadata.modification_date.isoformat()
+        == "2026-11-21T00:00:00+00:00"
+    )
 
 
 def test_a_draft_says_so_and_stays_clean():
     draft = preliminary(sheet())
     assert layout_faults(draft) == []
-    text = PdfReader(io.BytesIO(pdf_bytes([draft], "t", "a"))).pages[0].extract_text()
+    text = PdfReader(io.BytesIO(pdf_bytes([draft], "t", "a", "2026-11-21"))).pages[0].extract_text()
     assert re.sub(r"\s", "", text).count("PRELIMINARY") == 1
 
 
@@ -169,7 +180,7 @@ def test_missing_font_or_letter_is_said(monkeypatch):
         fonts.width("张", 2.5)
     monkeypatch.setattr(fonts, "_FILE", Path("nowhere.ttf"))
     with pytest.raises(CheckFailure, match="nowhere.ttf of the package matplotlib.* is missing"):
-        pdf_bytes([sheet()], "t", "a")
+        pdf_bytes([sheet()], "t", "a", "2026-11-21")
 
 
 def test_zones_are_those_of_iso_5457():

@@ -74,7 +74,9 @@ def test_where_no_exploded_view_finds_room_the_sheets_are_complete_all_the_same(
     rows = bom_rows(scene, design.design.revision, {})
     sheets = assembly_sheets(design, scene, rows, {part.part_no: build(part).wrapped for part in scene.parts})
     assert (
-        assembly_faults(pdf_bytes(sheets, "x", "y"), f"{design.name}-array", design.design.revision, rows)
+        assembly_faults(
+            pdf_bytes(sheets, "x", "y", "2026-11-21"), f"{design.name}-array", design.design.revision, rows
+        )
         == []
     )
     texts = [t for t in sheets[1].texts if re.fullmatch(r"\d+:\d+", t.text)]

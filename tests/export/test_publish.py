@@ -1,10 +1,12 @@
-"""All or nothing, tried with kills at every file operation, two writers, and a machine that refuses."""
+"""All or nothing, and nothing of somebody's lost: kills at every file operation, two writers, a machine that refuses."""
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,25 +14,32 @@ import tempfile
 import time
 from pathlib import Path
 
+import publish_child
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.publish import locked, new_build, published
+from tactcad.export import publish
+from tactcad.export.publish import DISCARD, KEEP, REFUSE, turn
 
 CHILD = Path(__file__).with_name("publish_child.py")
 FILES = {"a.step", "b.dxf", "sub/c.svg"}
+SCHEMA = "tactcad-test-1"
 
 
-def export(directory: Path, content: str) -> None:
-    with locked(directory) as place, new_build(place) as folder:
-        for name in FILES:
-            (folder / name).parent.mkdir(exist_ok=True)
-            (folder / name).write_text(content)
+def export(directory: Path, content: str, others: str = REFUSE, **more) -> None:
+    with turn(directory, SCHEMA, others, **more) as work:
+        work.write({name: content.encode() for name in FILES})
+
+
+def files(folder: Path) -> dict[str, str]:
+    return {p.relative_to(folder).as_posix(): p.read_text() for p in folder.rglob("*") if p.is_file()}
 
 
 def whole(directory: Path) -> str:
     """The one content of all three files."""
-    found = {p.relative_to(directory).as_posix(): p.read_text() for p in directory.rglob("*") if p.is_file()}
+    assert directory.is_dir() and not directory.is_symlink()
+    found = files(directory)
+    found.pop("manifest.json")
     assert set(found) == FILES
     assert len(set(found.values())) == 1
     return found["a.step"]
@@ -40,76 +49,321 @@ def names(folder: Path) -> set[str]:
     return {p.name for p in folder.iterdir()}
 
 
-def child(directory: Path, content: str, fatal: int = 0) -> subprocess.Popen:
-    arguments = [sys.executable, str(CHILD), str(directory), content, str(fatal)]
+def child(directory: Path, content: str, fatal: int = 0, *how: str) -> subprocess.Popen:
+    arguments = [sys.executable, str(CHILD), str(directory), content, str(fatal), *how]
     return subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_first_and_next_exports(tmp_path):
+def forked(directory: Path, content: str, fatal: int, *how: str) -> int:
+    """The same in a fork, which starts at once; returns its exit status."""
+    process = os.fork()
+    if not process:
+        status = 3
+        try:
+            publish_child.main(str(directory), content, fatal, *how)
+            status = 0
+        except CheckFailure:
+            status = 1
+        finally:
+            os._exit(status)
+    return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+
+
+@pytest.fixture(params=["exchange", "two-renames"])
+def way(request, monkeypatch) -> str:
+    """Both ways of putting a folder in its place."""
+    if request.param == "two-renames":
+        monkeypatch.setattr(publish, "_rename", lambda old, new, flag: False)
+    return request.param
+
+
+# --- an ordinary folder ---
+
+
+def test_first_and_next_exports(tmp_path, way):
     out = tmp_path / "deep" / "exports" / "macro"
     for content in "abcd":
         export(out, content)
         assert whole(out) == content
-    assert not Path(os.readlink(out)).is_absolute()
-    assert names(out.parent / ".macro.builds") == {"3", "4"}  # the current one and the one before
+        assert names(out.parent) == {"macro"}
 
 
-def test_the_folder_may_be_moved_with_its_builds(tmp_path):
-    export(tmp_path / "exports" / "macro", "a")
-    (tmp_path / "exports").rename(tmp_path / "elsewhere")
-    assert whole(tmp_path / "elsewhere" / "macro") == "a"
+@pytest.mark.parametrize("how", ["rename", "cp -a", "cp -r", "tar"])
+def test_what_was_moved_or_copied_stays_what_it_is(tmp_path, how):
+    out, other = tmp_path / "ex", tmp_path / "ex-revA"
+    export(out, "A")
+    if how == "rename":
+        out.rename(other)
+    elif how == "tar":
+        subprocess.run(["tar", "cf", "ex.tar", "ex"], cwd=tmp_path, check=True)
+    else:
+        subprocess.run([*how.split(), out, other], check=True)
+    for content in "BCD":
+        export(out, content)
+        assert whole(out) == content
+    if how == "tar":
+        (tmp_path / "there").mkdir()
+        subprocess.run(["tar", "xf", "../ex.tar"], cwd=tmp_path / "there", check=True)
+        other = tmp_path / "there" / "ex"
+    assert whole(other) == "A"
+    export(other, "E")  # and is as good as where it was made
+    assert whole(other) == "E"
 
 
-def test_a_reader_keeps_the_build_that_it_opened(tmp_path):
+def test_an_open_file_of_the_earlier_folder_stays_readable(tmp_path):
+    out = tmp_path / "macro"
+    export(out, "a" * 100_000)
+    with (out / "a.step").open() as reader:
+        begun = reader.read(10)
+        export(out, "b")
+        assert begun + reader.read() == "a" * 100_000
+
+
+def test_the_folder_keeps_its_permission_bits(tmp_path):
     out = tmp_path / "macro"
     export(out, "a")
-    opened = published(out).current
+    out.chmod(0o2750)
     export(out, "b")
-    assert whole(opened) == "a"
-    assert whole(out) == "b"
+    assert out.stat().st_mode & 0o7777 == 0o2750
 
 
 def test_an_exception_inside_changes_nothing(tmp_path):
     out = tmp_path / "macro"
     export(out, "a")
-    with pytest.raises(CheckFailure, match="not closed"), locked(out) as place, new_build(place) as folder:
-        (folder / "a.step").write_text("b")
+    with pytest.raises(CheckFailure, match="not closed"), turn(out, SCHEMA) as work:
+        (work.folder / "a.step").write_text("b")
         raise CheckFailure("contour not closed")
     assert whole(out) == "a"
-    assert names(tmp_path / ".macro.builds") == {"1"}
+    assert names(tmp_path) == {"macro"}
 
 
-def test_killed_before_every_single_file_operation(tmp_path):
-    """One run dies before its first operation, the next before its second, until one has lived."""
-    out = tmp_path / "macro"
-    export(out, "very old")
+# --- what others put there ---
+
+
+def fill_in(out: Path) -> None:
+    (out / "a.step").write_text("measured")
+
+
+def add(out: Path) -> None:
+    (out / "sub" / "notes.txt").write_text("ten years")
+
+
+def add_folder(out: Path) -> None:
+    (out / "photos").mkdir()
+
+
+def link(out: Path) -> None:
+    shutil.copy(out / "a.step", out.parent / "same")
+    (out / "a.step").unlink()
+    (out / "a.step").symlink_to("../same")
+
+
+def pipe(out: Path) -> None:
+    (out / "b.dxf").unlink()
+    os.mkfifo(out / "b.dxf")
+
+
+def protect_file(out: Path) -> None:
+    (out / "a.step").chmod(0o444)
+
+
+def protect(out: Path) -> None:
+    out.chmod(0o555)
+
+
+def edit_manifest(out: Path) -> None:
+    """Even so that it says what is there."""
+    text = (out / "manifest.json").read_text()
+    (out / "manifest.json").write_text(text.replace('"a.step"', '"A.step"'))
+    (out / "a.step").rename(out / "A.step")
+
+
+def without_manifest(out: Path) -> None:
+    (out / "manifest.json").unlink()
+
+
+def of_another_kind(out: Path) -> None:
+    shutil.rmtree(out)
+    with turn(out, "tactcad-other-1") as work:
+        work.write({"report.html": b"an evening's work"})
+
+
+MEDDLINGS = {
+    fill_in: "a.step (changed)",
+    add: "sub/notes.txt (added)",
+    add_folder: "photos (added)",
+    link: "a.step (changed)",
+    pipe: "b.dxf (changed)",
+    protect_file: "a.step (write-protected)",
+    protect: "the folder (write-protected)",
+    edit_manifest: "manifest.json (changed)",
+    without_manifest: "a.step (added)",
+    of_another_kind: "report.html (added)",
+}
+
+
+def tree(folder: Path) -> dict[str, tuple]:
+    """Everything below by path: its mode, and a file's content or a link's target."""
+    found = {}
+    for path in [folder, *sorted(folder.rglob("*"))]:
+        state = path.lstat()
+        held = os.readlink(path) if path.is_symlink() else path.read_bytes() if path.is_file() else ""
+        found[path.relative_to(folder).as_posix()] = (state.st_mode, held)
+    return found
+
+
+@pytest.mark.parametrize("meddle", MEDDLINGS, ids=lambda m: m.__name__)
+def test_what_somebody_did_in_the_folder_is_refused_named_kept_or_discarded(tmp_path, meddle, capsys, way):
+    out = tmp_path / "ex"
     export(out, "old")
-    before, outcomes = "old", []
-    for fatal in range(1, 80):
-        run = child(out, f"new {fatal}", fatal)
-        run.communicate()
-        assert whole(out) in (before, f"new {fatal}")
-        outcomes.append(whole(out) == f"new {fatal}")
+    meddle(out)
+    before = tree(tmp_path)
+    with pytest.raises(InputError, match="--keep.*--discard") as refusal:
+        export(out, "new")
+    assert MEDDLINGS[meddle] in str(refusal.value)
+    assert tree(tmp_path) == before
+    shutil.copytree(
+        tmp_path, tmp_path.with_name(f"{tmp_path.name}-copy"), symlinks=True, copy_function=copied
+    )
+
+    export(out, "new", KEEP)
+    assert whole(out) == "new" and "kept as" in capsys.readouterr().err
+    assert tree(out.with_name("ex-kept-1")) == {
+        k.removeprefix("ex").lstrip("/") or ".": v
+        for k, v in before.items()
+        if k == "ex" or k.startswith("ex/")
+    }
+
+    out = tmp_path.with_name(f"{tmp_path.name}-copy") / "ex"
+    export(out, "new", DISCARD)
+    assert whole(out) == "new" and MEDDLINGS[meddle] in capsys.readouterr().err
+    assert "ex-kept-1" not in names(out.parent)
+
+
+def copied(source: str, target: str) -> None:
+    if Path(source).is_fifo():
+        os.mkfifo(target)
+    else:
+        shutil.copy2(source, target, follow_symlinks=False)
+
+
+def test_names_of_kept_folders_are_never_taken_twice(tmp_path, way):
+    out = tmp_path / "ex"
+    (tmp_path / "ex-kept-2").symlink_to("nowhere")
+    for content in "abc":
+        export(out, content)
+        fill_in(out)
+        export(out, content.upper(), KEEP)
+    assert {n: (tmp_path / n / "b.dxf").read_text() for n in names(tmp_path) - {"ex", "ex-kept-2"}} == {
+        "ex-kept-1": "a",
+        "ex-kept-3": "b",
+        "ex-kept-4": "c",
+    }
+
+
+def test_what_is_missing_is_nothing_to_lose(tmp_path):
+    export(tmp_path / "ex", "a")
+    (tmp_path / "ex" / "a.step").unlink()
+    shutil.rmtree(tmp_path / "ex" / "sub")
+    export(tmp_path / "ex", "b")
+    assert whole(tmp_path / "ex") == "b"
+
+
+@pytest.mark.parametrize("others", [REFUSE, KEEP, DISCARD])
+def test_what_appears_while_the_new_folder_is_made_is_kept_and_said(tmp_path, way, others):
+    out = tmp_path / "ex"
+    export(out, "old")
+    if others != REFUSE:
+        fill_in(out)
+    meanwhile = pytest.raises(
+        CheckFailure, match=r"meanwhile is kept as .*ex-kept-1 for sub/notes.txt \(added\)$"
+    )
+    with meanwhile, turn(out, SCHEMA, others) as work:
+        add(out)
+        work.write({name: b"new" for name in FILES})
+    assert whole(out) == "new"
+    kept = files(tmp_path / "ex-kept-1")
+    assert kept["sub/notes.txt"] == "ten years" and kept["b.dxf"] == "old"
+    assert names(tmp_path) == {"ex", "ex-kept-1"}
+
+
+def test_a_folder_moved_away_meanwhile(tmp_path, way):
+    out = tmp_path / "ex"
+    export(out, "A")
+    with turn(out, SCHEMA) as work:
+        out.rename(tmp_path / "ex-revA")
+        work.write({name: b"B" for name in FILES})
+    assert whole(out) == "B" and whole(tmp_path / "ex-revA") == "A"
+
+
+# --- kills ---
+
+
+def killed_everywhere(tmp_path: Path, *how: str, meddled: bool = False) -> tuple[int, int]:
+    """One run dies before its first operation, the next before its second, until one has lived.
+
+    After each the next run settles what it left: DIR is whole, and what somebody wrote is in DIR or kept. Returns how many
+    died with the earlier folder standing and with the new one.
+    """
+    out, stood = tmp_path / "macro", []
+    export(out, "old")
+    for fatal in range(1, 200):
         before = whole(out)
-        if run.returncode == 0:
+        status = forked(out, f"new {fatal}", fatal, *how, *(["meddled"] if meddled else []))
+        notes = list(tmp_path.rglob("meanwhile.txt"))
+        assert len(notes) <= 1 and all(note.read_text() == "of somebody" for note in notes)
+        if "two-renames" not in how:
+            # what stands is the earlier or the new one, with what somebody wrote into it
+            assert {f: t for f, t in files(out).items() if f not in ("manifest.json", "meanwhile.txt")} in (
+                dict.fromkeys(FILES, before),
+                dict.fromkeys(FILES, f"new {fatal}"),
+            )
+        if status != -signal.SIGKILL:
+            assert status == (1 if meddled else 0)
             break
-        assert run.returncode == -signal.SIGKILL
-    assert run.returncode == 0
-    assert outcomes.count(False) > 15  # died before the switch
-    assert outcomes.count(True) > 3  # died after it, while sweeping
-    assert len(names(tmp_path / ".macro.builds")) == 2
-    assert names(tmp_path) == {"macro", ".macro.builds", ".macro.lock"}
+        settle(out, bool(notes))
+        assert whole(out) in (before, f"new {fatal}")
+        stood.append(whole(out) == f"new {fatal}")
+        for kept in tmp_path.glob("macro-kept-*"):
+            shutil.rmtree(kept)
+        assert names(tmp_path) == {"macro"}
+    else:
+        pytest.fail("never lived")
+    return stood.count(False), stood.count(True)
+
+
+def settle(out: Path, noted: bool) -> None:
+    """What the next run does first; it finds what somebody wrote in DIR, or in what the killed one left."""
+    try:
+        with turn(out, SCHEMA):
+            pass
+    except InputError:  # in DIR: it refuses, and the user moves it
+        (out / "meanwhile.txt").unlink()
+        return settle(out, False)
+    except CheckFailure as error:
+        assert noted and "kept as" in str(error) and "meanwhile.txt (added)" in str(error)
+        (kept,) = out.parent.glob("macro-kept-*")
+        assert (kept / "meanwhile.txt").read_text() == "of somebody"
+    else:
+        assert not noted or list(out.parent.glob("macro-kept-*/meanwhile.txt"))
+
+
+@pytest.mark.parametrize("how", ["exchange", "two-renames"])
+@pytest.mark.parametrize("meddled", [False, True], ids=["", "meddled"])
+def test_killed_before_every_single_file_operation(tmp_path, how, meddled):
+    earlier, new = killed_everywhere(tmp_path, how, meddled=meddled)
+    assert earlier > 15  # died before the exchange
+    assert new > 3  # died after it, while the earlier folder went
 
 
 def test_killed_on_the_very_first_export(tmp_path):
-    for fatal in range(1, 40):
+    for fatal in range(1, 80):
         out = tmp_path / str(fatal) / "macro"
-        run = child(out, "new", fatal)
-        run.communicate()
+        status = forked(out, "new", fatal)
         assert not os.path.lexists(out) or whole(out) == "new"
-        if run.returncode == 0:
+        if status == 0:
             break
-    assert run.returncode == 0
+    assert status == 0
 
 
 def test_killed_at_random_moments(tmp_path):
@@ -117,13 +371,52 @@ def test_killed_at_random_moments(tmp_path):
     export(out, "old")
     moment = random.Random(4)
     before = "old"
-    for turn in range(8):
-        run = child(out, f"new {turn}")
+    for turn_no in range(8):
+        run = child(out, f"new {turn_no}")
         time.sleep(moment.uniform(0.02, 0.12))
         run.kill()
         run.communicate()
-        assert whole(out) in (before, f"new {turn}")
+        assert whole(out) in (before, f"new {turn_no}")
         before = whole(out)
+    export(out, "last")
+    assert names(tmp_path) == {"macro"}
+
+
+def test_what_a_killed_run_left_is_named_although_the_next_refuses(tmp_path):
+    out, said = tmp_path / "macro", []
+    export(out, "a")
+    left = tmp_path / ".macro.tactcad-abcdefgh"
+    left.mkdir()
+    (left / "written-by-tactcad").write_text("1")
+    out.rename(left / "finished")
+    add(left / "finished")
+    with pytest.raises(CheckFailure, match="not closed"), turn(out, SCHEMA, say=said.append):
+        raise CheckFailure("contour not closed")
+    (line,) = said
+    assert "macro-kept-1 for sub/notes.txt (added)" in line
+    assert names(tmp_path) == {"macro-kept-1"}
+
+
+def test_interrupted_while_the_earlier_folder_is_looked_at(tmp_path, monkeypatch):
+    """Ctrl-C between exchange and look: what somebody wrote is not removed with our own folder."""
+    out = tmp_path / "ex"
+    export(out, "old")
+    real = publish.Work.settle
+
+    def settle(work, folder):
+        monkeypatch.setattr(publish.Work, "settle", real)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), turn(out, SCHEMA) as work:
+        add(out)
+        monkeypatch.setattr(publish.Work, "settle", settle)
+        work.write({name: b"new" for name in FILES})
+    assert whole(out) == "new"
+    assert (tmp_path / "ex-kept-1" / "sub" / "notes.txt").read_text() == "ten years"
+    assert names(tmp_path) == {"ex", "ex-kept-1"}
+
+
+# --- writers at once ---
 
 
 def test_two_writers_take_turns(tmp_path):
@@ -133,38 +426,68 @@ def test_two_writers_take_turns(tmp_path):
         run.communicate()
         assert run.returncode == 0
     assert whole(out) in "abcd"
-    assert len(names(tmp_path / ".macro.builds")) == 2
+    assert names(tmp_path) == {"macro"}
 
 
 def test_who_waits_says_for_whom_and_gives_up_in_the_end(tmp_path):
     out = tmp_path / "macro"
     said = []
     gives_up = pytest.raises(CheckFailure, match=f"process {os.getpid()}.*nothing was changed")
-    with locked(out), gives_up, locked(out, wait=0.25, say=said.append):
+    with turn(out, SCHEMA), gives_up, turn(out, SCHEMA, wait=0.25, say=said.append):
         pass
     assert len(said) == 1
     assert f"process {os.getpid()}" in said[0]
 
 
-def test_the_lock_goes_with_a_killed_process(tmp_path):
+def test_the_turn_goes_with_a_killed_process(tmp_path):
     out = tmp_path / "macro"
-    script = (
-        "import time; from tactcad.export.publish import locked\n"
-        f"with locked({str(out)!r}): print(1, flush=True); time.sleep(60)"
-    )
-    holder = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE)
-    holder.stdout.readline()
+    holder = child(out, "never", 0, "hanging")
+    assert holder.stdout.readline() == "hanging\n"
     holder.kill()
     holder.communicate()
-    with locked(out, wait=0.0):
-        pass
+    export(out, "a", wait=0.0)
+    assert whole(out) == "a" and names(tmp_path) == {"macro"}
 
 
-def test_an_empty_folder_is_replaced(tmp_path):
+# --- foreign things of like names ---
+
+
+FOREIGN = (
+    ".foo.builds",
+    ".foo.lock",
+    ".foo.tactcad-abcdefgh",
+    ".foo.tactcad-short",
+    ".foo.tactcad-12345678.part",
+)
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+@pytest.mark.parametrize("kind", ["folder", "file", "link", "link to a folder"])
+def test_foreign_siblings_are_not_touched(tmp_path, name, kind):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (elsewhere / "thesis.txt").write_text("ten years")
+    (elsewhere / "written-by-tactcad").write_text("not with this name")
+    place = tmp_path / name
+    if kind == "folder":
+        place.mkdir()
+        (place / "thesis.txt").write_text("ten years")
+    elif kind == "file":
+        place.write_text("ten years")
+    else:
+        place.symlink_to("elsewhere" if kind == "link to a folder" else "elsewhere/thesis.txt")
+    before = tree(tmp_path)
+    for content in "ab":
+        export(tmp_path / "foo", content)
+    shutil.rmtree(tmp_path / "foo")
+    assert tree(tmp_path) == before
+
+
+def test_an_empty_folder_is_replaced(tmp_path, way):
     out = tmp_path / "macro"
     out.mkdir()
     export(out, "a")
-    assert whole(out) == "a"
+    assert whole(out) == "a" and names(tmp_path) == {"macro"}
 
 
 def folder_of_somebody(path: Path) -> None:
@@ -181,37 +504,98 @@ def file_of_somebody(path: Path) -> None:
     path.write_text("ten years")
 
 
-@pytest.mark.parametrize("make", [folder_of_somebody, link_of_somebody, file_of_somebody])
-def test_what_is_not_ours_is_refused_and_kept(tmp_path, make):
+def earlier_tactcads(path: Path) -> None:
+    folder_of_somebody(path.with_name(".macro.builds"))
+    path.symlink_to(".macro.builds/7")
+
+
+@pytest.mark.parametrize("make", [folder_of_somebody, link_of_somebody, file_of_somebody, earlier_tactcads])
+@pytest.mark.parametrize("others", [REFUSE, KEEP])
+def test_what_is_not_ours_is_refused_or_kept(tmp_path, make, others):
     out = tmp_path / "macro"
     make(out)
     before = sorted(tmp_path.rglob("*"))
-    with pytest.raises(InputError, match="macro: is a .*legal: a new name"):
-        export(out, "a")
+    if make is folder_of_somebody and others == KEEP:
+        export(out, "a", others)
+        assert files(tmp_path / "macro-kept-1") == {"thesis.txt": "ten years"}
+        return
+    with pytest.raises(InputError, match="macro: .*legal: "):
+        export(out, "a", others)
     assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_an_export_inside_an_export_is_refused(tmp_path):
     export(tmp_path / "macro", "a")
-    with pytest.raises(InputError, match="inside an earlier export"):
+    with pytest.raises(InputError, match="lies inside"):
         export(tmp_path / "macro" / "again", "b")
     assert whole(tmp_path / "macro") == "a"
 
 
 def test_the_root_folder_is_refused():
     with pytest.raises(InputError, match="cannot be replaced"):
-        published("/")
+        publish.looked_at("/", SCHEMA)
+
+
+@pytest.mark.parametrize(
+    "manifest",
+    [
+        "[" * 100_000,
+        "null",
+        "{}",
+        '{"schema": "tactcad-test-1"}',
+        '{"schema": "tactcad-test-1", "files": [{"path": 1}], "seal": 1}',
+        "\0",
+    ],
+)
+def test_a_manifest_of_somebody_makes_nothing_ours(tmp_path, manifest):
+    out = tmp_path / "macro"
+    out.mkdir()
+    (out / "manifest.json").write_text(manifest)
+    with pytest.raises(InputError, match=r"manifest.json \(changed\)"):
+        export(out, "a")
+    assert (out / "manifest.json").read_text() == manifest
+
+
+def test_a_sealed_manifest_that_leads_out_of_the_folder_reaches_nothing(tmp_path):
+    from tactcad.export.contents import sealed, sha256_of
+
+    (tmp_path / "precious").write_text("keep")
+    out = tmp_path / "macro"
+    out.mkdir()
+    rows = [
+        {"path": path, "sha256": sha256_of(b"keep")} for path in ("../precious", str(tmp_path / "precious"))
+    ]
+    (out / "manifest.json").write_bytes(sealed({"schema": SCHEMA, "files": rows}))
+    export(out, "a")
+    assert whole(out) == "a" and (tmp_path / "precious").read_text() == "keep"
+
+
+def test_a_manifest_lists_every_file_by_its_digest(tmp_path):
+    export(tmp_path / "macro", "a")
+    rows = json.loads((tmp_path / "macro" / "manifest.json").read_text())["files"]
+    checked = subprocess.run(
+        ["sha256sum", "--strict", "-c"],
+        input="".join(f"{row['sha256']}  {row['path']}\n" for row in rows),
+        cwd=tmp_path / "macro",
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert checked.stdout.count(": OK") == len(FILES)
+
+
+# --- a machine that refuses ---
 
 
 def test_a_full_disk(tmp_path):
     out = tmp_path / "macro"
     export(out, "a")
     refused = pytest.raises(CheckFailure, match="No space left on device.*nothing was changed")
-    with refused, locked(out) as place, new_build(place) as folder:
-        (folder / "a.step").symlink_to("/dev/full")  # the kernel's own full disk
-        (folder / "a.step").write_text("b" * 100_000)
+    with refused, turn(out, SCHEMA) as work:
+        (work.folder / "a.step").symlink_to("/dev/full")  # the kernel's own full disk
+        work.write({"a.step": b"b" * 100_000})
     assert whole(out) == "a"
-    assert names(tmp_path / ".macro.builds") == {"1"}
+    assert names(tmp_path) == {"macro"}
 
 
 def test_a_file_larger_than_allowed(tmp_path):
@@ -224,7 +608,7 @@ def test_a_file_larger_than_allowed(tmp_path):
             export(out, "b" * 2000)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    assert whole(out) == "a"
+    assert whole(out) == "a" and names(tmp_path) == {"macro"}
 
 
 def test_a_parent_that_is_a_file(tmp_path):
@@ -233,19 +617,20 @@ def test_a_parent_that_is_a_file(tmp_path):
         export(tmp_path / "file" / "macro", "a")
 
 
-def test_a_name_that_is_too_long(tmp_path):
+@pytest.mark.parametrize("length", [252, 300])
+def test_a_name_that_is_too_long(tmp_path, length):
     with pytest.raises(InputError, match="File name too long"):
-        export(tmp_path / ("x" * 252), "a")
+        export(tmp_path / ("x" * length), "a")
 
 
 READ_ONLY = """
 import os, sys
 from tactcad.design.messages import InputError
-from tactcad.export.publish import locked, new_build
+from tactcad.export.publish import turn
 if os.geteuid() == 0:
     os.seteuid(65534)  # root may write everywhere; nobody may not
 try:
-    with locked(sys.argv[1]) as place, new_build(place): pass
+    with turn(sys.argv[1], 's'): pass
 except InputError as error:
     sys.exit("refused: " + str(error))
 """

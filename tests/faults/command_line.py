@@ -6,7 +6,6 @@ read with nothing but json and hashlib, agrees with every file below it.
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import json
 import os
@@ -75,6 +74,14 @@ def tactcad_run(
     )
 
 
+def running(process: int) -> bool:
+    """Whether it lives: an ended one may wait for whoever inherits it."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 def refused(done: subprocess.CompletedProcess[bytes], status: int = 2) -> str:
     """The one line that a refusal says. No traceback, nothing on standard output."""
     said = done.stderr.decode("utf-8", "backslashreplace")
@@ -100,13 +107,9 @@ def assert_sound(folder: Path) -> None:
 
 
 def assert_tidy(out: Path, work: Path) -> None:
-    """Beside the export lie its builds, finished ones only, and a lock that nobody holds; nothing in other places."""
-    beside = {p.name for p in out.parent.iterdir()}
-    assert beside == {out.name, f".{out.name}.builds", f".{out.name}.lock"}
-    builds = {p.name for p in (out.parent / f".{out.name}.builds").iterdir()}
-    assert len(builds) <= 2 and all(name.isdecimal() for name in builds)
-    with (out.parent / f".{out.name}.lock").open("rb") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    """Beside the export lies nothing, nor in other places."""
+    assert [p.name for p in out.parent.iterdir()] == [out.name]
+    assert out.is_dir() and not out.is_symlink()
     assert not list((work / "tmp").iterdir())
     assert not list((work / "cache").rglob(".new-*"))
 

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import MODULE, assert_sound, assert_tidy, contents, environment, tactcad_run
+from command_line import MODULE, assert_sound, assert_tidy, contents, environment, running, tactcad_run
 
 # TACTCAD_SEED repeats a run's moments.
 SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
@@ -95,14 +95,6 @@ def test_killed_while_helpers_draw(bench, work):
     assert_tidy(work / "exports" / "out", work)
 
 
-def running(process: int) -> bool:
-    """Whether it lives: an ended one may wait for whoever inherits it."""
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
-
-
 def test_killed_among_others_that_wait(bench, work):
     """The lock goes with its process: those who wait for a killed export take over."""
     env = environment(work)
@@ -113,9 +105,8 @@ def test_killed_among_others_that_wait(bench, work):
         env=env | {"TACTCAD_CACHE": str(work / "cold")},
         stderr=subprocess.DEVNULL,
     ) as first:
-        lock = work / "exports" / ".out.lock"
         until = time.monotonic() + 60
-        while not (lock.exists() and lock.read_text()) and time.monotonic() < until:
+        while not list(work.glob("exports/.out.tactcad-*/making")) and time.monotonic() < until:
             time.sleep(0.01)
         with subprocess.Popen(
             [*MODULE, "export", "B.toml", *arguments], cwd=work, env=env, stderr=subprocess.PIPE, text=True

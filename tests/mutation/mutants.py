@@ -306,7 +306,9 @@ CALLERS = {
     "checks/run.py": r"^report\.run$",
     "cli/check.py": r"^report\.run$",
     "export/pipeline.py": r"^(manifests\.)?check_|^bom\.check_",
-    "export/products.py": r"^(dxf|picture)\.check_|^_compare_box$",
+    "export/products.py": r"^_compare_box$",
+    "export/shapes.py": r"^picture\.check_",
+    "export/dxf.py": r"^check_dxf$",
     "export/step.py": r"^_check_(part|scene)$",
     "drawing/sheets.py": r"_faults$",
     "drawing/assembly_file.py": r"_faults$",
@@ -371,6 +373,8 @@ ALSO = {
     "cli/check.py": ("tests/export/test_golden.py", "tests/checks/test_check_report.py"),
     "export/pipeline.py": ("tests/export/test_pipeline.py", "tests/faults/test_machine.py"),
     "export/products.py": ("tests/export/test_pipeline.py",),
+    "export/shapes.py": ("tests/export/test_pipeline.py",),
+    "export/dxf.py": ("tests/export/test_pipeline.py",),
     "export/manifest.py": ("tests/export/test_manifest.py", "tests/faults/test_other_files.py"),
 }
 

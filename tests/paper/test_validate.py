@@ -5,15 +5,13 @@ end.
 from __future__ import annotations
 
 import json
-import os
 import re
 from pathlib import Path
 
 import pytest
 
 from tactcad.cli.main import main
-from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import folder
+from tactcad.design.messages import InputError
 from tactcad.paper import examples, validation
 from tactcad.paper import report as reporting
 
@@ -70,56 +68,6 @@ def test_validate_writes_a_folder_and_replaces_it(tmp_path, capsys, monkeypatch,
     assert "9. Inversion" in capsys.readouterr().out
     assert main(["validate", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["schema"] == "tactcad-validation-1"
-
-
-def test_a_folder_of_others_is_left_alone(tmp_path):
-    (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(InputError, match="not an earlier report's"):
-        folder.replace(tmp_path, {"report.json": b'{"schema": "s"}'}, "s")
-    assert [p.name for p in tmp_path.iterdir()] == ["notes.txt"]
-    (tmp_path / "report.json").write_text('{"schema": "s"}')
-    with pytest.raises(InputError, match="notes.txt"):
-        folder.replace(tmp_path, {"report.json": b"{}"}, "s")
-    with pytest.raises(InputError, match="not a folder"):
-        folder.replace(tmp_path / "notes.txt", {"report.json": b"{}"}, "s")
-
-
-@pytest.mark.parametrize("exchange", [True, False])
-def test_a_failed_write_leaves_the_earlier_report(tmp_path, monkeypatch, exchange):
-    out = tmp_path / "r"
-    folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": b"old"}, "s")
-    if not exchange:
-        monkeypatch.setattr(folder, "_exchange", lambda a, b: False)
-    real = os.rename
-    failing = {"on": True}
-
-    def rename(a, b):
-        if failing["on"] and str(b) == str(out):
-            failing["on"] = False
-            raise OSError(28, "No space left on device")
-        real(a, b)
-
-    monkeypatch.setattr(os, "rename", rename)
-    if exchange:  # the disk is full while the new one is written
-        monkeypatch.setattr(
-            Path,
-            "write_bytes",
-            lambda self, data: (_ for _ in ()).throw(OSError(28, "No space left on device")),
-        )
-    with pytest.raises(CheckFailure, match="No space left"):
-        folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": b"new"}, "s")
-    assert (out / "a/b.json").read_bytes() == b"old" and [p.name for p in tmp_path.iterdir()] == ["r"]
-
-
-def test_exchange_and_moving_aside_both_replace(tmp_path, monkeypatch):
-    for exchange in (True, False):
-        out = tmp_path / f"r{exchange}"
-        if not exchange:
-            monkeypatch.setattr(folder, "_exchange", lambda a, b: False)
-        for content in (b"old", b"new"):
-            folder.replace(out, {"report.json": b'{"schema": "s"}', "a/b.json": content}, "s")
-        assert (out / "a/b.json").read_bytes() == b"new"
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["rFalse", "rTrue"]
 
 
 def test_bad_table_exits_2_and_writes_nothing(tmp_path, capsys):

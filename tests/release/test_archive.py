@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import resource
 import signal
@@ -13,8 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from tactcad.design.files import whole_file
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.release.archive import MANIFEST, archive_bytes, replaced_content, written_beside
+from tactcad.release.archive import MANIFEST, archive_bytes, replaced_content
 
 CHILD = Path(__file__).with_name("archive_child.py")
 FILES = {"README.txt": b"read me", "dxf/a_A.dxf": b"0\nEOF\n" * 500, "step/ä_A.step": b"\x00\xff"}
@@ -94,7 +96,7 @@ def test_a_reader_keeps_the_file_that_it_opened(tmp_path):
     target.write_bytes(b"old" * 1000)
     with target.open("rb") as reader:
         assert reader.read(3) == b"old"
-        with written_beside(target, print) as part:
+        with whole_file(target) as part:
             part.write_bytes(b"new")
         assert reader.read() == b"old" * 999
     assert target.read_bytes() == b"new"
@@ -103,7 +105,7 @@ def test_a_reader_keeps_the_file_that_it_opened(tmp_path):
 def test_what_fails_inside_changes_nothing(tmp_path):
     target = tmp_path / "a.zip"
     target.write_bytes(b"old")
-    with pytest.raises(CheckFailure), written_beside(target, print) as part:
+    with pytest.raises(CheckFailure), whole_file(target) as part:
         part.write_bytes(b"new")
         raise CheckFailure("does not read back")
     assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == {"a.zip": b"old"}
@@ -118,7 +120,7 @@ def test_a_full_disk(tmp_path):
     try:
         with (
             pytest.raises(CheckFailure, match="File too large.*nothing was changed"),
-            written_beside(target, print) as part,
+            whole_file(target) as part,
         ):
             part.write_bytes(b"n" * 5000)
     finally:
@@ -130,11 +132,11 @@ READ_ONLY = """
 import os, sys
 from pathlib import Path
 from tactcad.design.messages import InputError
-from tactcad.release.archive import written_beside
+from tactcad.design.files import whole_file
 if os.geteuid() == 0:
     os.seteuid(65534)  # root may write everywhere; nobody may not
 try:
-    with written_beside(Path(sys.argv[1]), print): pass
+    with whole_file(Path(sys.argv[1])): pass
 except InputError as error:
     sys.exit("refused: " + str(error))
 """
@@ -157,19 +159,25 @@ def test_a_read_only_folder():
 def test_places_that_cannot_be(where, tmp_path):
     (tmp_path / "file").write_text("")
     (tmp_path / "folder").mkdir()
-    with (
-        pytest.raises(InputError, match="cannot be written|is a folder"),
-        written_beside(tmp_path / where, print),
-    ):
+    with pytest.raises(InputError, match="cannot be written|not a file"), whole_file(tmp_path / where):
         pytest.fail("let in")
 
 
-def test_a_link_where_the_part_file_goes_is_not_followed(tmp_path):
+@pytest.mark.parametrize("name", [".a.zip.part", ".a.zip.tactcad-abcdefgh.part", ".a.zip.tactcad-short.part"])
+def test_files_of_others_beside_stay(name, tmp_path):
+    """A link of our form is not followed; a file of our form that is held, and names of other forms, stay."""
     (tmp_path / "precious").write_text("keep")
-    (tmp_path / ".a.zip.part").symlink_to("precious")
-    with pytest.raises(InputError), written_beside(tmp_path / "a.zip", print) as part:
-        part.write_text("x")
+    (tmp_path / name).symlink_to("precious")
+    other = tmp_path / ".a.zip.tactcad-held0000.part"
+    with other.open("w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        with whole_file(tmp_path / "a.zip") as part:
+            part.write_text("x")
     assert (tmp_path / "precious").read_text() == "keep"
+    assert (tmp_path / name).is_symlink() and other.exists()
+    with whole_file(tmp_path / "a.zip"):
+        pass
+    assert not other.exists()  # nobody holds it any more
 
 
 def test_what_an_earlier_zip_has_otherwise_is_named(tmp_path):

@@ -18,7 +18,7 @@ WITNESSES = {
     "cart_cannot_tip": {"cart.wheel_base": 35.0},
     "holder_on_cart": {"cart.width": 47.0},
     "cart_clears_post": {"cart.width": 102.0},
-    "holes_under_sample": {"holder.rings": 2.5},
+    "holes_under_sample": {"holder.rings": 12},
     "vacuum_holds": {"holder.vacuum": 20.0},
     "plenum_takes_port": {"holder.plenum_depth": 6.0},
     "seal_fits_holder": {"holder.vacuum_diameter": 29.9, "sample.side": 32.0, "holder.margin": 3.6},

@@ -15,7 +15,7 @@ from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
 from tactcad.drawing import guide
-from tactcad.export.pipeline import export
+from tactcad.export.pipeline import ExportOptions, export
 from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
 from tactcad.parts.designs import load
@@ -67,7 +67,7 @@ def test_every_rig_part_is_the_solid_that_its_description_says(name):
 def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, tmp_path, monkeypatch):
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
     design = load("smallest-bearing")
-    done = export(design, [scene], tmp_path / "out", progress(StringIO()))
+    done = export(design, ExportOptions((scene,)), tmp_path / "out", progress(StringIO()))
     assert sorted(done.built) == sorted(p.part_no for p in make_scene(design, scene).parts)
     bill = json.loads((tmp_path / f"out/bom-{scene}.json").read_text())["rows"]
     assert sum(row["qty"] for row in bill if row["has_solid"]) == len(make_scene(design, scene).placements)
@@ -78,7 +78,7 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
         if p.process == "wire-cut" or p.part_no.removeprefix("smallest-bearing-") in PLATES
     }
     assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
-    again = export(design, [scene], tmp_path / "out", progress(StringIO()))
+    again = export(design, ExportOptions((scene,)), tmp_path / "out", progress(StringIO()))
     assert (again.made, again.built) == ((), ())
 
 
@@ -331,7 +331,7 @@ def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
     sizes, masses = {}, {}
     for detail in ("full", "envelope"):
         out = tmp_path / detail
-        export(design, ["sample-stiffness"], out, progress(StringIO()), detail=detail)
+        export(design, ExportOptions(("sample-stiffness",), detail=detail), out, progress(StringIO()))
         (step,) = out.glob("step/smallest-bearing-sample-stiffness_*.step")
         sizes[detail] = step.stat().st_size
         rows = json.loads((out / "bom-sample-stiffness.json").read_text())["rows"]

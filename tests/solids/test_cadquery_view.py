@@ -13,7 +13,8 @@ import pytest
 from tactcad.checks.interference import check_interference
 from tactcad.design.messages import InputError
 from tactcad.drawing import picture
-from tactcad.export import products, step
+from tactcad.export import shapes as shapes_of
+from tactcad.export import step
 from tactcad.export.cache import Cache
 from tactcad.export.step_text import Header
 from tactcad.parts.description import Material, Purchase
@@ -71,7 +72,8 @@ def test_the_assembly_has_the_scenes_names_colours_and_places(macro_scene, whole
 
 
 def test_cadquerys_own_step_export_has_our_colours(macro_scene, whole, tmp_path):
-    """Written by CadQuery, read as text: the colours are the descriptions', in sRGB as every STEP reader takes them."""
+    """Written by CadQuery, read as text: the colours are the descriptions', in sRGB as every STEP reader
+    takes them."""
     import re
 
     path = tmp_path / "cq.step"
@@ -112,7 +114,8 @@ def test_a_cadquery_model_becomes_a_bought_part(bought, tmp_path):
 
 
 def test_it_stands_in_a_scene_with_all_that_comes_of_it(bought, macro_scene, macro_shapes):
-    """Placed on the carrier: interference, STEP, bill of materials, CadQuery's view and pictures all know it."""
+    """Placed on the carrier: interference, STEP, bill of materials, CadQuery's view and pictures all know
+    it."""
     carrier = next(p for p in macro_scene.placements if p.designator == "CA1")
     top = carrier.origin[2] + carrier.part.body.thickness
     placement = Placement("PL1", bought, (0.0, 0.0, top))
@@ -138,13 +141,13 @@ def test_it_stands_in_a_scene_with_all_that_comes_of_it(bought, macro_scene, mac
 def test_a_picture_with_it_shows_it_whole(bought, macro_scene, tmp_path):
     """A model that stands out of everything else: the picture is checked against its extent too."""
     placements = (*macro_scene.placements, Placement("PL1", bought, (0.0, 0.0, 60.0)))
-    shapes = products.Shapes(Cache(tmp_path / "cache"), "test")
-    drawn = products._picture(placements, "front", shapes, "t", "d").decode()
+    shapes = shapes_of.Shapes(Cache(tmp_path / "cache"), "test")
+    drawn = shapes_of.picture_bytes(placements, "front", shapes, "t", "d").decode()
     height = float(drawn.split('viewBox="0 0 ')[1].split('"')[0].split()[1]) - 2 * picture.MARGIN
     lowest = min(p.origin[2] for p in macro_scene.placements) - 2.0  # the pads
     assert height == pytest.approx(60 + 9.5 - lowest, abs=0.1)
     alone = (Placement("PL1", bought),)
-    assert products._picture(alone, "oblique", shapes, "t", "d")
+    assert shapes_of.picture_bytes(alone, "oblique", shapes, "t", "d")
 
 
 def test_what_is_not_one_solid_is_refused(tmp_path):

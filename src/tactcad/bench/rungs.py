@@ -9,6 +9,7 @@ import numpy as np
 from tactcad.fit import fit_samples
 from tactcad.fit.fit_samples import Columns, draw_box, section
 from tactcad.mechanics import ladder
+from tactcad.mechanics.register import BY_NAME
 from tactcad.paper.report import sig
 
 from . import tables, truth
@@ -19,16 +20,6 @@ from .timing import interleaved
 TITLE = "Rungs of the model ladder"
 QUESTION = "How wrong is each rung against converged finite elements, and what does it cost?"
 GOAL_MILLION = 0.3  # s for a million designs by a closed form on one core
-
-WHEN = {
-    "short": "orders of magnitude, by hand",
-    "beam": "to see what beams alone explain",
-    "section": "notches with r/t far above 1",
-    "plane": "thin sheet; to compare with plane models",
-    "solid": "design: the default",
-    "fem-plane": "a contour of your own, in plane stress",
-    "fem-solid": "the reference",
-}
 
 
 def measure(plan: Plan) -> dict:
@@ -41,7 +32,7 @@ def measure(plan: Plan) -> dict:
     ]
     seconds = _times(plan)
     for row in rows:
-        row |= seconds[row["rung"]] | {"when": WHEN[row["rung"]]}
+        row |= seconds[row["rung"]] | {"when": BY_NAME[row["rung"]].when}
         row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
     columns = [
         ("rung", "rung", tables.PLAIN),
@@ -58,8 +49,10 @@ def measure(plan: Plan) -> dict:
     ]
     worst = max(float(np.nanmax(fine["plane_error"])), float(np.nanmax(fine["width_error"])))
     note = (
-        f"Errors of stiffness against converged elements, in three dimensions and in plane stress. These are themselves "
-        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), within 1e-4 on the held-out ones; "
+        "Errors of stiffness against converged elements, in three dimensions and in plane stress. These are "
+        "themselves "
+        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), "
+        "within 1e-4 on the held-out ones; "
         "no error of finite elements smaller than that estimate is claimed."
     )
     return {
@@ -70,8 +63,8 @@ def measure(plan: Plan) -> dict:
 
 
 def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
-    """Mean and worst size of the relative error, over the designs that have a result; none smaller than the `own`
-    estimated error of what it is measured against."""
+    """Mean and worst size of the relative error, over the designs that have a result; none smaller than the
+    `own` estimated error of what it is measured against."""
     error = np.maximum(np.abs(stiffness / exact - 1.0), own)
     error = error[np.isfinite(error)]
     if not len(error):
@@ -87,7 +80,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
     K = np.concatenate([ladder.evaluate(section(c), rung).stiffness for c in samples])
     solid = np.concatenate([truth.solid_stiffness(c) for c in samples])
     row = {"rung": rung} | errors(K, solid, "solid")
-    if rung == "solid":  # it answers another question than plane stress
+    if BY_NAME[rung].against == "solid":  # it answers another question than plane stress
         return row
     return row | errors(K, np.concatenate([c["plane_stiffness"] * c["width"] for c in samples]), "plane")
 
@@ -137,8 +130,12 @@ def findings(rows: list[dict]) -> list[str]:
     return [
         "Against solid elements: "
         + told([r["rung"] for r in rows], [(r["seconds"], r["solid worst"]) for r in rows]),
-        f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in {slowest:.2f} s (goal {GOAL_MILLION} s).",
-        f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by {100 * plane['solid worst']:.0f} % at "
-        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements are dominated by a closed form.",
-        f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at {sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
+        f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in "
+        f"{slowest:.2f} s (goal {GOAL_MILLION} s).",
+        f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by "
+        f"{100 * plane['solid worst']:.0f} % at "
+        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements "
+        "are dominated by a closed form.",
+        f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at "
+        f"{sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
     ]

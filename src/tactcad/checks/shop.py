@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
+from tactcad.design.fields import shown_text
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.toml_text import parse_toml
@@ -96,8 +96,7 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
     where = str(path)
     table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)
     _names(where, "", table, {"name", "limits", "source"}, {"machining", "machining_source"})
-    if not isinstance(table["name"], str):
-        raise InputError(f"{where}: name", "is no text", value=table["name"])
+    shown_text(table["name"], f"{where}: name", "what the shop is called")
     limits, source = _section(where, table, Limits, "limits", "source")
     usual = None if path == DEFAULT else load_shop()
     if {"machining", "machining_source"} & set(table) or usual is None:
@@ -129,10 +128,7 @@ def _section(
             )
     values = {one: _size(f"{where}: {name}.{one}", v) for one, v in values.items()}
     for one, text in source.items():
-        if not isinstance(text, str) or not text.strip():
-            raise InputError(
-                f"{where}: {source_name}.{one}", "is no text", value=text, legal="where the limit is from"
-            )
+        shown_text(text, f"{where}: {source_name}.{one}", "where the limit is from")
     if usual:
         values = {**vars(getattr(usual, name)), **values}
         source = {**getattr(usual, source_name), **source}
@@ -151,7 +147,7 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 
 def _size(where: str, value: object) -> float:
     number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and isfinite(value) and 0 < value <= 100):
+    if not (number and 0 < value <= 100):
         raise InputError(
             where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
         )

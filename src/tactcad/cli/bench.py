@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+from contextlib import nullcontext
+
+from .parser import add_others
 
 EXAMPLES = """\
   tactcad bench                              everything in short: four minutes on two quiet cores
@@ -15,7 +17,6 @@ EXAMPLES = """\
 What is compared is measured in turns, in one run. CalculiX and FreeCAD are measured beside it where they are
 installed, and reported as missing where not. The folder is replaced in one step by a finished one."""
 
-ENDINGS = {".json", ".md", ".txt", ".csv", ".svg"}
 SHORT_SEED = 8  # any; a full run draws its own unless it is given one
 
 
@@ -32,12 +33,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--seed", type=int, metavar="N", help="seed of the random designs and pairs (full: a new one)"
     )
     parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
+    add_others(parser)
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
     import os
-    import tempfile
 
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before numpy: one thread, as every child
         os.environ[variable] = "1"
@@ -45,25 +46,25 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.bench.plan import Plan
     from tactcad.bench.run import SCHEMA
     from tactcad.bench.run import run as measure
-    from tactcad.design.files import absolute
-    from tactcad.export import folder
+    from tactcad.design.files import scratch_folder
+    from tactcad.export.publish import turn
 
     from .progress import progress
 
     names = _names(args.only)
-    if args.out:  # before minutes are spent
-        folder.refuse_foreign(absolute(args.out), ENDINGS, SCHEMA)
     say = progress(sys.stderr)
-    with tempfile.TemporaryDirectory(prefix="tactcad-bench-") as scratch:
-        mode = "full" if args.full else "smoke" if args.smoke else "short"
-        plan = Plan(mode, _seed(args.seed, args.full), Path(scratch))
-        say.line(f"{mode} run, seed {plan.seed}")
-        result = measure(plan, names, say.step)
-        files = render.files(result)
-        if (plan.folder / truth.SHIPPED).is_file():
-            files[truth.SHIPPED] = (plan.folder / truth.SHIPPED).read_bytes()
-    if args.out:
-        folder.replace(Path(args.out), files, SCHEMA)
+    mode = "full" if args.full else "smoke" if args.smoke else "short"
+    seed = _seed(args.seed, args.full)
+    with turn(args.out, SCHEMA, args.others, say.line) if args.out else nullcontext() as work:
+        with scratch_folder("bench") as scratch:
+            plan = Plan(mode, seed, scratch)
+            say.line(f"{mode} run, seed {plan.seed}")
+            result = measure(plan, names, say.step)
+            files = render.files(result)
+            if (plan.folder / truth.SHIPPED).is_file():
+                files[truth.SHIPPED] = (plan.folder / truth.SHIPPED).read_bytes()
+        if work:
+            work.write(files)
     print(render.to_json(result) if args.json else render.to_text(result))
     return 1 if any("failed" in entry for entry in result["benchmarks"].values()) else 0
 

@@ -12,7 +12,7 @@ EXAMPLES = """\
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
-comments."""
+comments; semicolons or tabs between columns, and decimal commas with them, are read too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -38,12 +38,17 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.lab import calibration, calibration_text, readings
     from tactcad.paper import published
 
+    from .progress import slow_work
+
     if args.out:
         refuse_overwriting(args.out, args.file)
     load_cell = published.load().figure["load_cell_stiffness"] if args.load_cell is None else args.load_cell
-    rows = calibration.calibrate(
-        readings.calibration(args.file), load_cell, level=args.level, drop_outliers=args.drop_outliers
-    )
+    with slow_work(sys.stderr) as tell:
+        tell(0, 1, f"reading {args.file}")
+        read = readings.calibration(args.file)
+        rows = calibration.calibrate(
+            read, load_cell, level=args.level, drop_outliers=args.drop_outliers, tell=tell
+        )
     if args.out:
         write_whole(args.out, calibration_text.to_csv(rows, load_cell).encode())
     sys.stdout.write(

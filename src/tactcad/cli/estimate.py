@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
-from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, RUNGS
+from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
     from tactcad.mechanics.accuracy import Choice
@@ -22,8 +22,9 @@ EXAMPLES = """\
   tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
-  tactcad estimate --inspection inspection.csv
-                                      the elements as made, from the inspection sheet that the shop filled in
+  tactcad estimate --inspection inspections/macro-array-C.csv
+                                      the elements as made, from the inspection sheet that the shop filled in: a copy
+                                      of an export's inspection.csv, kept outside the export
 """
 
 COLUMNS = (  # heading, unit, field, format
@@ -71,7 +72,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inspection",
         metavar="FILE",
-        help="the design's inspection sheet, filled in: its elements as made, beside the nominal",
+        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its elements as "
+        "made, beside the nominal",
     )
 
 
@@ -227,7 +229,7 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
             f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
             "cut at load line and clamp edge"
         )
-    if model in ("plane", "solid"):
+    if model in FITTED:
         lines.append(_spread(design, first))
     return "\n".join(lines)
 

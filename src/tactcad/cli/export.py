@@ -7,6 +7,8 @@ import json
 import sys
 from dataclasses import asdict
 
+from .parser import add_others
+
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
   tactcad export soft-tissue --out soft       another design, to a folder of your choice
@@ -16,7 +18,9 @@ EXAMPLES = """\
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
 
-The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing."""
+The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing. A folder
+with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill in a copy of
+inspection.csv (in inspections/, say), not the export's own."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,13 +58,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
     )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
+    add_others(parser)
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find, read
-    from tactcad.export.pipeline import export
+    from tactcad.export.pipeline import ExportOptions, export
     from tactcad.scenes import chosen_scenes, left_out
     from tactcad.scenes.poses import pose_of
 
@@ -70,9 +75,8 @@ def run(args: argparse.Namespace) -> int:
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
     refuse_overwriting(out, find(args.design))
-    done = export(
-        design, scenes, out, say, pose_of(args.pose, design), args.guide, args.detail, args.drawings
-    )
+    options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
+    done = export(design, options, out, say, args.others)
     for line in left_out(design) if done.reasons and not args.scene else ():
         say.line(line)
     if args.json:

@@ -107,26 +107,32 @@ def _profiled(run: Callable[[argparse.Namespace], int], args: argparse.Namespace
             print(json.dumps(record, indent=1) if as_json else text(record), file=sys.stderr)
 
 
+def parser_of(command: str) -> Parser:
+    """The parser of one of COMMANDS, as its --help and the reference pages show it."""
+    module = importlib.import_module(f"tactcad.cli.{command}")
+    parser = Parser(
+        prog=f"tactcad {command}",
+        description=COMMANDS[command],
+        epilog=f"examples:\n{module.EXAMPLES}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    module.configure(parser)
+    parser.add_argument(
+        "--profile",
+        action="store_true",
+        help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
+        "made, how often, how long, and how much memory it took (with --json as JSON)",
+    )
+    return parser
+
+
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
-        module = importlib.import_module(f"tactcad.cli.{argv[0]}")
-        parser = Parser(
-            prog=f"tactcad {argv[0]}",
-            description=COMMANDS[argv[0]],
-            epilog=f"examples:\n{module.EXAMPLES}",
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        module.configure(parser)
-        parser.add_argument(
-            "--profile",
-            action="store_true",
-            help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
-            "made, how often, how long, and how much memory it took (with --json as JSON)",
-        )
-        args = parser.parse_args(argv[1:])
+        args = parser_of(argv[0]).parse_args(argv[1:])
         if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
             raise CheckFailure(_no_kernel())
-        return _profiled(module.run, args) if args.profile else module.run(args)
+        run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
+        return _profiled(run, args) if args.profile else run(args)
     parser = Parser(
         prog="tactcad",
         description="From one text file to a spring-based tactile sensor array.",

@@ -47,5 +47,25 @@ class Parser(argparse.ArgumentParser):
         self.exit(2, f"tactcad: {message}\n")
 
 
+def add_others(parser: argparse.ArgumentParser) -> None:
+    """--keep and --discard, for commands that write a folder (tactcad.export.publish)."""
+    others = parser.add_mutually_exclusive_group()
+    others.add_argument(
+        "--keep",
+        dest="others",
+        action="store_const",
+        const="keep",
+        default="refuse",
+        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 (default: refuse)",
+    )
+    others.add_argument(
+        "--discard",
+        dest="others",
+        action="store_const",
+        const="discard",
+        help="remove it, unread, with the folder",
+    )
+
+
 def _named(action: argparse.Action) -> str:
     return "/".join(action.option_strings) or str(action.metavar or action.dest)

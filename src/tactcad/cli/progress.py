@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TextIO
+
+SILENT = 2.0  # s; what takes no longer needs no progress
 
 
 class Terminal:
@@ -39,3 +44,22 @@ class Log:
 def progress(stream: TextIO) -> Terminal | Log:
     """What suits the stream."""
     return Terminal(stream) if stream.isatty() else Log(stream)
+
+
+@contextmanager
+def slow_work(stream: TextIO) -> Iterator[Callable[[int, int, str], None]]:
+    """Gives a function to tell each step's (done, total, text); what is told is shown every SILENT seconds only."""
+    shown, told, ended = progress(stream), [(0, 1, "")], threading.Event()
+
+    def show() -> None:
+        while not ended.wait(SILENT):
+            shown.step(*told[-1])
+
+    thread = threading.Thread(target=show, daemon=True)
+    thread.start()
+    try:
+        yield lambda done, total, text: told.__setitem__(-1, (done, total, text))
+    finally:
+        ended.set()
+        thread.join()
+        shown.step(1, 1, "")  # on a terminal the line goes

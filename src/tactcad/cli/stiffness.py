@@ -36,11 +36,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.lab import calibration_text, grasp, grasp_text, readings
 
+    from .progress import slow_work
+
     known = calibration_text.read(args.calibration)
-    found = [
-        grasp.evaluate(g, known, reference=args.reference, level=args.level)
-        for g in readings.grasps(args.file)
-    ]
+    found = []
+    with slow_work(sys.stderr) as tell:
+        tell(0, 1, f"reading {args.file}")
+        samples = readings.grasps(args.file)
+        for g in samples:
+            tell(len(found), len(samples), f"sample {g.sample}")
+            found.append(grasp.evaluate(g, known, reference=args.reference, level=args.level))
     sys.stdout.write(
         grasp_text.to_json(found, args.level) if args.json else grasp_text.to_text(found, args.level)
     )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
+from contextlib import nullcontext
+
+from .parser import add_others
 
 EXAMPLES = """\
   tactcad validate                           the findings, as text
@@ -12,11 +14,13 @@ EXAMPLES = """\
   tactcad validate --json                    findings and every number as JSON
   tactcad validate --table1 mine.csv         another calibration table of the same form
 
-The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report."""
+The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report as tactcad
+wrote it; any other is left as it is, unless --keep or --discard is given."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
+    add_others(parser)
     parser.add_argument("--json", action="store_true", help="print the report as JSON on standard output")
     parser.add_argument(
         "--design",
@@ -32,23 +36,23 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
-    from tactcad.export import folder
+    from tactcad.export.publish import turn
     from tactcad.paper import array_model as array
     from tactcad.paper import published, report, validation
     from tactcad.parts.designs import load
 
     if args.out:
         refuse_overwriting(args.out, args.table1, args.table2, find(args.design))
-        folder.refuse_foreign(Path(args.out), {".html", ".json", ".svg"}, report.SCHEMA)  # before the work
-    data = published.load(args.table1, args.table2)
-    made = validation.validate(data, array.from_design(load(args.design)))
-    as_json = report.to_json(made)
-    if args.out:
-        files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}
-        files |= {
-            f"plots/{f.name}.svg": report.standalone(f).encode() for s in made.sections for f in s.figures
-        }
-        folder.replace(Path(args.out), files, report.SCHEMA)
+    with turn(args.out, report.SCHEMA, args.others) if args.out else nullcontext() as work:
+        data = published.load(args.table1, args.table2)
+        made = validation.validate(data, array.from_design(load(args.design)))
+        as_json = report.to_json(made)
+        if work:
+            files = {"report.html": report.to_html(made).encode(), "report.json": as_json.encode()}
+            files |= {
+                f"plots/{f.name}.svg": report.standalone(f).encode() for s in made.sections for f in s.figures
+            }
+            work.write(files)
     if args.json:
         sys.stdout.write(as_json)
     else:

@@ -1,15 +1,20 @@
 """Tables read from CSV: every refusal names file, line and column.
 
-A line that starts with # is a comment. The first other line is the header; columns may stand in any
-order and unknown ones are left alone.
+A line that starts with # is a comment. The first other line is the header; columns may stand in any order and
+unknown ones are left alone. What spreadsheets do to a CSV file is undone where it can only mean one thing: a
+byte order mark, a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at the
+end, and decimal commas.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from functools import cached_property
+from math import inf, isnan, nan
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +22,9 @@ import numpy as np
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
 
-LARGEST_FILE = 50_000_000  # bytes; a calibration of 10 000 elements is 15 MB
+LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
+# a comma before three digits may divide thousands, unless a nought stands before it
+MAY_BE_THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2}(,[0-9]{3})+")
 
 
 @dataclass(frozen=True)
@@ -39,151 +46,246 @@ class Field:
         high = "" if self.high == inf else f" up to {self.high:g}{unit}"
         return kind + low + high
 
-    def allows(self, value: float) -> bool:
+    def allowed(self, value: np.ndarray) -> np.ndarray:
+        """Which values are finite and within the range."""
         low = value > self.low if self.above else value >= self.low
-        return isfinite(value) and low and value <= self.high and (not self.integer or value == int(value))
+        return (
+            np.isfinite(value) & low & (value <= self.high) & (not self.integer or value == np.floor(value))
+        )
 
 
 @dataclass(frozen=True)
-class Cell:
-    """One number with the text it was printed as; half_step is half a unit of its last digit."""
+class Table:
+    """A CSV file taken apart as far as its header: what follows is split when it is asked for.
 
-    text: str
-    value: float
+    lines: those below the header, without comments; numbers: of each, as an editor counts them.
+    """
 
-    @property
-    def half_step(self) -> float:
-        mantissa, _, exponent = self.text.lower().partition("e")
-        decimals = len(mantissa.partition(".")[2])
-        return 0.5 * 10.0 ** (int(exponent or 0) - decimals)
+    path: str
+    delimiter: str
+    header_line: int
+    header: list[str]
+    lines: list[str]
+    numbers: Sequence[int]
+
+    @cached_property
+    def records(self) -> list[tuple[int, list[str]]]:
+        """The rows as text without blanks about the cells, each at the header's width and with the line it
+        begins on.
+
+        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is no
+        CSV, or a row is of another length.
+        """
+        rows = _split(self.path, self.lines, self.numbers, self.delimiter)
+        return [(n, _fitted(self, n, row)) for n, row in rows if any(row)]
+
+    def column(self, name: str) -> list[str]:
+        place = self.header.index(name)
+        return [row[place] for _, row in self.records]
+
+    def where(self, line: int, name: str) -> str:
+        """'file:line:column' of a cell, the column counted from 1."""
+        return f"{self.path}:{line}:{self.header.index(name) + 1}"
 
 
 @dataclass(frozen=True)
 class Rows:
-    """Numeric rows of a CSV file: cells by column name, and the line each row stands on."""
+    """Numeric columns of a CSV file by name, as float64, and the line each row begins on."""
 
-    path: str
-    columns: dict[str, tuple[Cell, ...]]
-    lines: tuple[int, ...]
-    header: tuple[str, ...]
+    table: Table
+    columns: dict[str, np.ndarray]
+    lines: np.ndarray
 
     def __len__(self) -> int:
         return len(self.lines)
 
+    @property
+    def path(self) -> str:
+        return self.table.path
+
     def values(self, name: str) -> np.ndarray:
         """One column as float64."""
-        return np.array([c.value for c in self.columns[name]], dtype=float)
+        return self.columns[name]
 
     def half_steps(self, name: str) -> np.ndarray:
-        """Half a unit of each value's last printed digit, in the column's unit."""
-        return np.array([c.half_step for c in self.columns[name]], dtype=float)
+        """Half a unit of each value's last printed digit, in the column's unit.
+
+        Raises InputError where that is beyond all numbers ("0e400").
+        """
+        texts = [text.replace(",", ".") for text in self.table.column(name)]
+        found = np.array([half_step(text) for text in texts])
+        for i in np.flatnonzero(~np.isfinite(found))[:1]:
+            raise InputError(self.where(i, name), "its last digit is beyond all numbers", value=texts[i])
+        return found
 
     def where(self, row: int, name: str) -> str:
         """'file:line:column' of a cell, the column counted from 1."""
-        return f"{self.path}:{self.lines[row]}:{self.header.index(name) + 1}"
+        return self.table.where(self.lines[row], name)
+
+
+def half_step(text: str) -> float:
+    """Half a unit of a printed number's last digit; inf where that is beyond all numbers."""
+    mantissa, _, exponent = text.lower().partition("e")
+    try:
+        return 0.5 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    except (OverflowError, ValueError):  # 10^400, or an exponent of thousands of digits
+        return inf
 
 
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
-    """The numeric columns `fields` (and `optional` where present) of a CSV file.
+    """The numeric columns `fields` (and `optional` where present) of a CSV file; see `numeric`."""
+    return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
-    Raises InputError: file not there, not text, no header, column missing or twice, a row of another
-    length, text for a number, a number outside its legal range.
+
+def numeric(
+    table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...] = (), least: int = 1
+) -> Rows:
+    """The numeric columns `fields` (and `optional` where present) of a table of `least` rows.
+
+    Raises InputError: a column missing, too few rows, text for a number, a number outside its legal range.
     """
-    shown = str(path)
-    lines = _lines(Path(path), shown)
-    if not lines:
-        raise InputError(f"{shown}:1:1", "no header line", legal="a header with " + _names(fields))
-    header_line, header = lines[0]
-    _check_header(shown, header_line, header, fields)
-    chosen = fields + tuple(f for f in optional if f.name in header)
-    places = [header.index(f.name) for f in chosen]
-    cells: dict[str, list[Cell]] = {f.name: [] for f in chosen}
-    for number, row in lines[1:]:
-        if len(row) != len(header):
+    require_columns(table, [f.name for f in fields])
+    chosen = fields + tuple(f for f in optional if f.name in table.header)
+    rows = _at_once(table, chosen)
+    if rows is not None:
+        return rows
+    if len(table.records) < least:
+        raise InputError(f"{table.path}:{table.header_line + 1}:1", "no rows below the header")
+    lines = np.array([n for n, _ in table.records])
+    texts = {f.name: table.column(f.name) for f in chosen}
+    if table.delimiter != "," and decimal_commas(t for column in texts.values() for t in column):
+        texts = {name: [t.replace(",", ".") for t in column] for name, column in texts.items()}
+    return Rows(table, {f.name: _numbers(table, f, lines, texts[f.name]) for f in chosen}, lines)
+
+
+def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
+    """The same where every line is a row of plain legal numbers, ten times as fast; None where one is not."""
+    width = len(table.header) - 1
+    if not table.lines or any(line.count(table.delimiter) != width or '"' in line for line in table.lines):
+        return None
+    try:
+        places = [table.header.index(f.name) for f in chosen]
+        # loadtxt knows fewer texts for a number than `number` does: what it does not know is looked at again
+        values = np.loadtxt(
+            table.lines, delimiter=table.delimiter, usecols=places, comments=None, ndmin=2, unpack=True
+        )
+    except ValueError:
+        return None
+    if values.shape[1] != len(table.lines) or not all(f.allowed(v).all() for f, v in zip(chosen, values)):
+        return None
+    return Rows(table, {f.name: v for f, v in zip(chosen, values)}, np.array(table.numbers))
+
+
+def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comments: bool = True) -> Table:
+    """A CSV file up to its header; `kind` says in messages what was expected ("readings (CSV)").
+
+    Raises InputError: file not there, not text, no header, a column named twice.
+    """
+    shown, text = str(path), read_text(path, most_bytes, kind)
+    hint = re.match(r"sep=.\r?\n", text)  # Excel's
+    first, body = (2, text[hint.end() :]) if hint else (1, text)
+    lines = list(io.StringIO(body, newline=""))
+    numbers: Sequence[int] = range(first, first + len(lines))
+    if comments and "#" in body:
+        kept = [i for i, line in enumerate(lines) if not line.lstrip().startswith("#")]
+        lines, numbers = [lines[i] for i in kept], [numbers[i] for i in kept]
+    start = next((i for i, line in enumerate(lines) if line.strip(",;\t \r\n")), None)
+    if start is None:
+        raise InputError(f"{shown}:1:1", "no header line: the file is empty", legal=kind)
+    delimiter = max(",;\t", key=lines[start].count)
+    end = start + 1
+    line, header = next(_split(shown, lines[start:end], numbers[start:end], delimiter))
+    while not header[-1]:
+        header.pop()
+    for i, name in enumerate(header):
+        if name and name in header[:i]:
+            raise InputError(f"{shown}:{line}:{i + 1}", "column named twice", value=name)
+    return Table(shown, delimiter, line, header, lines[end:], numbers[end:])
+
+
+def require_columns(table: Table, names: Sequence[str]) -> None:
+    """Raise InputError at the first of the columns that the table lacks."""
+    for name in names:
+        if name not in table.header:
             raise InputError(
-                f"{shown}:{number}:{min(len(row), len(header)) + 1}",
-                "a row of another length than the header",
-                value=len(row),
-                legal=f"{len(header)} columns",
+                f"{table.path}:{table.header_line}:{len(table.header) + 1}",
+                f"column {name!r} is missing",
+                legal=", ".join(names),
             )
-        for field, place in zip(chosen, places):
-            cells[field.name].append(_cell(row[place], field, f"{shown}:{number}:{place + 1}"))
-    if len(lines) == 1:
-        raise InputError(f"{shown}:{header_line + 1}:1", "no rows below the header")
-    return Rows(shown, {k: tuple(v) for k, v in cells.items()}, tuple(n for n, _ in lines[1:]), tuple(header))
-
-
-def header(path: str | Path) -> tuple[str, ...]:
-    """Column names of a CSV file; empty where it has none."""
-    lines = _lines(Path(path), str(path))
-    return tuple(lines[0][1]) if lines else ()
 
 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
     """Raise InputError at the second row that has the same values in the columns `names`."""
-    seen: dict[tuple[float, ...], int] = {}
-    for i, key in enumerate(zip(*(rows.values(n) for n in names))):
-        if key in seen:
-            what = " and ".join(f"{n} {v:g}" for n, v in zip(names, key))
-            raise InputError(
-                rows.where(i, names[0]), f"{what} stands already on line {rows.lines[seen[key]]}", legal=legal
-            )
-        seen[key] = i
+    columns = [rows.values(n) for n in names]
+    order = np.lexsort(columns)  # stable: of equal rows the first stays first
+    same = np.all([column[order[1:]] == column[order[:-1]] for column in columns], axis=0)
+    if same.any():
+        at = 1 + np.flatnonzero(same)
+        k = at[np.argmin(order[at])]
+        what = " and ".join(f"{n} {column[order[k]]:g}" for n, column in zip(names, columns))
+        raise InputError(
+            rows.where(order[k], names[0]),
+            f"{what} stands already on line {rows.lines[order[k - 1]]}",
+            legal=legal,
+        )
 
 
-def records(shown: str, text: str, delimiter: str = ",") -> list[tuple[int, list[str]]]:
-    """Every record of CSV text (line ends within quotes belong to it) with the line it begins on.
+def decimal_commas(texts: Iterable[str]) -> bool:
+    """Whether the numbers were all written with a decimal comma, so that a comma has one meaning."""
+    texts = list(texts)
+    with_comma = [t for t in texts if "," in t]
+    return (
+        bool(with_comma)
+        and not any("." in t for t in texts)
+        and not all(MAY_BE_THOUSANDS.fullmatch(t) for t in with_comma)
+    )
 
-    Raises InputError where it is no CSV.
-    """
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
-    found, before = [], 0
+
+def number(text: str) -> float:
+    """The number that ASCII digits stand for; NaN for any other text."""
+    try:
+        return float(text) if text.isascii() and "_" not in text else nan
+    except ValueError:
+        return nan
+
+
+def _split(
+    path: str, lines: list[str], numbers: Sequence[int], delimiter: str
+) -> Iterator[tuple[int, list[str]]]:
+    """Every record without blanks about its cells, and the line it begins on. Raises InputError where it is
+    no CSV."""
+    reader = csv.reader(lines, delimiter=delimiter, strict=True)
+    before = 0
     try:
         for record in reader:
-            found.append((before + 1, record))
+            yield numbers[before], [cell.strip() for cell in record]
             before = reader.line_num
     except csv.Error as error:
-        raise InputError(f"{shown}:{before + 1}:1", f"not CSV: {error}") from None
-    return found
+        raise InputError(f"{path}:{numbers[before]}:1", f"not CSV: {error}") from None
 
 
-def _lines(path: Path, shown: str) -> list[tuple[int, list[str]]]:
-    found = []
-    for number, line in enumerate(read_text(path, LARGEST_FILE, "readings (CSV)").splitlines(), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            found.append((number, [field.strip() for field in _split(line, f"{shown}:{number}:1")]))
-    return found
-
-
-def _split(line: str, where: str) -> list[str]:
-    try:
-        return next(csv.reader([line], strict=True))
-    except csv.Error as error:
-        raise InputError(where, f"not CSV: {error}") from None
-
-
-def _check_header(shown: str, line: int, header: list[str], fields: tuple[Field, ...]) -> None:
-    for i, name in enumerate(header):
-        if name in header[:i]:
-            raise InputError(f"{shown}:{line}:{i + 1}", "column named twice", value=name)
-    for field in fields:
-        if field.name not in header:
-            raise InputError(
-                f"{shown}:{line}:{len(header) + 1}", f"column {field.name!r} is missing", legal=_names(fields)
-            )
-
-
-def _names(fields: tuple[Field, ...]) -> str:
-    return ", ".join(f.name for f in fields)
-
-
-def _cell(text: str, field: Field, where: str) -> Cell:
-    try:
-        value = float(text)
-    except ValueError:
+def _fitted(table: Table, line: int, row: list[str]) -> list[str]:
+    """The row at the header's width; what is over must be blank."""
+    width = len(table.header)
+    if len(row) < width or any(row[width:]):
         raise InputError(
-            where, f"column {field.name!r} is not a number", value=text, legal=field.legal
-        ) from None
-    if not field.allows(value):
-        raise InputError(where, f"column {field.name!r} is out of range", value=text, legal=field.legal)
-    return Cell(text, value)
+            f"{table.path}:{line}:{min(len(row), width) + 1}",
+            "a row of another length than the header (cut off, or a decimal comma?)",
+            value=len(row),
+            legal=f"{width} columns",
+        )
+    return row[:width]
+
+
+def _numbers(table: Table, field: Field, lines: np.ndarray, column: list[str]) -> np.ndarray:
+    """A column's numbers. Raises InputError at the first cell that is none, or not legal."""
+    values = np.array([number(text) for text in column])
+    for i in np.flatnonzero(~field.allowed(values))[:1]:
+        wrong = "is not a number" if isnan(values[i]) else "is out of range"
+        raise InputError(
+            table.where(lines[i], field.name),
+            f"column {field.name!r} {wrong}",
+            value=column[i],
+            legal=field.legal,
+        )
+    return values

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
-from .messages import InputError, in_brackets, near
+from .messages import InputError, hidden, in_brackets, near, visible
 
 REQUIRED = object()
 
@@ -39,6 +39,30 @@ class Number:
 
     def schema(self) -> dict:
         return {"type": "number", "minimum": self.low, "maximum": self.high}
+
+
+@dataclass(frozen=True)
+class Whole:
+    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one
+    too."""
+
+    low: int
+    high: int
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return f"a whole number from {self.low:g} to {self.high:g}"
+
+    def read(self, value: Any, where: str) -> int:
+        number = Number(self.unit, self.low, self.high, self.meaning).read(value, where)
+        if not number.is_integer():
+            raise InputError(where, "not a whole number", value=value, legal=self.legal)
+        return int(number)
+
+    def schema(self) -> dict:
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
 
 
 @dataclass(frozen=True)
@@ -77,12 +101,22 @@ class Text:
     unit: str = ""
 
     def read(self, value: Any, where: str) -> str:
-        if not isinstance(value, str) or not re.fullmatch(self.pattern, value):
+        if not isinstance(value, str) or not re.fullmatch(self.pattern, value) or not visible(value):
             raise InputError(where, "not usable text", value=value, legal=self.legal)
-        return value
+        return shown_text(value, where, self.legal)
 
     def schema(self) -> dict:
         return {"type": "string", "pattern": f"^(?:{self.pattern})$"}
+
+
+def shown_text(value: Any, where: str, legal: str) -> str:
+    """Text of any length that shows as it is read. Raises InputError where it is empty or holds hidden
+    characters."""
+    if not isinstance(value, str) or not visible(value):
+        raise InputError(where, "not text", value=value, legal=legal)
+    if found := hidden(value):
+        raise InputError(where, f"not usable text: it holds {found}", value=value, legal=legal)
+    return value
 
 
 @dataclass(frozen=True)
@@ -166,7 +200,7 @@ class Rows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Choice | Text | Day | Numbers | Rows
+Spec = Number | Whole | Choice | Text | Day | Numbers | Rows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

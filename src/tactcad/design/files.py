@@ -11,12 +11,14 @@ import json
 import os
 import stat
 import tempfile
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
-from .messages import CheckFailure, InputError, shortened
+from .held import held_file, held_folder, sweep_folders
+from .messages import CheckFailure, InputError, hidden, shortened
 
 # what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
@@ -34,14 +36,15 @@ REFUSED_BY_MACHINE = NO_ROOM | {
     errno.EMFILE,
     errno.ENFILE,
     errno.EINVAL,
+    errno.EXDEV,
 }
 
 
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     """All bytes of a regular file; `kind` says in messages what was expected ("a design file (TOML)").
 
-    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than `most_bytes`,
-    or may not be read.
+    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than
+    `most_bytes`, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -68,8 +71,8 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 
 
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
-    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes) where
-    it is not UTF-8.
+    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes)
+    where it is not UTF-8.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
@@ -95,7 +98,7 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
-        return json.loads(text, parse_constant=_no_number, parse_float=_finite)
+        value = json.loads(text, parse_constant=_no_number, parse_float=_finite, parse_int=_within_floats)
     except json.JSONDecodeError as error:
         raise InputError(
             f"{path}:{error.lineno}:{error.colno}", f"not JSON: {error.msg}", legal=kind
@@ -104,6 +107,28 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
         raise InputError(str(path), "nested too deeply", legal=kind) from None
     except ValueError as error:  # NaN, or an integer of thousands of digits
         raise InputError(str(path), f"not JSON: {error}", legal=kind) from None
+    if not text.isascii() or "\\u" in text:
+        _refuse_hidden(value, str(path), kind)
+    return value
+
+
+def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
+    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+    text."""
+    left = [value]
+    while left:
+        item = left.pop()
+        if isinstance(item, dict):
+            left += [*item, *item.values()]
+        elif isinstance(item, list):
+            left += item
+        elif isinstance(item, str) and (found := hidden(item)):
+            raise InputError(shown, f"a text holds {found}", value=item, legal=kind)
+
+
+def _within_floats(text: str) -> int:
+    _finite(text)
+    return int(text)
 
 
 def _finite(text: str) -> float:
@@ -116,10 +141,19 @@ def _no_number(text: str) -> NoReturn:
 
 
 def write_whole(path: str | Path, data: bytes) -> None:
-    """Let `path` be a file of these bytes in one step: written beside it, flushed, then moved over it.
+    """Let `path` be a file of these bytes in one step. Raises as `whole_file` does."""
+    with whole_file(path) as part:
+        part.write_bytes(data)
 
-    A link is followed; its folder must be there. Raises InputError where the place cannot be written to,
-    CheckFailure where there is no room; what was there before is then unchanged.
+
+@contextmanager
+def whole_file(path: str | Path) -> Iterator[Path]:
+    """A file to write beside `path`, which is flushed and renamed over it when the block ends well, and gone
+    else.
+
+    A link is followed; its folder must be there. What killed runs left there goes first. Raises InputError
+    where the place cannot be written to, CheckFailure where there is no room; what was there before is then
+    unchanged.
     """
     try:
         place = Path(os.path.realpath(path))
@@ -127,25 +161,46 @@ def write_whole(path: str | Path, data: bytes) -> None:
             raise InputError(
                 str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
             )
-        handle, part = tempfile.mkstemp(prefix=f".{place.name[:100]}.", suffix=".part", dir=place.parent)
-        try:
-            with open(handle, "wb") as stream:
-                stream.write(data)
-                stream.flush()
-                os.fsync(handle)
-            os.chmod(part, 0o666 & ~_umask())
-            os.replace(part, place)
-        except BaseException:
-            with suppress(OSError):
-                os.unlink(part)
-            raise
+        with held_file(place) as part:
+            yield part
+            flush_entry(part)
+            part.chmod(0o666 & ~_umask())
+            part.replace(place)
+            flush_entry(place.parent)
     except OSError as error:
         raise refusal(str(path), error) from error
 
 
+def flush_entry(path: Path) -> None:
+    """Let what the file or folder holds be on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def scratch_folder(purpose: str) -> Iterator[Path]:
+    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes
+    first.
+
+    Raises as `whole_file` does.
+    """
+    parent = absolute(tempfile.gettempdir())
+    stem = f"tactcad-{purpose}"
+    try:
+        sweep_folders(parent, stem)
+        with held_folder(parent, stem) as folder:
+            yield folder
+    except OSError as error:
+        raise refusal(str(parent), error) from error
+
+
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under whatever name or
-    link, lies in a folder that is one, or is a folder with one in it. What is not there is no matter.
+    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under
+    whatever name or link, lies in a folder that is one, or is a folder with one in it. What is not there is
+    no matter.
     """
     place, around = _identity(out), _folders(out)
     for source in inputs:

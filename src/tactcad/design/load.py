@@ -9,7 +9,7 @@ import typing
 from pathlib import Path
 from typing import Any
 
-from .fields import Number
+from .fields import Number, shown_text
 from .files import read_text
 from .materials import ALLOYS
 from .messages import InputError, near, one_of
@@ -50,7 +50,8 @@ def find(source: str | Path) -> Path:
 
 
 def names() -> list[str]:
-    """Names of the designs in hardware/ where the command runs and of those that came with tactcad, sorted."""
+    """Names of the designs in hardware/ where the command runs and of those that came with tactcad,
+    sorted."""
     return sorted({p.stem for folder in _hardware_folders() for p in folder.glob("*.toml")})
 
 
@@ -171,10 +172,8 @@ def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:
             path = f"{prefix}{key}"
             if isinstance(value, dict):
                 stack.append((f"{path}.", value))
-            elif isinstance(value, str):
-                flat[path] = value
             else:
-                raise InputError(f"origin.{path}", "not text", value=value, legal="where the value is from")
+                flat[path] = shown_text(value, f"origin.{path}", "where the value is from")
     known = paths(design)
     for path in flat:
         if path not in known:

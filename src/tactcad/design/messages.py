@@ -8,16 +8,16 @@ from collections.abc import Iterable
 class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
 
-    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2");
-            shown on one line and shortened, whatever a file calls its fields
-    what    what is wrong, one clause without a full stop
+    where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
+    what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever
+            a file calls its fields
     value   the value found, shown with repr and shortened; leave it out where there is none
     legal   what would be accepted
     """
 
     def __init__(self, where: str, what: str, *, value: object = ..., legal: str = "") -> None:
         self.where, self.what, self.value, self.legal = where, what, value, legal
-        parts = [f"{_on_one_line(where)}: {what}"]
+        parts = [f"{_on_one_line(where)}: {_on_one_line(what, 500)}"]
         if value is not ...:
             parts.append(f"found {shortened(value)}")
         if legal:
@@ -56,6 +56,27 @@ def shortened(value: object, most: int = 60) -> str:
     except ValueError:  # Python shows no integer of more than 4300 digits
         text = f"a very large {type(value).__name__}"
     return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def hidden(text: str) -> str:
+    """What a text holds that nobody sees and that changes how the rest is shown; "" where there is nothing.
+
+    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, halves of
+    pairs, and formats, among them all that turn the direction of text. The two joiners that scripts and emoji
+    need may stand.
+    """
+    if text.isprintable():
+        return ""
+    import unicodedata  # hardly a text needs it
+
+    strange = (c for c in text if c not in "\n\u200c\u200d")
+    found = next((c for c in strange if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp")), "")
+    return found and f"U+{ord(found):04X} {unicodedata.name(found, '(a control, or half a pair)')}"
+
+
+def visible(text: str) -> bool:
+    """Whether a letter or digit can be seen in the text; Hangul's fillers are letters that cannot."""
+    return any(c.isalnum() and c not in "\u115f\u1160\u3164\uffa0" for c in text)
 
 
 def _on_one_line(where: str, most: int = 200) -> str:

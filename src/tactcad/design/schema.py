@@ -58,6 +58,22 @@ def _table(name: str, kind: type, optional: bool) -> list[str]:
     return [*lines, ""]
 
 
+def markdown_schema() -> str:
+    """The same as `text_schema` with a section and a table of fields for every table of the file."""
+    optional = {f.name for f in dataclasses.fields(Design) if f.default is None}
+    tables = [(name, kind, name in optional) for name, kind in SECTION_TYPES.items() if name != "origin"]
+    tables.insert([kind for _, kind, _ in tables].index(Element) + 1, ("element.override.N", Hinge, True))
+    lines = []
+    for name, kind, may_be_left_out in tables:
+        lines += [f"## [{name}]", "", "May be left out.", ""] if may_be_left_out else [f"## [{name}]", ""]
+        lines += ["| field | meaning | legal | default |", "|---|---|---|---|"]
+        for field, spec, default in _rows(kind):
+            cells = (f"`{field}`", spec.meaning, spec.legal, default)
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        lines.append("")
+    return "\n".join([*lines, "## [origin]", "", _TEXT_ORIGIN])
+
+
 def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of the design file."""
     tables = {name: _object(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}

@@ -8,22 +8,34 @@ from typing import Any
 
 from .messages import InputError
 
-# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes minutes for keys
-# of many thousand names, so they are refused before it sees them.
-# Possessive, hence linear in the length of the text; 16 names are few enough to parse at once.
-_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){16}""")
+# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes
+# minutes for keys of many thousand names, so they are refused before it sees them; 16 names are few enough to
+# parse at once. Comments and strings are stepped over: they may hold what they like. Possessive, hence linear
+# in the length of the text.
+_LONG_KEY = re.compile(
+    r"""
+    \#[^\n]*+
+    | "{3} (?:[^"\\] | \\. | "{1,2}(?!"))*+ (?:"{3} | \\?\Z)
+    | '{3} (?:[^'] | '{1,2}(?!'))*+ (?:'{3} | \Z)
+    | (?P<long> (?<![\w-]) (?:(?:[\w-]++ | "(?:[^"\\\n]|\\.)*+" | '[^'\n]*+') [ \t]*+ \. [ \t]*+){16})
+    | "(?:[^"\\\n] | \\.)*+"?
+    | '[^'\n]*+'?
+    """,
+    re.VERBOSE | re.DOTALL,
+)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not TOML."""
+    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not
+    TOML."""
     text = text.replace("\r\n", "\n")
-    long = _LONG_KEY.search(text)
+    long = next((found for found in _LONG_KEY.finditer(text) if found["long"]), None)
     if long:
         line = text.count("\n", 0, long.start()) + 1
         raise InputError(
             f"{where}:{line}",
             "a key of too many names",
-            value=long.group(),
+            value=long["long"],
             legal="names joined by at most 3 dots",
         )
     try:

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .fields import Choice, Day, Number, Numbers, Rows, Text, given
+from .fields import Choice, Day, Number, Numbers, Rows, Text, Whole, given
 from .materials import ALLOYS
 
 # Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
 _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
 
+IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands write beside the designs' own
+
 
 def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters, not only spaces", meaning)
+    return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
 
 
 @dataclass(frozen=True)
@@ -26,8 +28,10 @@ class Identity:
 
     name: str = given(
         Text(
-            r"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9])$)[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
-            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...)",
+            rf"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9]|{'|'.join(IN_EXPORTS)})$)"
+            r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
+            "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...), "
+            f"not what else lies in exports/ ({', '.join(IN_EXPORTS)})",
             "short name: folder, part numbers and file names start with it",
         )
     )
@@ -202,9 +206,9 @@ class Readout:
     headroom: float = given(Number("V", 0, 5, "output stays this far inside the supplies"), 1.5)
     bridge_offset: float = given(Number("", -0.1, 0.1, "dR/R of the unloaded bridge"), 0.0)
     noise: float = given(Number("V", 0, 1, "rms of one sample at the amplifier's output"), 0.0005)
-    adc_bits: float = given(Number("", 1, 32, "converter resolution"), 16.0)
+    adc_bits: int = given(Whole(1, 32, "converter resolution"), 16)
     adc_range: float = given(Number("V", 0.01, 30, "converter's range, plus and minus"), 5.0)
-    samples: float = given(Number("", 1, 1e6, "samples averaged for a reading"), 10.0)
+    samples: int = given(Whole(1, 1_000_000, "samples averaged for a reading"), 10)
     on_time: float = given(Number("s", 1e-6, 100, "bridge powered for one reading"), 0.005)
     period: float = given(Number("s", 1e-5, 1e5, "time between readings"), 1.0)
     reference_mismatch: float = given(
@@ -267,7 +271,7 @@ class Grasping:
 
     moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), 3.235)
     weight: float = given(Number("N", 1e-4, 1e3, "one added weight"), 0.980665)
-    weights: float = given(Number("", 0, 1000, "how many weights are added"), 10.0)
+    weights: int = given(Whole(0, 1000, "how many weights are added"), 10)
     lift: float = given(Number("mm", 1, 200, "the array is lifted this far to change the sample"), 20.0)
     weight_diameter: float = given(Number("mm", 10, 120, "disc weights"), 50.0)
     rail_length: float = given(Number("mm", 40, 600, "vertical guide rail, a multiple of 20"), 100.0)
@@ -296,9 +300,7 @@ class Holder:
 
     vacuum_diameter: float = given(Number("mm", 4, 250, "holes and plenum lie inside this circle"), 26.0)
     hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
-    rings: float = given(
-        Number("", 1, 12, "hexagonal rings of holes around the middle one, a whole number"), 3.0
-    )
+    rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), 3)
     lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), 6.0)
     plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
     floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
@@ -317,7 +319,8 @@ class Stop:
         default=None,
         metadata={
             "spec": Number("mm", 0.001, 5, 'gap by arm length, a table: "4" = 0.13'),
-            "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, by 0.005 mm",
+            "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, "
+            "by 0.005 mm",
         },
     )
 

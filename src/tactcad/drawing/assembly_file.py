@@ -47,7 +47,7 @@ def assembly_written(order: AssemblyOrder) -> Written:
     design = order.design.design
     shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
     sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft)
-    pdf = pdf_bytes(sheets, f"{order.name} revision {design.revision}: assembly", design.author)
+    pdf = pdf_bytes(sheets, f"{order.name} revision {design.revision}: assembly", design.author, design.date)
     wrong = assembly_faults(pdf, order.name, design.revision, order.rows)
     if wrong:
         raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+import os
+from calendar import timegm
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from .fonts import em, font_file
@@ -14,17 +17,22 @@ if TYPE_CHECKING:
 
 POINT = 72 / 25.4  # PDF points in a millimetre
 FONT = "DejaVuSans"
+EPOCH = "SOURCE_DATE_EPOCH"
 
 
-def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str) -> bytes:
-    """The sheets, a page each at the paper's size. Raises CheckFailure where the font is missing."""
+def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str, date: str) -> bytes:
+    """The sheets, a page each at the paper's size, dated midnight (UTC) of `date` (YYYY-MM-DD).
+
+    Raises CheckFailure where the font is missing.
+    """
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
     from reportlab.pdfgen.canvas import Canvas
 
     pdfmetrics.registerFont(TTFont(FONT, str(font_file())))
     out = io.BytesIO()
-    canvas = Canvas(out, invariant=1, pageCompression=1)  # invariant: no dates, no random identifiers
+    with _dated(date):
+        canvas = Canvas(out, invariant=1, pageCompression=1)  # invariant: no clock, no random identifiers
     canvas.setTitle(title)
     canvas.setAuthor(author)
     canvas.setCreator("tactcad")
@@ -37,6 +45,19 @@ def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str) -> bytes:
         canvas.showPage()
     canvas.save()
     return out.getvalue()
+
+
+@contextmanager
+def _dated(date: str) -> Iterator[None]:
+    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for others."""
+    given = os.environ.pop(EPOCH, None)
+    os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
+    try:
+        yield
+    finally:
+        del os.environ[EPOCH]
+        if given is not None:
+            os.environ[EPOCH] = given
 
 
 def _draw(canvas: Canvas, item: Item) -> None:

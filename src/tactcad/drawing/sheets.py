@@ -124,7 +124,9 @@ def written(order: Order) -> Written:
 
     sheet = part_sheet(order)
     d = order.design.design
-    pdf = pdf_bytes([sheet], f"{order.part.part_no} revision {d.revision}: {order.part.name}", d.author)
+    pdf = pdf_bytes(
+        [sheet], f"{order.part.part_no} revision {d.revision}: {order.part.name}", d.author, d.date
+    )
     wrong = drawing_faults(pdf, sheet, order.part, d.revision)
     if wrong:
         raise CheckFailure(f"drawings: {order.part.part_no}: {'; '.join(wrong)}; no drawing was written")

@@ -13,12 +13,14 @@ PR_SET_PDEATHSIG = 1  # Linux, prctl(2)
 
 
 def end_with(parent: int) -> None:
-    """Let this process be killed when its parent, of that number, is gone, and by nothing else that ends the parent.
+    """Let this process be killed when its parent, of that number, is gone.
 
     A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock of the
-    export's folder among it. Systems without prctl leave it waiting. Ctrl-C reaches it too, but it is the parent that answers.
+    export's folder among it. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach it too, but
+    it is the parent that answers; by SIGTERM the pool ends it.
     """
     past_ending()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:  # it was gone before

@@ -8,6 +8,7 @@ with the last cut. The file holds the nominal contour: wire compensation belongs
 from __future__ import annotations
 
 import io
+import logging
 from dataclasses import dataclass
 from itertools import combinations
 from math import degrees, dist, isclose
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
+from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.parts.section import cut_section
 
@@ -77,6 +79,15 @@ def dxf_bytes(part: Part) -> bytes:
     return drawing.encode(text.getvalue())
 
 
+def checked_dxf(part: Part) -> bytes:
+    """The part's cut file, read back. Raises CheckFailure where it does not say what the part is."""
+    data = dxf_bytes(part)
+    wrong = check_dxf(data, part)
+    if wrong:
+        raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
+    return data
+
+
 def _add(drawing: Drawing, contour: Contour) -> None:
     """Append a contour's entities to the model space, head to tail."""
     space, on_layer = drawing.modelspace(), {"layer": LAYER}
@@ -112,10 +123,13 @@ def read_dxf(file: str | Path | bytes) -> CutFile:
     """
     import ezdxf
 
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it says of a damaged file is in our one line
     try:
         as_text = io.StringIO(file.decode("cp1252")) if isinstance(file, bytes) else None
         drawing = ezdxf.read(as_text) if as_text else ezdxf.readfile(file)
-    except (ezdxf.DXFError, OSError, UnicodeDecodeError) as error:
+    except (
+        Exception
+    ) as error:  # its parser raises whatever a damaged file makes it meet: IndexError, StopIteration, ...
         raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")

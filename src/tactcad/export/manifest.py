@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path, PurePosixPath
@@ -12,12 +10,18 @@ from typing import Any
 from tactcad.design.files import read_bytes, read_json
 from tactcad.design.messages import InputError
 
-NAME = "manifest.json"
+from .contents import MOST_BYTES, NAME, sealed, sha256_of
+from .formats import PART_FORMATS
+
 SCHEMA = "tactcad-manifest-1"
-MOST_BYTES = (
-    1_000_000_000  # no file of an export comes near; a pipe or device named in a manifest is not read
-)
-KINDS = ("step-part", "step-assembly", "dxf", "bom", "picture", "drawing", "inspection", "report")
+KINDS = {f.kind for f in PART_FORMATS} | {
+    "step-assembly",
+    "picture",
+    "bom",
+    "drawing",
+    "inspection",
+    "report",
+}
 
 
 @dataclass(frozen=True)
@@ -64,14 +68,9 @@ class Manifest:
     inputs: Mapping[str, Any] = field(default_factory=dict)
 
 
-def sha256_of(data: bytes) -> str:
-    return hashlib.sha256(data).hexdigest()
-
-
 def manifest_bytes(manifest: Manifest) -> bytes:
-    """The manifest as JSON text. Raises ValueError where a number is not finite."""
-    record = {"schema": SCHEMA, **asdict(manifest)}
-    return (json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    """The manifest as JSON text, sealed (contents.py). Raises ValueError where a number is not finite."""
+    return sealed({"schema": SCHEMA, **asdict(manifest)})
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -80,6 +79,7 @@ def read_manifest(folder: Path) -> Manifest:
         record = read_json(folder / NAME, MOST_BYTES, "a manifest")
         if record.pop("schema") != SCHEMA:
             raise ValueError(f"its schema is not {SCHEMA}")
+        record.pop("seal", None)  # an earlier tactcad's has none
         files = tuple(FileRecord(**row) for row in record.pop("files"))
         parts = tuple(_part(row) for row in record.pop("parts"))
         manifest = Manifest(files=files, parts=parts, **record)
@@ -139,7 +139,11 @@ def _file_faults(folder: Path, file: FileRecord, parts: set[str]) -> list[str]:
     path = PurePosixPath(file.path)
     if path.is_absolute() or ".." in path.parts or not path.parts:
         return [f"{file.path}: leads out of the folder"]
-    wrong = [] if file.kind in KINDS else [f"{file.path}: kind {file.kind!r} is none of {', '.join(KINDS)}"]
+    wrong = (
+        []
+        if file.kind in KINDS
+        else [f"{file.path}: kind {file.kind!r} is none of {', '.join(sorted(KINDS))}"]
+    )
     if file.part_no and file.part_no not in parts:
         wrong.append(f"{file.path}: part {file.part_no!r} is not listed")
     try:

@@ -13,15 +13,17 @@ from tactcad.design.tree import Design
 
 from . import manifest as manifests
 from .cache import Cache, default_root
+from .contents import Contents
 from .inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
-from .publish import Published, locked, new_build, published
+from .publish import REFUSE, Work, left_unfinished, looked_at, turn
 
 if TYPE_CHECKING:
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Pose, Scene
 
-    from .products import Product, Shapes
+    from .products import Product
+    from .shapes import Shapes
 
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
@@ -51,50 +53,62 @@ class Exported:
     reasons: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class ExportOptions:
+    """What of a design is exported, and how; beside the design all that an export is made from.
+
+    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`: `full`
+    or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    """
+
+    scenes: tuple[str, ...]
+    pose: Pose | None = None
+    guides: bool = False
+    detail: str = "full"
+    drawings: bool = False
+    draft: bool = False
+
+
 def export(
     design: Design,
-    scene_names: Sequence[str],
+    options: ExportOptions,
     out: str | os.PathLike[str],
     progress: Progress,
-    pose: Pose | None = None,
-    guides: bool = False,
-    detail: str = "full",
-    drawings: bool = False,
-    draft: bool = False,
+    others: str = REFUSE,
 ) -> Exported:
-    """Write the scenes of a design to the folder `out`, all or nothing; in another pose than the rest's where
-    given, with the assembly guides and the drawings where asked for (as a draft: marked PRELIMINARY), and at the
-    detail level `full` or `envelope`.
+    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files there that
+    tactcad did not write so (publish.py).
 
     Nothing is written where the folder already holds just this; the rules between fields, which the
     earlier export kept, are tried only where something has to be made. Raises InputError where the
     design breaks a rule, or `out` is not ours to replace or cannot be written, CheckFailure where a
-    file does not read back as it should.
+    file does not read back as it should, or where something in `out` had changed meanwhile and was kept.
     """
-    wanted = (
-        {"design": design, "scenes": tuple(scene_names)}
-        | ({"pose": pose} if pose else {})
-        | ({"guides": True} if guides else {})
+    inputs = inputs_of(
+        {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())
     )
-    wanted |= {"detail": detail} if detail != "full" else {}
-    sheets = ("draft" if draft else "final") if drawings else ""
-    wanted |= {"drawings": sheets} if drawings else {}
-    inputs = inputs_of(wanted, ROOMS, LIBRARIES + (DRAWN_WITH if drawings else ()))
-    if published(out).current is None:
-        _refuse_broken(design)  # before a lock, or a folder for it, appears on the disk
-    with locked(out, say=progress.line) as place:
-        why, count = _reasons(place, inputs)
-        if not why:
-            progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
-            return Exported(Path(out), count, (), (), ())
-        _refuse_broken(design)
-        if drawings:
+    there = looked_at(out, manifests.SCHEMA, others)
+    why = _reasons(there, inputs)
+    if why:
+        _refuse_broken(design)  # before anything appears on the disk
+        if options.drawings:
             _refuse_unprintable(design)
+    elif not left_unfinished(out):
+        return _unchanged(out, there, progress)
+    cache = Cache(default_root(), progress.line)
+    with turn(out, manifests.SCHEMA, others, progress.line) as work:
+        why = _reasons(work.earlier, inputs)
+        if not why:
+            return _unchanged(out, work.earlier, progress)
         for reason in why:
             progress.line(f"{out}: {reason}")
-        return _rebuild(
-            design, scene_names, Path(out), place, inputs, tuple(why), progress, pose, guides, detail, sheets
-        )
+        return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
+
+
+def _unchanged(out: str | os.PathLike[str], there: Contents, progress: Progress) -> Exported:
+    count = len(there.record["files"]) + 1
+    progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
+    return Exported(Path(out), count, (), (), ())
 
 
 def _refuse_broken(design: Design) -> None:
@@ -112,63 +126,54 @@ def _refuse_unprintable(design: Design) -> None:
     )
 
 
-def _reasons(place: Published, now: Inputs) -> tuple[list[str], int]:
-    """Why the export has to be made anew (empty: it need not), and how many files it holds."""
-    if place.current is None:
-        return ["there is no earlier export"], 0
-    wrong = manifests.check_manifest(place.current)
+def _reasons(there: Contents, now: Inputs) -> list[str]:
+    """Why the export has to be made anew; empty: it need not."""
+    if not there.states or there.record is None and not there.foreign:
+        return ["there is no earlier export"]
+    wrong = [f"{path}: {why}" for path, why in there.foreign.items()]
+    wrong += [f"{path}: missing" for path in there.missing]
     if wrong:
-        return [f"the earlier export was altered: {wrong[0]}"], 0
-    earlier = manifests.read_manifest(place.current)
-    return reasons(inputs_from_json(earlier.inputs), now), len(earlier.files) + 1
+        return [f"the earlier export was altered: {wrong[0]}"]
+    return reasons(inputs_from_json(there.record.get("inputs")), now)
 
 
 def _rebuild(
     design: Design,
-    scene_names: Sequence[str],
+    options: ExportOptions,
     out: Path,
-    place: Published,
+    work: Work,
+    cache: Cache,
     inputs: Inputs,
     why: tuple[str, ...],
     progress: Progress,
-    pose: Pose | None,
-    guides: bool,
-    detail: str,
-    sheets: str,
 ) -> Exported:
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
 
-    from .products import (
-        Shapes,
-        assembly_products,
-        drawing_products,
-        guide_products,
-        part_products,
-        scene_products,
-    )
+    from .products import assembly_products, drawing_products, guide_products, part_products, scene_products
+    from .shapes import Shapes
 
-    cache = Cache(default_root(), progress.line)
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
-    scenes = [at_detail(make_scene(design, name, pose), detail) for name in scene_names]
+    scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
-    products += [p for s in scenes if guides for p in guide_products(design, s, shapes)]
-    if sheets:
-        products += drawing_products(design, parts, shapes, products, progress.step, sheets == "draft")
-        products += assembly_products(design, scenes, shapes, progress.step, sheets == "draft")
-    with new_build(place) as folder:
-        made = _write_products(folder, products, cache, progress)
-        records = [_record(folder, p, design) for p in products]
-        records += _write_bills(folder, design, scenes, records)
-        records += _write_element_tables(folder, design)
-        part_records = tuple(_part_record(part, scenes, shapes, cache) for part in parts)
-        record = Manifest(design.name, design.design.revision, tuple(records), part_records, inputs.as_json())
-        (folder / manifests.NAME).write_bytes(manifests.manifest_bytes(record))
-        wrong = manifests.check_manifest(folder)
-        if wrong:
-            raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
+    products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
+    if options.drawings:
+        products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
+        products += assembly_products(design, scenes, shapes, progress.step, options.draft)
+    folder = work.folder
+    made = _write_products(folder, products, cache, progress)
+    records = [_record(folder, p, design) for p in products]
+    records += _write_bills(folder, design, scenes, records)
+    records += _write_element_tables(folder, design)
+    part_records = tuple(_part_record(part, scenes, shapes, cache) for part in parts)
+    record = Manifest(design.name, design.design.revision, tuple(records), part_records, inputs.as_json())
+    (folder / manifests.NAME).write_bytes(manifests.manifest_bytes(record))
+    wrong = manifests.check_manifest(folder)
+    if wrong:
+        raise CheckFailure(f"the finished export does not hold: {'; '.join(wrong)}")
+    work.publish()
     cache.trim()
     count = len(records) + 1
     progress.line(f"{out}: {count} files, {len(made)} made, {len(products) - len(made)} taken from the cache")

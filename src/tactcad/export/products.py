@@ -7,24 +7,22 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
-from tactcad.parts.section import cut_section
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
+from .formats import PART_FORMATS, PartFormat
 from .inputs import digest
+from .shapes import Shapes, picture_bytes
 from .step_text import Header
 
 if TYPE_CHECKING:
-    from OCP.TopoDS import TopoDS_Shape
-
-    from tactcad.drawing.picture import View
     from tactcad.drawing.sheets import Written
 
 
@@ -40,74 +38,21 @@ class Product:
     make: Callable[[], bytes]
 
 
-class Shapes:
-    """The kernel's shapes of parts, each built at most once: from memory, from the cache, or anew."""
-
-    def __init__(self, cache: Cache, made_by: str) -> None:
-        self.cache, self.made_by = cache, made_by
-        self.built: list[str] = []
-        self._known: dict[str, TopoDS_Shape] = {}
-
-    def of(self, part: Part) -> TopoDS_Shape:
-        """The part's shape in its own frame."""
-        return self._shape(part, partial(self._built, part))
-
-    def drawn(self, part: Part) -> TopoDS_Shape:
-        """The part's shape for pictures of several parts."""
-        from tactcad.parts.library.screws import for_pictures
-
-        shown = for_pictures(part)
-        return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
-
-    def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
-        if part.part_no not in self._known:
-            from tactcad.solids.bytes import from_bytes
-
-            key = f"shape {self.made_by} {digest(part)}"
-            # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
-        return self._known[part.part_no]
-
-    def _built(self, part: Part) -> bytes:
-        self.built.append(part.part_no)
-        return _shape_bytes(part)
-
-
-def _shape_bytes(part: Part) -> bytes:
-    from tactcad.solids.build import build
-    from tactcad.solids.bytes import to_bytes
-
-    return to_bytes(build(part).wrapped)
-
-
 def header(design: Design, name: str, description: str) -> Header:
     d = design.design
     return Header(name, description, d.revision, d.date, d.author, d.organisation)
 
 
 def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
-    """STEP, DXF where the part is cut from sheet or plate, and a picture where it is made here."""
+    """A file of every format that the part has one in (formats.py)."""
     head = header(design, part.part_no, part.name)
-    revision = design.design.revision
-    made = []
 
-    def product(path: str, kind: str, make: Callable[[], bytes], *depends: object) -> None:
-        key = digest((kind, shapes.made_by, part, head, *depends))
-        made.append(Product(path, kind, part.part_no, key, make))
+    def product(form: PartFormat) -> Product:
+        path = form.path.format(part_no=part.part_no, revision=head.revision)
+        key = digest((form.kind, shapes.made_by, part, head))
+        return Product(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
 
-    product(f"step/{part.part_no}_{revision}.step", "step-part", lambda: _part_step(part, shapes, head))
-    if cut_section(part) is not None:
-        product(f"dxf/{part.part_no}_{revision}.dxf", "dxf", lambda: _part_dxf(part))
-    if not part.bought:
-        placement = (Placement(part.part_no, part),)
-        view = "oblique"
-        product(
-            f"pictures/{part.part_no}.svg",
-            "picture",
-            lambda: _picture(placement, view, shapes, part.name, f"{part.part_no} revision {revision}"),
-            view,
-        )
-    return made
+    return [product(form) for form in PART_FORMATS if form.has(part)]
 
 
 def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
@@ -137,7 +82,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
                 "picture",
                 "",
                 digest(("picture", shapes.made_by, placements, view, text, head)),
-                partial(_picture, placements, view, shapes, text, f"{name} revision {revision}"),
+                partial(picture_bytes, placements, view, shapes, text, f"{name} revision {revision}"),
             )
         )
     return products
@@ -156,7 +101,7 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
         label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
     ) -> Product:
         key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
-        make = partial(_picture, placements, "above", shapes, title, description, marked)
+        make = partial(picture_bytes, placements, "above", shapes, title, description, marked)
         return Product(guide.picture_path(scene, label), "picture", "", key, make)
 
     products = [
@@ -347,55 +292,7 @@ def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
         raise CheckFailure(f"{part.part_no}: bounding box is {off:.3g} mm from the description's")
 
 
-def _part_step(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from .step import part_step
-
-    return part_step(part, shapes.of(part), head)
-
-
 def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
     from .step import scene_step
 
     return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)
-
-
-def _part_dxf(part: Part) -> bytes:
-    from . import dxf
-
-    data = dxf.dxf_bytes(part)
-    wrong = dxf.check_dxf(data, part)
-    if wrong:
-        raise CheckFailure(f"{part.part_no}: DXF file: {'; '.join(wrong)}")
-    return data
-
-
-def _picture(
-    placements: Sequence[Placement],
-    view: str,
-    shapes: Shapes,
-    title: str,
-    description: str,
-    marked: Sequence[Placement] = (),
-) -> bytes:
-    from tactcad.drawing import picture
-    from tactcad.parts.library.screws import for_pictures
-    from tactcad.solids.place import placed_shape
-
-    eye: View = picture.VIEWS[view]
-
-    def drawn(some: Sequence[Placement]) -> picture.Drawing:
-        return picture.drawing(
-            [
-                placed_shape(
-                    shapes.drawn(p.part) if len(some) > 1 else shapes.of(p.part), p.origin, p.rotation
-                )
-                for p in some
-            ],
-            eye,
-        )
-
-    data = picture.svg(drawn(placements), title, description, drawn(marked) if marked else None)
-    # a screw that is drawn thinner may be what the picture's edge is at
-    shown = [replace(p, part=for_pictures(p.part)) for p in placements] if len(placements) > 1 else placements
-    picture.check_picture(data, shown, eye)
-    return data

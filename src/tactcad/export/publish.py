@@ -1,208 +1,305 @@
 """All or nothing: a folder of files appears under its name in one step, finished, or not at all.
 
-DIR is a relative link into a hidden sibling folder of numbered builds:
+DIR is an ordinary folder: it may be renamed, copied, archived, and stays what it is. While it is made there is
 
-    exports/macro-array -> .macro-array.builds/7
-    exports/.macro-array.builds/6            the build before, for readers that still have it open
-    exports/.macro-array.builds/8.part       being written (or left by a run that was killed)
-    exports/.macro-array.lock                who writes; the lock goes with its process, however that ends
+    exports/macro-array                              the earlier one, whole
+    exports/.macro-array.tactcad-k3x0a9_2/           ours by its mark, held by the process that writes
+        written-by-tactcad                           the mark
+        making/                                      being written; named finished/ when it is
 
-The switch is the rename of a new link over the old one, which the file system does at once. Builds
-are numbered, not dated, so that a clock set back changes nothing.
+Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is looked at once more: what is
+not exactly what tactcad wrote is never removed unasked, but kept beside as DIR-kept-1. The next run does the same
+with what a killed one left. Where the system or the file system cannot exchange, DIR is moved to `earlier`
+first; a kill between these two renames leaves no DIR until the next run puts it back.
 """
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
-import shutil
+import stat
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, field
+from itertools import count
 from pathlib import Path
 
-from tactcad.design.files import absolute, refusal
+from tactcad.design.files import absolute, flush_entry, refusal
+from tactcad.design.held import MAKING, OWN, Settle, held_folder, sweep_folders
 from tactcad.design.messages import CheckFailure, InputError
+
+from .contents import NAME, NOTHING, Contents, contents, remove, sealed, sha256_of
 
 WAIT_SECONDS = 600.0  # a cold export of the largest design takes a fraction of this
 POLL_SECONDS = 0.1
+SHOWN = 5  # names in a message
+REFUSE, KEEP, DISCARD = "refuse", "keep", "discard"  # what to do with files that are not ours
+LEGAL = "a new name, an empty folder, or one that tactcad wrote and nobody changed"
+FINISHED = "finished"
+AT_FDCWD, NOREPLACE, EXCHANGE = -100, 1, 2
+
+Say = Callable[[str], None]
+
+
+def _print(text: str) -> None:
+    print(text, file=sys.stderr)
+
+
+def looked_at(directory: str | os.PathLike[str], schema: str, others: str = REFUSE) -> Contents:
+    """What lies in DIR now; touches nothing.
+
+    Raises InputError where DIR is no place for a folder, or holds what tactcad did not write there and
+    `others` is REFUSE.
+    """
+    out = absolute(directory)
+    with _in_one_line(out):
+        _refuse_place(out)
+        seen = contents(out, schema)
+    if seen.foreign and others == REFUSE:
+        raise InputError(
+            str(directory),
+            f"holds what is not as tactcad wrote it: {_named(seen.foreign)}; nothing was changed",
+            legal="--keep, which moves the folder beside, --discard, which removes it, or another folder",
+        )
+    return seen
+
+
+def _refuse_place(out: Path) -> None:
+    if not out.name:
+        raise InputError(str(out), "cannot be replaced", legal=LEGAL)
+    if out.is_symlink():
+        if Path(os.readlink(out)).parent.name == f".{out.name}.builds":
+            raise InputError(
+                str(out),
+                f"was written by an earlier tactcad, as a link to {os.readlink(out)}; nothing was changed",
+                legal=f"move or remove it together with .{out.name}.builds, then export again",
+            )
+        raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
+    if os.path.lexists(out) and not out.is_dir():
+        raise InputError(str(out), "is a file", legal=LEGAL)
+    for folder in Path(os.path.realpath(out)).parents:
+        if _says_tactcad(folder / NAME):
+            raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)
+
+
+def _says_tactcad(manifest: Path) -> bool:
+    if not manifest.is_file():
+        return False
+    with manifest.open("rb") as file:
+        return b'"schema": "tactcad-' in file.read(40)
+
+
+def _named(foreign: Mapping[str, str]) -> str:
+    names = [f"{path if path != '.' else 'the folder'} ({why})" for path, why in foreign.items()]
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
+
+
+def left_unfinished(directory: str | os.PathLike[str]) -> bool:
+    """Whether another run writes DIR, or was killed when it did."""
+    out = absolute(directory)
+    return any(name.startswith(f".{out.name}{OWN}") for name in os.listdir(out.parent))
 
 
 @dataclass(frozen=True)
-class Published:
-    """Where a finished folder is, or will be, published: DIR and its hidden siblings."""
+class Work:
+    """One process's turn at DIR: `folder` to write into, `earlier` is what lay in DIR when the turn came."""
 
-    link: Path  # absolute
-
-    @property
-    def builds(self) -> Path:
-        return self.link.with_name(f".{self.link.name}.builds")
-
-    @property
-    def lock(self) -> Path:
-        return self.link.with_name(f".{self.link.name}.lock")
+    out: Path
+    schema: str
+    others: str
+    say: Say
+    own: Path
+    earlier: Contents
+    kept: list[str] = field(default_factory=list)  # a line for each folder kept although nobody asked
 
     @property
-    def current(self) -> Path | None:
-        """The folder that DIR stands for now, None where there is none. It is never written to again."""
-        number = self._linked_number()
-        build = self.builds / str(number)
-        return build if number is not None and build.is_dir() else None
+    def folder(self) -> Path:
+        return self.own / MAKING
 
-    def _linked_number(self) -> int | None:
-        """The number of the build that DIR links to; None where DIR is no link of ours."""
-        try:
-            folder, _, number = os.readlink(self.link).rpartition("/")
-        except OSError:
-            return None
-        return int(number) if folder == self.builds.name and number.isdecimal() else None
+    def write(self, files: Mapping[str, bytes]) -> None:
+        """Write the files and a manifest of them, and publish them."""
+        for path, data in files.items():
+            (self.folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (self.folder / path).write_bytes(data)
+        listed = [{"path": path, "sha256": sha256_of(data)} for path, data in files.items()]
+        (self.folder / NAME).write_bytes(sealed({"schema": self.schema, "files": listed}))
+        self.publish()
 
-    def refuse_foreign(self) -> None:
-        """Raises InputError where DIR holds anything that was not put there by an export, or lies in one."""
-        for folder in Path(os.path.realpath(self.link.parent)).parts:
-            if folder.startswith(".") and folder.endswith(".builds"):
-                raise InputError(str(self.link), "lies inside an earlier export", legal=LEGAL)
-        if self.link.is_symlink():
-            if self._linked_number() is None:
-                raise InputError(str(self.link), "is a link to somewhere else", legal=LEGAL)
-        elif self.link.is_dir():
-            if any(self.link.iterdir()):
-                raise InputError(str(self.link), "is a folder with other files in it", legal=LEGAL)
-        elif self.link.exists():
-            raise InputError(str(self.link), "is a file", legal=LEGAL)
+    def publish(self) -> None:
+        """Let `folder`, with its manifest, be DIR; the earlier one goes, or is kept beside."""
+        if self.out.is_dir():
+            self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
+        _flush(self.folder)
+        finished = self.folder.rename(self.own / FINISHED)
+        earlier = _put_in_place(finished, self.out, self.own / "earlier")
+        flush_entry(self.out.parent)
+        if earlier:
+            self.settle(earlier)
 
-
-LEGAL = "a new name, an empty folder, or the folder of an earlier export"
-
-
-def published(directory: str | os.PathLike[str]) -> Published:
-    """Where `directory` would be published; touches nothing. Raises InputError where it has no name."""
-    link = absolute(directory)
-    if not link.name:
-        raise InputError(str(directory), "cannot be replaced", legal=LEGAL)
-    return Published(link)
+    def settle(self, folder: Path) -> None:
+        """Remove an earlier DIR, or keep it beside."""
+        seen = contents(folder, self.schema)
+        if self.others != KEEP or not self.earlier.foreign:
+            if not seen.changed_since(self.earlier) and remove(folder, seen):
+                return
+            seen = contents(folder, self.schema)
+        new = {path: seen.foreign[path] for path in seen.changed_since(self.earlier)}
+        kept = _kept_beside(folder, self.out)
+        if new:
+            self.kept.append(f"kept as {kept} for {_named(new)}")
+        else:
+            self.say(
+                f"{self.out}: the earlier folder is kept as {kept} for "
+                f"{_named(seen.foreign) or 'what could not be removed'}"
+            )
 
 
 @contextmanager
-def locked(
+def turn(
     directory: str | os.PathLike[str],
+    schema: str,
+    others: str = REFUSE,
+    say: Say = _print,
     wait: float = WAIT_SECONDS,
-    say: Callable[[str], None] = lambda text: print(text, file=sys.stderr),
-) -> Iterator[Published]:
-    """Be the only one who writes `directory`; what killed runs left behind is swept first.
+) -> Iterator[Work]:
+    """Be the only one who writes DIR, a folder of that schema; what killed runs left is settled first.
 
-    Waits up to `wait` seconds for another export, and says so once. Raises InputError where
-    `directory` is not ours to replace or the place cannot be written to, CheckFailure where the wait was in
-    vain. Whatever is raised inside, the earlier export stands.
+    Waits up to `wait` seconds for another process, and says so once. Raises InputError where DIR is not ours to
+    replace (see `looked_at`) or the place cannot be written to; CheckFailure where the wait was in vain, the disk is
+    full, or, after the new DIR stands, where something in the earlier one appeared meanwhile and was kept.
+    Whatever is raised inside, the earlier DIR stands.
     """
-    place = published(directory)
-    with in_one_line(place.link):
-        place.refuse_foreign()
-        place.link.parent.mkdir(parents=True, exist_ok=True)
-        handle = os.open(place.lock, os.O_RDWR | os.O_CREAT, 0o666)
-    try:
-        with in_one_line(place.link):
-            take_lock(handle, place.link, wait, say)
-            place.refuse_foreign()  # it may have changed while we waited
-            _sweep(place)
-        yield place
-    finally:
-        os.close(handle)
+    out = absolute(directory)
+    kept: list[str] = []
 
+    def settle(left: Path) -> None:
+        _recover(left, out, schema, kept)
 
-@contextmanager
-def new_build(place: Published) -> Iterator[Path]:
-    """A fresh folder to write into, published when the block ends well and gone when it does not.
+    def clear(own: Path) -> None:
+        seen = contents(own / FINISHED, schema)  # the new folder, or the earlier one exchanged for it
+        if seen.states and not seen.foreign:
+            remove(own / FINISHED, seen)
 
-    Only inside `locked`. Raises InputError where the machine refuses to write, CheckFailure where the disk is full.
-    """
-    with in_one_line(place.link):
-        place.builds.mkdir(exist_ok=True)
-        number = 1 + max((n for n in map(_number, place.builds.iterdir()) if n is not None), default=0)
-        part, build = place.builds / f"{number}.part", place.builds / str(number)
-        part.mkdir()
-        before = place.current
+    with _in_one_line(out):
+        looked_at(out, schema, others)
+        out.parent.mkdir(parents=True, exist_ok=True)
         try:
-            yield part
-            _flush(part)
-            part.rename(build)
-            flush_entry(place.builds)
-            _switch(place, number)
+            with ExitStack() as stack:
+                own = _own_folder(out, settle, clear, stack, say, time.monotonic() + wait)
+                work = Work(out, schema, others, say, own, looked_at(out, schema, others), kept)
+                if work.earlier.foreign and others == DISCARD:
+                    say(f"{out}: to be discarded: {_named(work.earlier.foreign)}")
+                work.folder.mkdir()
+                yield work
         except BaseException:
-            shutil.rmtree(part, ignore_errors=True)
-            if place.current != build:
-                shutil.rmtree(build, ignore_errors=True)
+            for line in kept:
+                say(f"{out}: what appeared in the earlier folder meanwhile is {line}")
             raise
-    with suppress(OSError):  # the new build stands already; the next run sweeps what is left
-        _remove_builds(place, keep={build, before})
+    if kept:
+        raise CheckFailure(
+            f"{out}: the new folder stands; what appeared in the earlier one meanwhile is {'; '.join(kept)}"
+        )
 
 
-def _switch(place: Published, number: int) -> None:
-    """Let DIR mean the build of that number, in one step."""
-    temporary = place.builds / "link.part"
-    temporary.unlink(missing_ok=True)
-    temporary.symlink_to(f"{place.builds.name}/{number}")
-    if not place.link.is_symlink() and place.link.is_dir():
-        place.link.rmdir()  # empty: a link cannot be renamed over a folder
-    temporary.rename(place.link)
-    flush_entry(place.link.parent)
-
-
-def take_lock(handle: int, target: Path, wait: float, say: Callable[[str], None]) -> None:
-    """Take the lock, or wait for whoever has it."""
-    until = time.monotonic() + wait
+def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say: Say, until: float) -> Path:
+    """Our unfinished folder beside DIR, once no other process has one."""
     said = False
     while True:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            break
+        parent = os.open(out.parent, os.O_RDONLY | os.O_DIRECTORY)
+        try:  # one at a time looks around; closing gives the lock back
+            fcntl.flock(parent, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            holder = os.pread(handle, 100, 0).decode("ascii", "replace").strip() or "unknown"
-            if time.monotonic() > until:
-                raise CheckFailure(
-                    f"{target}: another export (process {holder}) has been writing it for "
-                    f"{wait:.0f} s; nothing was changed"
-                ) from None
-            if not said:
-                say(f"{target}: waiting for another export (process {holder}) to finish")
-                said = True
-            time.sleep(POLL_SECONDS)
-    with suppress(OSError):  # a full disk: the number is for the message only
-        os.ftruncate(handle, 0)
-        os.pwrite(handle, f"{os.getpid()}\n".encode(), 0)
+            holders = None
+        except OSError:  # a file system without locks: who comes last stays
+            holders = ()
+        else:
+            holders = sweep_folders(out.parent, f".{out.name}", settle)
+        try:
+            if holders == ():
+                return stack.enter_context(held_folder(out.parent, f".{out.name}", settle, clear))
+        finally:
+            os.close(parent)
+        holder = f"process {holders[0]}" if holders else "which looks around"
+        if time.monotonic() > until:
+            raise CheckFailure(
+                f"{out}: another run ({holder}) has been writing it all the time; nothing was changed"
+            )
+        if holders and not said:
+            say(f"{out}: waiting for another export ({holder}) to finish")
+            said = True
+        time.sleep(POLL_SECONDS)
 
 
-def _sweep(place: Published) -> None:
-    """Remove what killed runs left: all but the build that DIR links to and the last one before it."""
-    if not place.builds.is_dir():
+def _recover(left: Path, out: Path, schema: str, kept: list[str]) -> None:
+    """Settle what a killed run left in its folder: DIR is put back where it is gone, all else as `Work` does."""
+    if os.path.lexists(left / "earlier") and not os.path.lexists(out):
+        os.rename(left / "earlier", out)
+    work = Work(out, schema, REFUSE, _print, left, NOTHING, kept)
+    for name in (FINISHED, "earlier"):
+        if os.path.lexists(left / name):
+            work.settle(left / name)
+
+
+def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
+    """Let `finished` be DIR; returns where the earlier DIR is now, None where there was none."""
+    while True:  # DIR may come or go meanwhile
+        try:
+            if not os.path.lexists(out):
+                _move(finished, out)
+                return None
+            return finished if _rename(finished, out, EXCHANGE) else _moved_aside(finished, out, aside)
+        except (FileExistsError, FileNotFoundError):
+            if not os.path.lexists(finished):
+                raise
+
+
+def _moved_aside(finished: Path, out: Path, aside: Path) -> Path:
+    os.rename(out, aside)
+    try:
+        os.rename(finished, out)
+    except OSError:
+        os.rename(aside, out)
+        raise
+    return aside
+
+
+def _kept_beside(folder: Path, out: Path) -> Path:
+    """Move the folder to the first name DIR-kept-N that is free."""
+    for n in count(1):
+        kept = out.with_name(f"{out.name}-kept-{n}")
+        with suppress(FileExistsError):
+            _move(folder, kept)
+            break
+    return kept
+
+
+def _move(old: Path, new: Path) -> None:
+    """Rename to a name that must be free. Raises FileExistsError."""
+    if _rename(old, new, NOREPLACE):
         return
-    current = place.current
-    keep = {current}
-    if current:
-        older = [n for n in map(_number, place.builds.iterdir()) if n is not None and n < int(current.name)]
-        keep |= {place.builds / str(max(older))} if older else set()
-    _remove_builds(place, keep)
+    if os.path.lexists(new):
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(new))
+    os.rename(old, new)
 
 
-def _remove_builds(place: Published, keep: set[Path | None]) -> None:
-    for path in place.builds.iterdir():
-        if path in keep:
-            continue
-        if path.is_symlink() or not path.is_dir():
-            path.unlink()
-            continue
-        doomed = path.with_suffix(".part")  # half removed, it must not pass for a build
-        if path != doomed:
-            path.rename(doomed)
-        shutil.rmtree(doomed)
+def _rename(old: Path, new: Path, flag: int) -> bool:
+    """Rename with that flag of renameat2; False where the system or its file system cannot."""
+    import ctypes  # an export with nothing changed does without
 
-
-def _number(path: Path) -> int | None:
-    """Number of a finished or unfinished build, None for anything else."""
-    stem = path.name.removesuffix(".part")
-    return int(stem) if stem.isdecimal() else None
+    try:
+        renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
+    except (AttributeError, OSError):
+        return False
+    if renameat2(AT_FDCWD, os.fsencode(old), AT_FDCWD, os.fsencode(new), flag) == 0:
+        return True
+    number = ctypes.get_errno()
+    if number in (errno.ENOSYS, errno.EINVAL, errno.ENOTSUP):
+        return False
+    raise OSError(number, os.strerror(number), str(old), None, str(new))
 
 
 def _flush(folder: Path) -> None:
@@ -213,16 +310,8 @@ def _flush(folder: Path) -> None:
         flush_entry(Path(base))
 
 
-def flush_entry(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
 @contextmanager
-def in_one_line(target: Path) -> Iterator[None]:
+def _in_one_line(target: Path) -> Iterator[None]:
     """Turn the machine's refusals to write `target` into the one-line messages of the house."""
     try:
         yield

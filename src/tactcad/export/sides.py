@@ -134,6 +134,10 @@ def _exported_bills(folder: Path, manifest: Manifest) -> Record:
     for file in manifest.files:
         if file.kind == "bom" and file.path.endswith(".json"):
             bill = read_json(folder / file.path, MOST_BYTES, "a bill of materials")
+            if not all(
+                isinstance(name, str) for name in (bill["scene"], *(r["part_no"] for r in bill["rows"]))
+            ):
+                raise ValueError(f"{file.path}: a scene or part number is no text")
             scenes[bill["scene"]] = {"bom": {row["part_no"]: bill_line(row) for row in bill["rows"]}}
     return scenes
 

@@ -23,7 +23,7 @@ def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
     distinct, index = np.unique(np.column_stack(columns).astype(float), axis=0, return_inverse=True)
     found = {"fem-plane": np.empty(len(distinct)), "fem-solid": np.empty(len(distinct))}
     for i, row in enumerate(distinct):
-        one = HingeSection.of(*row)
+        one = HingeSection.of(**dict(zip((f.name for f in fields(s)), row)))
         shape, material = (
             reference_shape(one),
             (float(one.youngs_modulus), float(one.poisson), float(one.width)),

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from tactcad.mechanics import beams, plane, solid, strain, validity
+from tactcad.mechanics import plane, solid, strain, validity
+from tactcad.mechanics.register import REGISTER
 from tactcad.mechanics.section import HingeSection
 
 from .fit_samples import BOX, GRIDS, LEAST_HEIGHT, SEEDS, Columns, section
@@ -246,12 +247,9 @@ def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]
     flat, K2 = plane.compliance(s, root), rows["plane_stiffness"] * rows["width"]
     K3 = K2 * rows["width_factor"]
     found = {
-        f"{name}, against plane elements": 1.0 / (f(s) * K2) - 1.0
-        for name, f in (
-            ("short", beams.short_hinge),
-            ("beam", beams.beam),
-            ("section", beams.section_integral),
-        )
+        f"{rung.name}, against plane elements": 1.0 / (rung.compliance(s, data) * K2) - 1.0
+        for rung in REGISTER
+        if rung.compliance and not rung.fitted
     }
     found["plane, against plane elements"] = 1.0 / (flat * K2) - 1.0
     found["plane, against solid elements"] = 1.0 / (flat * K3) - 1.0

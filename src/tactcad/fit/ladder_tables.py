@@ -13,8 +13,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from tactcad.mechanics import ladder, strain
-from tactcad.mechanics.accuracy import accuracy_data, zone_name
+from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, zone_name
 from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.register import REGISTER
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
 PAPER_STRAIN = {
@@ -33,12 +34,11 @@ def errors() -> str:
         "| rung | against converged | two-sided: rms | max | one-sided: rms | max |",
         "|---|---|---|---|---|---|",
     ]
-    for rung in ladder.CLOSED_FORMS:
-        solid = rung == "solid"
-        name = f"{rung}, against {'solid' if solid else 'plane'} elements"
+    for rung in (rung for rung in REGISTER if rung.compliance):
+        name = f"{rung.name}, against {rung.against} elements"
         row = [report["held out, box"][side][name] for side in ("two", "one")]
         cells = " | ".join(f"{100 * e['rms']:.2g} % | {100 * e['max']:.2g} %" for e in row)
-        lines.append(f"| {rung} | {'solid' if solid else 'plane'} elements | {cells} |")
+        lines.append(f"| {rung.name} | {rung.against} elements | {cells} |")
     return "\n".join(lines)
 
 
@@ -60,10 +60,10 @@ def beyond() -> str:
     """Error beyond the box, inside the range in which a rung answers."""
     report = ladder_data()["report"]["relative_error"]["fitted, beyond the box"]
     lines = ["| rung | two-sided: rms | max | one-sided: rms | max |", "|---|---|---|---|---|"]
-    for rung in ("plane", "solid"):
-        row = [report[side][f"{rung}, against {rung} elements"] for side in ("two", "one")]
+    for rung in (rung for rung in REGISTER if rung.fitted):
+        row = [report[side][f"{rung.name}, against {rung.against} elements"] for side in ("two", "one")]
         cells = " | ".join(f"{100 * e['rms']:.2g} % | {100 * e['max']:.2g} %" for e in row)
-        lines.append(f"| {rung} | {cells} |")
+        lines.append(f"| {rung.name} | {cells} |")
     return "\n".join(lines)
 
 
@@ -116,9 +116,10 @@ def _strain_table(rungs: tuple[str, ...], strains: Callable[[HingeSection, str],
 
 
 def promised() -> str:
-    """Worst error that was measured, and promised, of the rungs that can be chosen, by zone of the envelope."""
+    """Worst error that was measured, and promised, of the rungs that can be chosen, by zone of the
+    envelope."""
     data = accuracy_data()
-    names = ("plane", "solid", "fem-plane", "fem-solid, mesh 2", "fem-solid, mesh 3")
+    names = [c.name for c in CANDIDATES if c.rung in (*ladder.FITTED, *ladder.FINITE_ELEMENTS)]
     lines = ["| zone | designs | " + " | ".join(names) + " |", "|---|---|" + "---|" * len(names)]
     for zone in data["zones"]:
         cells = (f"{100 * zone['worst'][n]:.2g} % -> {100 * zone['promised'][n]:.2g} %" for n in names)

@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.design.csv_table import records
-from tactcad.design.files import read_text, write_whole
+from tactcad.design import csv_table
+from tactcad.design.csv_table import Field, Table, numeric, require_columns
+from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import choose_each
@@ -29,8 +30,8 @@ def estimate_file(
 ) -> tuple[int, int]:
     """Estimate every row of `source` into `target`; returns how many are in range, and how many there are.
 
-    With an `accuracy` every row is answered by the quickest rung that keeps it there, whatever `rung` says. Raises
-    InputError (file:line:column) where the table is malformed; nothing is then written.
+    With an `accuracy` every row is answered by the quickest rung that keeps it there, whatever `rung` says.
+    Raises InputError (file:line:column) where the table is malformed; nothing is then written.
     """
     header, rows, section = read_table(Path(source))
     if accuracy is None:
@@ -53,7 +54,8 @@ def estimate_file(
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one row: stiffness (N/mm), the chosen model and what it promises, or the reason why there is none."""
+    """Of one row: stiffness (N/mm), the chosen model and what it promises, or the reason why there is
+    none."""
 
     stiffness: float
     model: str
@@ -76,7 +78,8 @@ def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
 
 
 def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> tuple[list[float], list[str]]:
-    """Stiffness (N/mm, NaN where refused) and reason ("" where not) of every design; `mesh` as fem-solid's."""
+    """Stiffness (N/mm, NaN where refused) and reason ("" where not) of every design; `mesh` as
+    fem-solid's."""
     if rung not in ladder.FINITE_ELEMENTS:
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()
@@ -96,71 +99,29 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     """Header, rows as text, and the section of arrays. Raises InputError where the table is malformed."""
-    lines = records(str(path), read_text(path, MOST_BYTES, "a table of designs (CSV)"))
-    if not lines:
-        raise InputError(f"{path}:1:1", "the file is empty", legal="a header line of column names")
-    header = [name.strip() for name in lines[0][1]]
-    _check_header(path, header)
-    rows = []
-    for number, row in lines[1:]:
-        if not row:  # an empty line
-            continue
-        if len(row) != len(header):
-            raise InputError(
-                f"{path}:{number}:{min(len(row), len(header)) + 1}",
-                f"{len(row)} fields where the header has {len(header)}",
-            )
-        rows.append((number, row))
-    return header, [row for _, row in rows], _section(path, header, rows)
+    table = csv_table.read_table(path, "a table of designs (CSV)", MOST_BYTES, comments=False)
+    for name in ADDED:
+        if name in table.header:
+            where = table.where(table.header_line, name)
+            raise InputError(where, "column is one that this command adds", value=name)
+    require_columns(table, REQUIRED)
+    return table.header, [row for _, row in table.records], _section(table)
 
 
-def _check_header(path: Path, header: list[str]) -> None:
-    for column, name in enumerate(header, 1):
-        if header.index(name) != column - 1:
-            raise InputError(f"{path}:1:{column}", "column stands twice", value=name)
-        if name in ADDED:
-            raise InputError(f"{path}:1:{column}", "column is one that this command adds", value=name)
-    missing = [name for name in REQUIRED if name not in header]
-    if missing:
-        raise InputError(
-            f"{path}:1:{len(header) + 1}",
-            f"column {missing[0]} is missing",
-            legal=", ".join(REQUIRED) + "; optional sides, " + ", ".join(OPTIONAL),
-        )
-
-
-def _section(path: Path, header: list[str], rows: list[tuple[int, list[str]]]) -> HingeSection:
-    numbers = {}
-    for name in (*REQUIRED, *OPTIONAL):
-        if name in header:
-            column = header.index(name)
-            numbers[name] = np.array(
-                [_number(path, line, column, row[column]) for line, row in rows], dtype=float
-            )
-        else:
-            numbers[name] = np.full(len(rows), OPTIONAL[name])
+def _section(table: Table) -> HingeSection:
+    names = [name for name in (*REQUIRED, *OPTIONAL) if name in table.header]
+    rows = numeric(table, tuple(Field(name, "") for name in names), least=0)
+    numbers = {name: np.full(len(rows), default) for name, default in OPTIONAL.items()} | rows.columns
     sides = [DEFAULT_SIDES] * len(rows)
-    if "sides" in header:
-        column = header.index("sides")
-        sides = [_side(path, line, column, row[column]) for line, row in rows]
+    if "sides" in table.header:
+        sides = [_side(table, *cell) for cell in zip(rows.lines, table.column("sides"))]
     return HingeSection.of(**numbers, two_sided=[SIDES[side] for side in sides])
 
 
-def _number(path: Path, line: int, column: int, text: str) -> float:
-    try:
-        value = float(text) if "_" not in text else math.nan
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise InputError(f"{path}:{line}:{column + 1}", "expected a finite number", value=text)
-    return value
-
-
-def _side(path: Path, line: int, column: int, text: str) -> str:
-    side = text.strip()
+def _side(table: Table, line: int, side: str) -> str:
     if side not in SIDES:
         raise InputError(
-            f"{path}:{line}:{column + 1}", "unknown notch form", value=text, legal=one_of(side, SIDES)
+            table.where(line, "sides"), "unknown notch form", value=side, legal=one_of(side, SIDES)
         )
     return side
 

@@ -8,19 +8,21 @@ as the paper did, puts the force's noise on both axes; that estimate is given be
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, isinf
 
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.lab.readings import CalibrationReadings
+from tactcad.lab.readings import CalibrationReadings, groups
 from tactcad.lab.regression import (
     Lines,
     extreme_deviates,
     fit_lines,
     ratio_interval,
     require_level,
+    rounding,
     t_quantile,
     variance_weights,
 )
@@ -74,20 +76,29 @@ class ElementCalibration:
 
 
 def calibrate(
-    readings: CalibrationReadings, load_cell: float, *, level: float = 0.95, drop_outliers: bool = False
+    readings: CalibrationReadings,
+    load_cell: float,
+    *,
+    level: float = 0.95,
+    drop_outliers: bool = False,
+    tell: Callable[[int, int, str], None] = lambda done, total, what: None,
 ) -> list[ElementCalibration]:
     """One row an element, in the order of the file.
 
-    load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval.
+    load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval. tell:
+    hears of every element before it is fitted. Raises InputError where an element's readings are those of no
+    spring.
     """
     if not load_cell > 0:
         raise InputError(
             "load cell", "stiffness must be positive", value=load_cell, legal="above 0 N/mm, or inf"
         )
     require_level(level)
-    return [
-        _element(readings, int(n), load_cell, level, drop_outliers) for n in dict.fromkeys(readings.element)
-    ]
+    found, parts = [], groups(readings.element)
+    for number, here in parts:
+        tell(len(found), len(parts), f"element {number}")
+        found.append(_element(readings, number, here, load_cell, level, drop_outliers))
+    return found
 
 
 def series_removed(slope: float, load_cell: float) -> float:
@@ -98,9 +109,8 @@ def series_removed(slope: float, load_cell: float) -> float:
 
 
 def _element(
-    all_: CalibrationReadings, number: int, load_cell: float, level: float, drop: bool
+    all_: CalibrationReadings, number: int, here: np.ndarray, load_cell: float, level: float, drop: bool
 ) -> ElementCalibration:
-    here = np.flatnonzero(all_.element == number)
     x, run = all_.displacement[here], all_.run[here]
     y = np.column_stack([all_.force[here], all_.signal[here]])
     bad = [extreme_deviates(x, y[:, k], run) for k in (0, 1)]
@@ -118,6 +128,7 @@ def _element(
     covariance, dof = _covariance(lines, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
+    _require_spring(f"{all_.path}: element {number}", x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
     stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
     per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
     averaged = _averaged(x, y, run)
@@ -152,6 +163,35 @@ def _covariance(lines: Lines, notes: list[str]) -> tuple[np.ndarray, float]:
         f"{len(slopes)} runs"
     )
     return np.cov(slopes.T) / len(slopes), len(slopes) - 1
+
+
+def _require_spring(
+    where: str, x: np.ndarray, y: np.ndarray, k: float, half_width: float, load_cell: float
+) -> None:
+    """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series.
+
+    k, half_width: slope of force over displacement with its interval, N/mm.
+    """
+    if abs(k) * np.ptp(x) <= rounding(y)[0]:
+        raise InputError(
+            where,
+            "the force does not change with displacement",
+            legal="force in N that rises with displacement",
+        )
+    if k + half_width < 0:
+        raise InputError(
+            where,
+            f"the force falls with displacement, by {-k:.4g} N/mm: the sign of one column is reversed",
+            legal="force and displacement both grow as the element is pressed",
+        )
+    if k - half_width >= load_cell:
+        raise InputError(
+            where,
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell:g} N/mm cannot: another "
+            "unit "
+            "of displacement or force, or another load cell",
+            legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
+        )
 
 
 def _stiffness(k: float, se: float, load_cell: float, t: float, notes: list[str]) -> Estimate:

@@ -17,17 +17,14 @@ from tactcad.lab.plain import plain
 
 SCHEMA = "tactcad-calibration-1"
 KNOWN_EXACTLY = 1e6  # degrees of freedom of a table that states no uncertainty
-FIELDS = (
-    Field("element", "1", 1, 100_000, integer=True),
-    Field("stiffness_N_per_mm", "N/mm", 0, 1e9, above=True),
-    Field("signal_per_deflection_V_per_mm", "V/mm", -1e9, 1e9),
-)
-UNCERTAINTY = (
-    Field("stiffness_se", "N/mm", 0, 1e9),
-    Field("signal_per_deflection_se", "V/mm", 0, 1e9),
-    Field("correlation", "1", -1, 1),
-    Field("dof", "1", 1, 1e9),
-)
+ELEMENT = Field("element", "1", 1, 100_000, integer=True)
+STIFFNESS = Field("stiffness_N_per_mm", "N/mm", 1e-6, 1e6)
+STIFFNESS_SE = Field("stiffness_se", "N/mm", 0, 1e6)
+SENSITIVITY = Field("signal_per_deflection_V_per_mm", "V/mm", -1e6, 1e6)
+SENSITIVITY_SE = Field("signal_per_deflection_se", "V/mm", 0, 1e6)
+CORRELATION = Field("correlation", "1", -1, 1)
+DOF = Field("dof", "1", 1, 1e9)
+LEAST_SENSITIVITY = 1e-6  # V/mm: a microvolt at a millimetre
 
 
 def to_text(rows: list[ElementCalibration], load_cell: float, level: float) -> str:
@@ -161,15 +158,12 @@ def read(path: str) -> Sensitivity:
     """
     if path.endswith(".json"):
         return _from_json(path)
-    rows = read_table(path, FIELDS, UNCERTAINTY)
+    rows = read_table(
+        path, (ELEMENT, STIFFNESS, SENSITIVITY), (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF)
+    )
     refuse_duplicates(rows, ("element",))
-    for i, v in enumerate(rows.values("signal_per_deflection_V_per_mm")):
-        if v == 0:
-            raise InputError(
-                rows.where(i, "signal_per_deflection_V_per_mm"),
-                "a sensitivity of zero gives no deflection",
-                legal="not 0",
-            )
+    for i in np.flatnonzero(np.abs(rows.values(SENSITIVITY.name)) < LEAST_SENSITIVITY)[:1]:
+        raise _no_sensitivity(rows.where(i, SENSITIVITY.name))
     number = rows.values("element").astype(int)
 
     def pick(name: str, default: float) -> np.ndarray:
@@ -183,6 +177,7 @@ def read(path: str) -> Sensitivity:
         pick("signal_per_deflection_se", 0.0),
         pick("correlation", 0.0),
         pick("dof", KNOWN_EXACTLY),
+        path,
     )
 
 
@@ -211,25 +206,21 @@ def _from_json(path: str) -> Sensitivity:
         ) from None
     if not len(values):
         raise InputError(path, "a calibration of no element", legal="one element at least")
-    if not (np.isfinite(values[:, 0]).all() and (values[:, 0] >= 1).all() and (values[:, 0] % 1 == 0).all()):
-        raise InputError(
-            path, "an element's number is none", value=values[:, 0].tolist(), legal="whole numbers from 1"
-        )
+    columns = (ELEMENT, STIFFNESS, STIFFNESS_SE, SENSITIVITY, SENSITIVITY_SE, CORRELATION, DOF)
+    for field, column in zip(columns, values.T):
+        for i in np.flatnonzero(~field.allowed(column))[:1]:
+            raise InputError(path, f"{field.name} is not usable", value=float(column[i]), legal=field.legal)
+    if (np.abs(values[:, 3]) < LEAST_SENSITIVITY).any():
+        raise _no_sensitivity(path)
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
         raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")
-    if not (
-        np.isfinite(values).all()
-        and (values[:, 1] > 0).all()
-        and (values[:, 2] >= 0).all()
-        and (values[:, 3] != 0).all()
-        and (values[:, 4] >= 0).all()
-        and (np.abs(values[:, 5]) <= 1).all()
-        and (values[:, 6] >= 1).all()
-    ):
-        raise InputError(
-            path,
-            "a stiffness, sensitivity or its uncertainty is not usable",
-            legal="stiffness above 0, finite errors from 0",
-        )
-    return Sensitivity(number, *values[:, 1:].T)
+    return Sensitivity(number, *values[:, 1:].T, path)
+
+
+def _no_sensitivity(where: str) -> InputError:
+    return InputError(
+        where,
+        "a sensitivity of zero gives no deflection",
+        legal=f"{LEAST_SENSITIVITY:g} V/mm or more, of either sign",
+    )

@@ -39,6 +39,7 @@ class Sensitivity:
     signal_per_deflection_se: np.ndarray
     correlation: np.ndarray
     dof: np.ndarray
+    path: str = "calibration"
 
 
 @dataclass(frozen=True)
@@ -126,17 +127,31 @@ def evaluate(
     touching = readings.load > 0
     if touching.sum() < 3 or len(readings.element) < 2:
         raise InputError(
-            f"sample {readings.sample}",
+            f"{readings.path}: sample {readings.sample}",
             "too little to tell a slope from noise",
             value=f"{len(readings.element)} elements at {int(touching.sum())} loads above zero",
             legal="two elements and three loads at least",
         )
+    for stranger in np.setdiff1d(readings.element, calibration.element)[:1]:
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"element {stranger} of the grasp is not in {calibration.path}",
+            legal=str(calibration.element.tolist()),
+        )
     slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
+    for still in slopes.element[slopes.s == 0][:1]:
+        raise InputError(
+            f"{readings.path}: sample {readings.sample}",
+            f"element {still}: its signal does not change with the load",
+        )
     stiffness = slopes.f / slopes.s
     number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
     if number not in readings.element:
         raise InputError(
-            "reference", "was not read in this grasp", value=number, legal=str(readings.element.tolist())
+            f"{readings.path}: reference",
+            "was not read in this grasp",
+            value=number,
+            legal=str(readings.element.tolist()),
         )
     r = int(np.flatnonzero(readings.element == number)[0])
     others = [i for i in np.argsort(-stiffness, kind="stable") if i != r]
@@ -278,7 +293,7 @@ def _row(calibration: Sensitivity, number: int) -> int:
     found = np.flatnonzero(calibration.element == number)
     if not len(found):
         raise InputError(
-            "calibration",
+            calibration.path,
             f"element {number} of the grasp is not there",
             legal=str(calibration.element.tolist()),
         )
@@ -290,13 +305,15 @@ def _satterthwaite(slopes: Slopes, m: list[int], x: float) -> float:
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
     signal = np.array([along @ slopes.from_signal[i] @ along for i in m])
     parts = np.array([along @ slopes.from_calibration[i] @ along for i in m])
-    weight = 1 / (signal + parts)
+    weight = 1 / np.maximum(signal + parts, np.finfo(float).tiny)
     weight = weight * (
         1 - weight / weight.sum()
     )  # what each element's noise does to the contrast between them
     bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + (
         (weight * parts) ** 2 / slopes.calibration_dof[m]
     ).sum()
+    if bottom == 0:  # readings and calibration without any scatter
+        return float(slopes.signal_dof)
     return float((weight * (signal + parts)).sum() ** 2 / bottom)
 
 

@@ -1,19 +1,15 @@
 """Reads a filled-in inspection sheet back. Every refusal names file, line and column.
 
-What spreadsheets do to a CSV file is undone where it can only mean one thing: a byte order mark, a first line
-"sep=;", semicolons or tabs between the columns, other order of rows and columns, further columns, empty rows and
-cells at the end, and decimal commas where every number of a sheet with semicolons or tabs is written so.
+Rows and columns may stand in another order, and there may be further columns.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from math import isclose
+from math import isclose, isfinite
 from pathlib import Path
 
-from tactcad.design.csv_table import LARGEST_FILE, records
-from tactcad.design.files import read_text
+from tactcad.design.csv_table import Table, decimal_commas, number, read_table, require_columns
 from tactcad.design.messages import InputError
 from tactcad.export.inspection import COLUMNS, UNIT
 from tactcad.parts.layout import Layout
@@ -21,7 +17,6 @@ from tactcad.parts.measurements import Measurement, measurements
 
 NEEDED = tuple(c for c in COLUMNS if c not in ("key", "where", "how"))
 LIMITS = ("nominal", "lower", "upper")
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 FACTOR = 5.0  # a measured value further from its nominal is no measurement of it, but another unit or a slip
 SLIP = "the decimal point slipped"
 UNITS_TAKEN = (
@@ -49,7 +44,8 @@ class Reading:
 
     @property
     def verdict(self) -> str:
-        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a limit."""
+        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a
+        limit."""
         if self.measured is None:
             return "blank"
         u, d = self.uncertainty or 0.0, self.dimension
@@ -64,21 +60,14 @@ class Reading:
 def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     """Every row of the sheet, by element number and in the order of its dimensions.
 
-    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled in.
+    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled
+    in.
     """
-    shown, text = str(path), read_text(path, LARGEST_FILE, "an inspection sheet (CSV)")
-    first, text = _without_hint(text)
-    delimiter = _delimiter(text)
-    lines = [(n + first, [cell.strip() for cell in row]) for n, row in records(shown, text, delimiter)]
-    lines = [(n, row) for n, row in lines if any(row)]
-    if not lines:
-        raise InputError(
-            f"{shown}:1:1", "the file is empty", legal="an inspection sheet: " + ", ".join(NEEDED)
-        )
-    header_line, header = lines[0][0], _stripped(lines[0][1])
-    _check_header(shown, header_line, header)
-    rows = [_Row(shown, n, header, _fitted(shown, n, row, len(header))) for n, row in lines[1:]]
-    commas = delimiter != "," and _all_commas(rows)
+    table = read_table(path, "an inspection sheet (CSV)", comments=False)
+    require_columns(table, NEEDED)
+    rows = [_Row(table, line, cells) for line, cells in table.records]
+    own = (row[name] for row in rows for name in LIMITS)
+    commas = table.delimiter != "," and decimal_commas(own)
     known = {
         (p.designator, m.name): (p.number, part_no, m) for p, part_no, ms in measurements(layout) for m in ms
     }
@@ -95,7 +84,7 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     for designator, name in known:
         if (designator, name) not in readings:
             raise InputError(
-                f"{shown}:{lines[-1][0] + 1}:1",
+                f"{table.path}:{rows[-1].line + 1 if rows else table.header_line + 1}:1",
                 f"the row {name!r} of element {designator} is missing",
                 legal="every row of the sheet, in any order; leave cells blank where nothing was measured",
             )
@@ -104,65 +93,15 @@ def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
 
 @dataclass(frozen=True)
 class _Row:
-    path: str
+    table: Table
     line: int
-    header: list[str]
     cells: list[str]
 
     def __getitem__(self, name: str) -> str:
-        return self.cells[self.header.index(name)]
+        return self.cells[self.table.header.index(name)]
 
     def refusal(self, name: str, what: str, legal: str = "") -> InputError:
-        where = f"{self.path}:{self.line}:{self.header.index(name) + 1}"
-        return InputError(where, f"{name}: {what}", value=self[name], legal=legal)
-
-
-def _without_hint(text: str) -> tuple[int, str]:
-    """The text without Excel's "sep=;" line, and how many lines that took."""
-    hint = re.match(r"sep=.\r?\n", text)
-    return (1, text[hint.end() :]) if hint else (0, text)
-
-
-def _delimiter(text: str) -> str:
-    """What stands most often between the names of the first line."""
-    first = next((line for line in text.splitlines() if line.strip()), "")
-    return max(",;\t", key=first.count)
-
-
-def _stripped(header: list[str]) -> list[str]:
-    """Without blank cells at its end."""
-    return header[: max((i for i, name in enumerate(header, 1) if name), default=0)]
-
-
-def _check_header(shown: str, line: int, header: list[str]) -> None:
-    for i, name in enumerate(header):
-        if name and name in header[:i]:
-            raise InputError(f"{shown}:{line}:{i + 1}", "column named twice", value=name)
-    for name in NEEDED:
-        if name not in header:
-            raise InputError(
-                f"{shown}:{line}:{len(header) + 1}",
-                f"column {name!r} is missing: not an inspection sheet",
-                legal=", ".join(NEEDED),
-            )
-
-
-def _fitted(shown: str, line: int, row: list[str], width: int) -> list[str]:
-    """The row at the header's width; what is over must be blank."""
-    if len(row) < width or any(row[width:]):
-        raise InputError(
-            f"{shown}:{line}:{min(len(row), width) + 1}",
-            "a row of another length than the header (cut off, or a decimal comma?)",
-            value=len(row),
-            legal=f"{width} columns",
-        )
-    return row[:width]
-
-
-def _all_commas(rows: list[_Row]) -> bool:
-    """Whether the sheet's own numbers were all written again with a decimal comma, so that a comma has one meaning."""
-    own = [row[name] for row in rows for name in LIMITS]
-    return any("," in text for text in own) and not any("." in text for text in own)
+        return InputError(self.table.where(self.line, name), f"{name}: {what}", value=self[name], legal=legal)
 
 
 def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
@@ -225,7 +164,7 @@ def _number(row: _Row, name: str, commas: bool) -> float:
     text = row[name]
     if commas and "." in text:
         raise row.refusal(name, "not a number with a decimal comma, as this sheet has them")
-    plain = text.replace(",", ".") if commas else text
-    if not NUMBER.fullmatch(plain):
+    value = number(text.replace(",", ".") if commas else text)
+    if not isfinite(value):
         raise row.refusal(name, "not a number", legal="digits with a decimal point, as 0.25")
-    return float(plain)
+    return value

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.design.csv_table import Field, Rows, header, read, refuse_duplicates
+from tactcad.design.csv_table import Field, Rows, Table, numeric, read_table, refuse_duplicates
 from tactcad.design.messages import InputError
 
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)
@@ -36,6 +36,7 @@ class CalibrationReadings:
     force: np.ndarray
     signal: np.ndarray
     line: np.ndarray
+    path: str = "readings"
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,7 @@ class GraspReadings:
     load: np.ndarray  # N, by state
     run: np.ndarray  # by state
     signal: np.ndarray
+    path: str = "readings"
 
 
 def calibration(path: str | Path) -> CalibrationReadings:
@@ -61,12 +63,12 @@ def calibration(path: str | Path) -> CalibrationReadings:
         rows.values("element").astype(int),
         rows.values("run").astype(int),
         *(rows.values(name) * factor for name, factor in scaled.values()),
-        np.array(rows.lines),
+        rows.lines,
+        rows.path,
     )
-    for number in dict.fromkeys(out.element):
-        here = np.flatnonzero(out.element == number)
-        runs = len(set(out.run[here]))
-        if len(here) < runs + 3 or len(set(out.displacement[here])) < 3:
+    for number, here in groups(out.element):
+        runs, steps = len(np.unique(out.run[here])), len(np.unique(out.displacement[here]))
+        if len(here) < runs + 3 or steps < 3:
             raise InputError(
                 rows.where(int(here[-1]), "element"),
                 f"too few readings of element {number}",
@@ -76,60 +78,96 @@ def calibration(path: str | Path) -> CalibrationReadings:
     return out
 
 
+def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
+    """Every number in the order of its first row, with its rows."""
+    order = np.argsort(number, kind="stable")
+    numbers, first = np.unique(number[order], return_index=True)
+    found = list(zip(numbers.tolist(), np.split(order, first[1:])))
+    return sorted(found, key=lambda group: group[1][0])
+
+
 def grasps(path: str | Path) -> list[GraspReadings]:
     """Readings of `tactcad stiffness`, one entry a sample. Raises InputError with file, line and column.
 
     Every element must be read at every load of a run, so that one approach of the array moves all of them.
     """
     rows, scaled = _read(path, (ELEMENT,), ("load", "signal"), optional=(RUN, SAMPLE))
-    load_name = scaled["load"][0]
-    key = tuple(n for n in ("sample", "run") if n in rows.columns) + (load_name, "element")
-    refuse_duplicates(rows, key)
+    run, sample = (
+        rows.values(n).astype(int) if n in rows.columns else np.ones(len(rows), int)
+        for n in ("run", "sample")
+    )
+    (load_name, _), _ = scaled.values()
+    refuse_duplicates(rows, (*(n for n in ("sample", "run") if n in rows.columns), load_name, "element"))
     element = rows.values("element").astype(int)
     load, signal = (rows.values(name) * factor for name, factor in scaled.values())
-    run = rows.values("run").astype(int) if "run" in rows.columns else np.zeros(len(rows), int)
-    sample = rows.values("sample").astype(int) if "sample" in rows.columns else np.ones(len(rows), int)
-    found = []
-    for number in dict.fromkeys(sample):
-        here = np.flatnonzero(sample == number)
-        elements = list(dict.fromkeys(element[here]))
-        states = list(dict.fromkeys(zip(run[here], load[here])))
-        grid = np.full((len(elements), len(states)), np.nan)
-        for i in here:
-            grid[elements.index(element[i]), states.index((run[i], load[i]))] = signal[i]
-        if np.isnan(grid).any():
-            e, s = np.argwhere(np.isnan(grid))[0]
-            raise InputError(
-                rows.where(int(here[-1]), "element"),
-                f"element {elements[e]} has no signal at load {states[s][1]:g} N",
-                legal="every element at every load",
-            )
-        found.append(
-            GraspReadings(
-                int(number),
-                np.array(elements),
-                np.array([s[1] for s in states]),
-                np.array([s[0] for s in states]),
-                grid,
-            )
+    return [
+        _grasp(rows, number, here, element[here], load[here], run[here], signal[here])
+        for number, here in groups(sample)
+    ]
+
+
+def _grasp(
+    rows: Rows,
+    sample: int,
+    here: np.ndarray,
+    element: np.ndarray,
+    load: np.ndarray,
+    run: np.ndarray,
+    signal: np.ndarray,
+) -> GraspReadings:
+    """The grid of one sample's signals; elements and states in the order of their first rows."""
+    state = np.empty(len(here), [("run", int), ("load", float)])
+    state["run"], state["load"] = run, load
+    elements, row = _numbered(element)
+    states, column = _numbered(state)
+    grid = np.full((len(elements), len(states)), np.nan)
+    grid[row, column] = signal
+    if np.isnan(grid).any():
+        e, s = np.argwhere(np.isnan(grid))[0]
+        raise InputError(
+            rows.where(int(here[-1]), "element"),
+            f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
+            legal="every element at every load",
         )
-    return found
+    return GraspReadings(sample, elements, states["load"], states["run"], grid, rows.path)
+
+
+def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The different keys in the order of their first rows, and the place of every row's key among them."""
+    unique, first, index = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return unique[order], np.argsort(order)[index]
 
 
 def _read(
     path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...], optional: tuple[Field, ...] = ()
 ) -> tuple[Rows, dict[str, tuple[str, float]]]:
     """Rows, and for each measured quantity its column's name and factor to mm, N, V."""
-    there = header(path)
-    scaled, fields = {}, []
-    for quantity in measured:
-        factors, unit, most = UNITS[quantity]
-        names = [quantity + suffix for suffix in factors if quantity + suffix in there]
-        name = names[0] if names else quantity
-        factor = factors[name.removeprefix(quantity)]
+    table = read_table(path, "readings (CSV)")
+    scaled = {quantity: _column_of(table, quantity) for quantity in measured}
+    fields = []
+    for quantity, (name, factor) in scaled.items():
+        _, unit, most = UNITS[quantity]
         low = 0.0 if quantity == "load" else -most / factor
         fields.append(
             Field(name, name.removeprefix(quantity + "_") if "_" in name else unit, low, most / factor)
         )
-        scaled[quantity] = (name, factor)
-    return read(path, (*fixed, *fields), optional), scaled
+    return numeric(table, (*fixed, *fields), optional), scaled
+
+
+def _column_of(table: Table, quantity: str) -> tuple[str, float]:
+    """The quantity's column and its factor to mm, N, V; the plain name where there is none.
+
+    Raises InputError where there are two: nothing would say which one counts.
+    """
+    known = {quantity + suffix: factor for suffix, factor in UNITS[quantity][0].items()}
+    names = [name for name in table.header if name in known]
+    if len(names) > 1:
+        raise InputError(
+            f"{table.path}:{table.header_line}:{table.header.index(names[1]) + 1}",
+            f"{names[0]} and {names[1]} are both the {quantity}",
+            value=names[1],
+            legal="one of " + ", ".join(known),
+        )
+    name = names[0] if names else quantity
+    return name, known[name]

@@ -19,12 +19,15 @@ def ladder_data() -> dict:
     return json.loads((Path(__file__).parent / "data" / "ladder.json").read_text("utf-8"))
 
 
-def by_sides(group: str, two_sided: NDArray[np.bool_] | np.bool_) -> dict[str, Array | float]:
+def by_sides(
+    group: str, two_sided: NDArray[np.bool_] | np.bool_, data: dict | None = None
+) -> dict[str, Array | float]:
     """Constants of a group ("root", "width", ...) for each design's notch form.
 
-    Plain floats where all designs have one form, so that the common case costs no array.
+    From `data` (as data/ladder.json), by default the shipped ones. Plain floats where all designs have one
+    form, so that the common case costs no array.
     """
-    table = ladder_data()[group]
+    table = (data or ladder_data())[group]
     if np.all(two_sided):
         return table["two"]
     if not np.any(two_sided):

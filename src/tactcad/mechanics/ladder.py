@@ -8,19 +8,13 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import beams, friction, plane, solid, validity
+from . import friction, validity
+from .register import BY_NAME, REGISTER
 from .section import Array, HingeSection
 
-COMPLIANCE = {
-    "short": beams.short_hinge,
-    "beam": beams.beam,
-    "section": beams.section_integral,
-    "plane": plane.compliance,
-    "solid": solid.compliance,
-}
-CLOSED_FORMS = tuple(COMPLIANCE)
-WITH_ROOTS = ("plane", "solid")
-FINITE_ELEMENTS = ("fem-plane", "fem-solid")
+CLOSED_FORMS = tuple(rung.name for rung in REGISTER if rung.compliance)
+FITTED = tuple(rung.name for rung in REGISTER if rung.fitted)  # they know the fillets and the hinge's roots
+FINITE_ELEMENTS = tuple(rung.name for rung in REGISTER if not rung.compliance)
 RUNGS = CLOSED_FORMS + FINITE_ELEMENTS
 DEFAULT_RUNG = "solid"
 
@@ -59,14 +53,22 @@ def require_range(s: HingeSection, rung: str) -> None:
         raise CheckFailure(f"rung {rung} does not reach this design: {name}{where}")
 
 
+def compliance(s: HingeSection, rung: str) -> Array:
+    """Tip compliance of the elastic element by a closed-form rung, without friction and wherever it gives a
+    number; mm/N."""
+    form = BY_NAME[rung].compliance
+    if form is None:
+        raise ValueError(f"{rung} is no closed form")
+    return form(s, None)
+
+
 def _stiffness(s: HingeSection, rung: str) -> Array:
-    compliance = COMPLIANCE[rung]
     size = int(np.prod(s.shape))
     if size <= BLOCK:
-        return np.broadcast_to(friction.factor(s) / compliance(s), s.shape)
+        return np.broadcast_to(friction.factor(s) / compliance(s, rung), s.shape)
     result = np.empty(size)
     for start in range(0, size, BLOCK):
         block = slice(start, start + BLOCK)
         part = s.rows(block)
-        result[block] = friction.factor(part) / compliance(part)
+        result[block] = friction.factor(part) / compliance(part, rung)
     return result.reshape(s.shape)

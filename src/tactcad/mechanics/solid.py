@@ -37,5 +37,10 @@ def width_factor(s: HingeSection, plane_compliance: Array, k: plane.Constants | 
 
 def compliance(s: HingeSection) -> Array:
     """Tip compliance of the solid, mm/N."""
-    flat = plane.compliance(s)
-    return flat / width_factor(s, flat)
+    return compliance_by(s)
+
+
+def compliance_by(s: HingeSection, data: dict | None = None) -> Array:
+    """The same by the constants in `data` (as data/ladder.json), else the shipped ones."""
+    flat = plane.compliance_by(s, data)
+    return flat / width_factor(s, flat, by_sides("width", s.two_sided, data))

@@ -13,6 +13,7 @@ from tactcad.design.messages import CheckFailure
 
 from . import ladder, plane, validity
 from .constants import by_sides
+from .register import BY_NAME
 from .section import Array, HingeSection
 
 Constants = plane.Constants
@@ -42,25 +43,26 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
     (short: at its centre). Raises CheckFailure out of the rung's range.
     """
     ladder.require_range(s, rung)
-    if rung in ladder.WITH_ROOTS:
+    if rung in ladder.FITTED:
         factor: Array | float = fillet_factor(s)
     else:
-        factor = 1.0 if rung == "short" else 1.0 + s.straight_length / 2.0 / s.load_arm
+        factor = 1.0 if BY_NAME[rung].constant_moment else 1.0 + s.straight_length / 2.0 / s.load_arm
     return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
 
 
 def peak_stress(s: HingeSection, force) -> Array:
     """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
 
-    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where the
-    factor was not fitted.
+    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where
+    the factor was not fitted.
     """
     _require_fitted(s)
     return stress_beyond_the_fit(s, force)
 
 
 def stress_beyond_the_fit(s: HingeSection, force) -> Array:
-    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound a stop."""
+    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound
+    a stop."""
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
@@ -79,13 +81,13 @@ def _require_fitted(s: HingeSection) -> None:
 
 
 def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
-    """Strain per newton at mid-width over the plane value; 1 on all rungs but solid.
+    """Strain per newton at mid-width over the plane value; 1 on the rungs that do not know the width.
 
     `at` is "grid" or "fillet": K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
     """
-    if rung != "solid":
+    if "width" not in BY_NAME[rung].fitted:
         return 1.0
-    return ladder.COMPLIANCE["solid"](s) / ladder.COMPLIANCE["plane"](s) * mid_width(s, at)
+    return ladder.compliance(s, rung) / ladder.compliance(s, "plane") * mid_width(s, at)
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
@@ -138,7 +140,7 @@ def grid_factor(s: HingeSection, grid_length, rung: str = ladder.DEFAULT_RUNG) -
     CheckFailure where a grid on a two-sided hinge would climb more than half of its fillets.
     """
     grid = np.asarray(grid_length, dtype=float)
-    if rung not in ladder.WITH_ROOTS:
+    if rung not in ladder.FITTED:
         return np.broadcast_to(1.0, np.broadcast_shapes(s.shape, grid.shape))
     climbs = s.two_sided & (grid > s.straight_length + s.fillet_radius)
     if np.any(climbs):

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import friction
 from .constants import ladder_data
+from .register import BY_NAME
 from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
@@ -55,7 +56,7 @@ GEOMETRY = (
 )
 
 
-# Dimensionless groups that bound the fit; the solid rung's are those of the width.
+# Dimensionless groups that bound the fits: on plane elements, and of the width.
 PLANE_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "r/t": lambda s: s.fillet_radius / s.hinge_thickness,
     "l/t": lambda s: s.hinge_length / s.hinge_thickness,
@@ -66,7 +67,7 @@ PLANE_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "Lb/Hb": lambda s: s.body_length / s.body_height,
     "poisson": lambda s: s.poisson,
 }
-SOLID_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
+WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "b/t": lambda s: s.width / s.hinge_thickness,
     "b/l": lambda s: s.width / s.hinge_length,
     "b/h": lambda s: s.width / s.arm_height,
@@ -76,10 +77,10 @@ SOLID_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
 
 def groups(s: HingeSection) -> dict[str, Array]:
     """Value of every group for every design."""
-    return {name: value(s) for name, value in (PLANE_GROUPS | SOLID_GROUPS).items()}
+    return {name: value(s) for name, value in (PLANE_GROUPS | WIDTH_GROUPS).items()}
 
 
-@lru_cache(maxsize=2)
+@lru_cache
 def _fitted(rung: str) -> tuple[Rule, ...]:
     """Rules of the fit's sampled range, as data/ladder.json gives it."""
     sampled = ladder_data()["range"]
@@ -101,7 +102,8 @@ def _fitted(rung: str) -> tuple[Rule, ...]:
             lambda s: s.body_length < least * (1.0 - ROUNDING) * s.hinge_thickness,
         )
     )
-    for name, value in (PLANE_GROUPS if rung == "plane" else PLANE_GROUPS | SOLID_GROUPS).items():
+    bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in BY_NAME[rung].fitted else {})
+    for name, value in bounding.items():
         low, high = sampled["groups"][name]
         rules.append(Rule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high)))
     return tuple(rules)
@@ -121,7 +123,7 @@ def _outside(
 
 def rules(rung: str) -> tuple[Rule, ...]:
     """The rung's rules in the order in which they are looked at."""
-    return GEOMETRY + _fitted(rung) if rung in ("plane", "solid") else GEOMETRY
+    return GEOMETRY + _fitted(rung) if BY_NAME[rung].fitted else GEOMETRY
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:

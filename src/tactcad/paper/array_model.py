@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -93,7 +93,7 @@ def from_design(design: Design) -> ArrayModel:
         side * design.array.row_pitch / 2,
         side * np.array([p.y for p in places]),
         _pick(Gauge, gauge),
-        replace(_pick(ReadOut, readout), adc_bits=int(readout.adc_bits), samples=int(readout.samples)),
+        _pick(ReadOut, readout),
         Power(
             gauge.resistance,
             gauge.carrier_conductivity,
@@ -113,7 +113,7 @@ def from_design(design: Design) -> ArrayModel:
             design.sample.poisson,
             design.grasping.moving_weight,
             design.grasping.weight,
-            int(design.grasping.weights),
+            design.grasping.weights,
         ),
     )
 

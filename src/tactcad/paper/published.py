@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.design import csv_table
-from tactcad.design.csv_table import Field, Rows, read, refuse_duplicates
+from tactcad.design.csv_table import Field, Rows, half_step, read, refuse_duplicates
 from tactcad.design.messages import InputError
 
 TABLE_1_FIELDS = (
@@ -160,10 +159,9 @@ def _figures(path) -> tuple[dict, dict, dict, dict]:
     lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
         1:
     ]
-    cells = {name: csv_table.Cell(text, float(text)) for name, text, _, _ in lines}
     return (
-        {name: cell.value for name, cell in cells.items()},
-        {name: cell.half_step for name, cell in cells.items()},
+        {name: float(text) for name, text, _, _ in lines},
+        {name: half_step(text) for name, text, _, _ in lines},
         {name: unit for name, _, unit, _ in lines},
         {name: place for name, _, _, place in lines},
     )

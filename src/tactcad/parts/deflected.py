@@ -11,6 +11,7 @@ from math import asin, atan2, hypot, inf, pi, sqrt, tan
 
 from tactcad.contour import Contour, Line, Point, Segment
 from tactcad.contour.segment import turned
+from tactcad.design.messages import InputError
 
 from .description import Extrusion, Part
 from .element import element
@@ -28,6 +29,13 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
     z, w = _heights(layout, place, roller)
     u = -place.load_arm
     v = w + deflection
+    if hypot(u, v) < -w:
+        raise InputError(
+            "deflection",
+            "the arm cannot turn so far",
+            value=deflection,
+            legal=f"up to {-w - sqrt(max(w**2 - u**2, 0.0)):.3g} mm",
+        )
     # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
     angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
     outer = _bent(part.body.outer, (place.hinge_x, z), angle)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from tactcad.checks.report import Report
-from tactcad.design.files import refuse_overwriting
+from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.golden import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
-from tactcad.export.pipeline import Progress, export
+from tactcad.export.pipeline import ExportOptions, Progress, export
 from tactcad.scenes import make_scene, scene_names
 
-from .archive import archive_bytes, replaced_content, written_beside
+from .archive import archive_bytes, replaced_content
 from .readme import MARK, Contents, readme_bytes
 from .verify import README, check_archive
 
@@ -67,13 +66,12 @@ def release(
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
     contents = Contents(design, scenes, flags, failures, draft)
-    with tempfile.TemporaryDirectory(prefix="tactcad-release-") as folder:
-        files = _exported(
-            design, [scene.name for scene in scenes], Path(folder) / design.name, progress, draft
-        )
+    with scratch_folder("release") as folder:
+        files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, draft)
     files = {README: readme_bytes(contents, list(files)), **files}
     data = archive_bytes(files, design.design.date)
-    with written_beside(target, progress.line) as part:
+    make_folder(target.parent)
+    with whole_file(target) as part:
         replaced = replaced_content(target, data)
         part.write_bytes(data)
         wrong = check_archive(part, contents)
@@ -113,10 +111,10 @@ def _checked(design: Design, shop_file: Path, progress: Progress) -> Report:
 
 
 def _exported(
-    design: Design, scenes: Sequence[str], folder: Path, progress: Progress, draft: bool
+    design: Design, scenes: tuple[str, ...], folder: Path, progress: Progress, draft: bool
 ) -> dict[str, bytes]:
     """The export's files that go to the shop, by their path in the zip."""
-    export(design, scenes, folder, progress, drawings=True, draft=draft)
+    export(design, ExportOptions(scenes, drawings=True, draft=draft), folder, progress)
     paths = {_path_in_zip(file): file.path for file in read_manifest(folder).files}
     return {name: (folder / path).read_bytes() for name, path in sorted(paths.items()) if name}
 

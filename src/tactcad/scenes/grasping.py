@@ -21,7 +21,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     rig = guide_layout(design)
     assert rig is not None, "scenes/__init__.NEEDS has its tables"
     g = rig.grasping
-    weights = round(g.weights) if pose.weights is None else pose.weights
+    weights = g.weights if pose.weights is None else pose.weights
     b = Builder()
     pads = pad_middles(rig.array)
     dents = tuple((x - pose.cart, y) for x, y in pads) if pose.deflection else ()

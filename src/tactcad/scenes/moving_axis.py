@@ -108,7 +108,7 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
     light = heavy - land * len(layout.elements)
     grams = 1.0 / ballast_thickness(rig, 1.0)  # of a millimetre of disc
-    stack = round(rig.grasping.weights) * rigs.disc_weight(rig).body.thickness
+    stack = rig.grasping.weights * rigs.disc_weight(rig).body.thickness
     longest = rigs.pin(rig, LONGEST_PIN - 1.0 - stack).mass
     most = light + (LONGEST_PIN - 1.0 - stack) * grams
     return (heavy + longest + LEAST_BALLAST * grams) * NEWTON, most * NEWTON

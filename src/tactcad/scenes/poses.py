@@ -11,6 +11,8 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 from .scene import Pose
 
+LEAST = 1e-3  # mm; less is more likely a slip, and edges so short are none for the CAD kernel
+
 
 def poses(design: Design, name: str) -> tuple[Pose, ...]:
     """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
@@ -51,7 +53,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
     limits = {
         "element": (1, sum(len(row) for row in design.array.row_arms)),
         "deflection": (0.0, 5.0),
-        "weights": (0, round(design.grasping.weights) if design.grasping else 0),
+        "weights": (0, design.grasping.weights if design.grasping else 0),
         "height": (0.0, max(design.grasping.lift if design.grasping else 0.0, 5.0)),
         "cart": (-design.cart.roll, design.cart.roll) if design.cart else (0.0, 0.0),
     }
@@ -68,5 +70,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
             raise InputError("--pose", "not a number", value=text, legal=legal) from None
         if not low <= number <= high:
             raise InputError("--pose", "out of range", value=text, legal=legal)
+        if 0 < abs(number) < LEAST:
+            raise InputError("--pose", "below a micrometre", value=text, legal=f"0, or {LEAST:g} mm and more")
         values[key] = number
     return Pose(**values) if values else None

@@ -136,7 +136,7 @@ class CartLayout:
     @cached_property
     def suction_holes(self) -> tuple[tuple[float, float], ...]:
         """Middles of the holes: hexagonal rings that fill the vacuum's circle, 1 + 3 n (n + 1) of them."""
-        rings = round(self.holder.rings)
+        rings = self.holder.rings
         pitch = (self.holder.vacuum_diameter - 2 * self.holder.hole_diameter) / 2 / rings
         spots = []
         for i in range(-rings, rings + 1):

@@ -1,0 +1,151 @@
+"""What lies in a folder that tactcad wrote, held against the folder's own manifest.json: ours unchanged, or somebody's.
+
+Every folder that tactcad writes has a manifest.json with `schema`, `files: [{path, sha256, ...}]` and, last, `seal`:
+the SHA-256 of the manifest's text without it, so that an edited manifest is seen too. Ours is a file with its
+listed digest, and a folder that holds one. All else is somebody's: a file that was added or changed, a link in
+a file's place, an empty folder; and what was write-protected, because whoever did that wants it kept.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import stat
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from tactcad.design.files import read_bytes
+from tactcad.design.messages import InputError
+
+NAME = "manifest.json"
+MOST_BYTES = 1_000_000_000  # no file of ours comes near; what is larger is not ours
+ADDED, CHANGED, PROTECTED = "added", "changed", "write-protected"
+
+State = tuple[int, ...]  # of one file: mode, inode, size, times; another state means that somebody was at it
+
+
+@dataclass(frozen=True)
+class Contents:
+    """A folder's entries by path: all with their states, the somebody's with what they are (see the words above).
+
+    `record` is the manifest, None where there is none or it is not as we wrote it; `missing` is listed but not there.
+    """
+
+    states: Mapping[str, State]
+    foreign: Mapping[str, str]
+    missing: tuple[str, ...]
+    record: Mapping[str, Any] | None
+
+    def changed_since(self, before: Contents) -> tuple[str, ...]:
+        """What is somebody's here, and was not there before, or was in another state."""
+        return tuple(p for p in self.foreign if p not in before.foreign or before.states[p] != self.states[p])
+
+
+NOTHING = Contents({}, {}, (), None)
+
+
+def sha256_of(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
+
+
+def sealed(record: Mapping[str, Any]) -> bytes:
+    """The record as JSON text with its seal. Raises ValueError where a number is not finite."""
+    return _json({**record, "seal": sha256_of(_json(record))})
+
+
+def _json(record: Mapping[str, Any]) -> bytes:
+    return (json.dumps(record, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode()
+
+
+def contents(folder: Path, schema: str) -> Contents:
+    """What lies in `folder` (a path that is no folder: nothing but itself, somebody's)."""
+    if not os.path.lexists(folder):
+        return NOTHING
+    if folder.is_symlink() or not folder.is_dir():
+        return Contents({".": _state(folder)}, {".": ADDED}, (), None)
+    record = _sealed_record(folder, schema)
+    digests = {row["path"]: row["sha256"] for row in record["files"]} if record else {}
+    parents = {str(p) for path in digests for p in PurePosixPath(path).parents} | {"."}
+    states, foreign = {}, {}
+    for path in _entries(folder):
+        states[path] = state = _state(folder / path)
+        if path == NAME:
+            why = "" if record else CHANGED
+        elif stat.S_ISDIR(state[0]):
+            why = "" if path in parents else ADDED
+        else:
+            why = _fault(folder / path, state, digests.get(path))
+        if why := why or ("" if state[0] & stat.S_IWUSR else PROTECTED):
+            foreign[path] = why
+    missing = tuple(path for path in digests if path not in states)
+    if not record and set(states) == {"."}:
+        foreign.pop(".", None)  # an empty folder holds nothing to lose
+    return Contents(states, foreign, missing, record)
+
+
+def _fault(entry: Path, state: State, sha256: str | None) -> str:
+    if sha256 is None:
+        return ADDED
+    if not stat.S_ISREG(state[0]):
+        return CHANGED
+    try:
+        return "" if sha256_of(read_bytes(entry, MOST_BYTES, "a file")) == sha256 else CHANGED
+    except InputError:
+        return CHANGED
+
+
+def _entries(folder: Path) -> Iterator[str]:
+    """The folder (".") and all below it by path, a folder before what it holds; links are not followed."""
+    for base, folders, files in os.walk(folder):
+        folders.sort()
+        inside = os.path.relpath(base, folder)
+        yield Path(inside).as_posix()
+        for name in sorted(files + [f for f in folders if os.path.islink(os.path.join(base, f))]):
+            yield Path(inside, name).as_posix()
+
+
+def _state(path: Path) -> State:
+    s = path.lstat()
+    if stat.S_ISDIR(s.st_mode):
+        return (s.st_mode, s.st_ino)  # its times change when it is moved, or when something in it is
+    return (s.st_mode, s.st_ino, s.st_size, s.st_mtime_ns, s.st_ctime_ns)
+
+
+def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
+    """The folder's manifest, None where it is not one of that schema just as we wrote it."""
+    try:
+        if not stat.S_ISREG((folder / NAME).lstat().st_mode):
+            return None
+        data = read_bytes(folder / NAME, MOST_BYTES, "a manifest")
+        record = json.loads(data)
+        record.pop("seal")
+        known = record["schema"] == schema and sealed(record) == data
+        texts = [row[key] for row in record["files"] for key in ("path", "sha256")]
+        return record if known and all(isinstance(text, str) for text in texts) else None
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return None
+
+
+def remove(folder: Path, seen: Contents) -> bool:
+    """Remove the folder with what was seen in it; False where something is there that was not, or is another now.
+
+    What is left when this is cut short is still known for ours: the manifest goes last.
+    """
+    folders = [path for path, state in seen.states.items() if stat.S_ISDIR(state[0])]
+    files = [path for path in seen.states if path not in set(folders) | {NAME}]
+    try:
+        for path in folders if seen.foreign else ():  # to be discarded although write-protected
+            (folder / path).chmod(0o700)
+        for path in (*files, *folders[:0:-1], *({NAME} & set(seen.states)), "."):
+            if path in folders:
+                (folder / path).rmdir()
+            elif _state(folder / path) == seen.states[path]:
+                (folder / path).unlink()
+            else:
+                return False
+    except OSError:
+        return False
+    return True
