@@ -1,4 +1,5 @@
-"""Gauge, bridge, amplifier, self-heating, stop and rigs at their ends: 50 digits, a limit, or a refusal by name."""
+"""Gauge, bridge, amplifier, self-heating, stop and rigs at their ends: 50 digits, a limit, or a refusal by
+name."""
 
 from __future__ import annotations
 

@@ -15,8 +15,8 @@ def section(load_arm: float, arm_height: float = 2.6) -> HingeSection:
 
 
 def frame(s: HingeSection, arm: float, force: float, at: float) -> tuple[float, float, float]:
-    """Moment (N mm) in the hinge `at` mm from its centre towards the body, the hinge's own stiffness in bending
-    (N mm/rad), and its turn (rad).
+    """Moment (N mm) in the hinge `at` mm from its centre towards the body, the hinge's own stiffness in
+    bending (N mm/rad), and its turn (rad).
 
     Euler-Bernoulli: the hinge clamped at the body, the arm, a force at the load line, the tip held.
     """

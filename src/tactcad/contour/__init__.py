@@ -1,4 +1,8 @@
-"""Lines, arcs and closed contours in mm: the truth that every output is made from."""
+"""Lines, arcs and closed contours in mm: the truth that every output is made from.
+
+In: exact points, radii, corners. Out: contours, their area and moments, cuts, offsets, distances, all in
+closed form.
+"""
 
 from .contour import Contour, chain, circle, rectangle
 from .rounded import Corner, rounded_polygon

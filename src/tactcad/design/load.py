@@ -50,7 +50,8 @@ def find(source: str | Path) -> Path:
 
 
 def names() -> list[str]:
-    """Names of the designs in hardware/ where the command runs and of those that came with tactcad, sorted."""
+    """Names of the designs in hardware/ where the command runs and of those that came with tactcad,
+    sorted."""
     return sorted({p.stem for folder in _hardware_folders() for p in folder.glob("*.toml")})
 
 

@@ -319,7 +319,8 @@ class Stop:
         default=None,
         metadata={
             "spec": Number("mm", 0.001, 5, 'gap by arm length, a table: "4" = 0.13'),
-            "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, by 0.005 mm",
+            "derived": "from the estimator: the widest that keeps every hinge within its rated deflection, "
+            "by 0.005 mm",
         },
     )
 

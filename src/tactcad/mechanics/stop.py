@@ -1,8 +1,8 @@
 """The hinge while a force larger than it could bear presses its arm onto the overload stop.
 
-The stop holds the arm's tip, at `arm` (mm) from the hinge's centre, the force presses at L < arm: from there on the arm
-is a beam on two supports. What the force has beyond the one that closed the stop reaches the hinge in two ways,
-both per newton of it:
+The stop holds the arm's tip, at `arm` (mm) from the hinge's centre, the force presses at L < arm: from there
+on the arm is a beam on two supports. What the force has beyond the one that closed the stop reaches the hinge
+in two ways, both per newton of it:
 
   shear   V = 1 - L/arm goes through the hinge
   turn    theta = c (arm^2 - c^2)/(6 E I arm), c = arm - L, I = b h^3/12: the arm bends between its supports
@@ -17,10 +17,11 @@ from .section import Array, HingeSection
 
 
 def stress_share(s: HingeSection, stiffness: Array, arm: Array) -> Array:
-    """Force at the load line (N) that would stress the fillet as much as one newton beyond does on a closed stop.
+    """Force at the load line (N) that would stress the fillet as much as one newton beyond does on a closed
+    stop.
 
-    Shear bends the peak's section, at its distance w from the hinge's centre, by V w; the hinge answers the turn
-    with K L^2 theta. Divided by L + w, the lever of a force at the load line.
+    Shear bends the peak's section, at its distance w from the hinge's centre, by V w; the hinge answers the
+    turn with K L^2 theta. Divided by L + w, the lever of a force at the load line.
     """
     L, w = s.load_arm, strain.peak_position(s)
     return ((1.0 - L / arm) * w + stiffness * L**2 * _turn(s, arm)) / (L + w)
@@ -32,8 +33,8 @@ def deflection_share(s: HingeSection, stiffness: Array, arm: Array) -> Array:
 
 
 def largest_closing_force(s: HingeSection, stiffness: Array, arm: Array, overload, limit: Array) -> Array:
-    """Force (N) with which the stop may close at most, so that `overload` (N) on it neither turns nor stresses the
-    hinge more than `limit` (N) at the free arm's load line does.
+    """Force (N) with which the stop may close at most, so that `overload` (N) on it neither turns nor
+    stresses the hinge more than `limit` (N) at the free arm's load line does.
 
     F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone.
     """
