@@ -56,8 +56,11 @@ reference: environment ## the published benchmarks again, in full, on a quiet ma
 	$(BIN)/tactcad bench --full --out exports/bench
 	$(BIN)/python -m tactcad.bench.publish exports/bench
 
-nightly: environment ## the long tests
-	$(BIN)/python -m pytest -m nightly
+nightly: environment ## the long tests, and the kernel's tests on the kernel that comes next
+	@status=0; \
+	$(BIN)/python -m pytest -m nightly || status=1; \
+	packaging/ocp8.sh || status=1; \
+	exit $$status
 
 clean: ## remove the environment, caches and exports; exports/golden stays
 	rm -rf .venv .venv.lock .cache .pytest_cache .ruff_cache .hypothesis build

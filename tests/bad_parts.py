@@ -1,6 +1,8 @@
-"""For every check one deliberately bad part, from the tests of that check: what is wrong with it, and what is found.
+"""For every check one deliberately bad part, from the tests of that check: what is wrong with it, and what is
+found.
 
-docs/checks.md is written from this (benchmarks/checks_table.py), and tests/checks/test_checks_table.py holds it complete.
+docs/checks.md is written from this (benchmarks/checks_table.py), and tests/checks/test_checks_table.py holds
+it complete.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ sys.path += [str(Path(__file__).parent / folder) for folder in ("checks", "rigs"
 
 @dataclass(frozen=True)
 class Bad:
-    """`run` is the name under which `tactcad check` times the check; `what` the bad part; `find` what is said of it."""
+    """`run` is the name under which `tactcad check` times the check; `what` the bad part; `find` what is said
+    of it."""
 
     run: str
     what: str

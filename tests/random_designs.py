@@ -1,8 +1,8 @@
 """Designs drawn over everything that a design file may hold, and the verdict on each.
 
-Every second one is a sound design (sound_designs.py), the others have one to three of their fields drawn again over the
-field's whole legal range, whatever the rest says. A design is written as TOML, read as commands read it, and either
-refused by a rule that it breaks, or it passes every check.
+Every second one is a sound design (sound_designs.py), the others have one to three of their fields drawn
+again over the field's whole legal range, whatever the rest says. A design is written as TOML, read as
+commands read it, and either refused by a rule that it breaks, or it passes every check.
 """
 
 from __future__ import annotations
@@ -87,7 +87,8 @@ class Counts:
     failed: list[str] = field(default_factory=list)
 
     def judge(self, who: str, tree: dict[str, Any]) -> None:
-        """Count the design as accepted, as refused by its rule, or as failed, with what the checks have against it."""
+        """Count the design as accepted, as refused by its rule, or as failed, with what the checks have
+        against it."""
         self.drawn += 1
         try:
             rule, names, failures = verdict(tree)
@@ -114,13 +115,15 @@ class Counts:
         most = ", ".join(f"{rule} {n}" for rule, n in self.refused.most_common())
         scenes = ", ".join(f"{name} {n}" for name, n in self.scenes.items())
         return (
-            f"{self.drawn} designs drawn: {self.accepted} accepted ({scenes}), {refused} refused by a named rule "
+            f"{self.drawn} designs drawn: {self.accepted} accepted ({scenes}), {refused} refused by a named "
+            "rule "
             f"({most}), {len(self.failed)} failed"
         )
 
 
 def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
-    """The rule that refuses the design ("" where none does), its scenes, and what the checks have against it."""
+    """The rule that refuses the design ("" where none does), its scenes, and what the checks have against
+    it."""
     from tactcad.checks.run import run_checks
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names

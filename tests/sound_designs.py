@@ -1,8 +1,9 @@
-"""Designs constructed to keep every rule, by their own geometry: each dimension is chosen to leave room for the next.
+"""Designs constructed to keep every rule, by their own geometry: each dimension is chosen to leave room for
+the next.
 
-The bounds are worked out here from the standards' tables and the layout as described, not from the rules' code.
-Every number goes over its whole legal range, as far as the ones chosen before it leave room, by the logarithm where
-that spans decades. What a shop can make bounds some of them: a wire of 0.25 mm, drills, taps.
+The bounds are worked out here from the standards' tables and the layout as described, not from the rules'
+code. Every number goes over its whole legal range, as far as the ones chosen before it leave room, by the
+logarithm where that spans decades. What a shop can make bounds some of them: a wire of 0.25 mm, drills, taps.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from tactcad.parts.library.screws import METRIC, SET_SCREW_LENGTHS
 
 CAP_LENGTHS = (2, 2.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, 25, 30)
 M6_UPPER = {"2": 0.008, "2.5": 0.008, "3": 0.008, "4": 0.012, "5": 0.012}  # ISO 286-2
-# The shop that comes with tactcad: wire/2 + gap, one cut, aluminium's wall, drills' and taps' reach in diameters.
+# The shop that comes with tactcad: wire/2 + gap, one cut, aluminium's wall, drills' and taps' reach in
+# diameters.
 CORNER, CUT, WALL, DRILL_REACH, TAP_REACH = 0.15, 0.3, 0.8, 10.0, 3.0
 LEAST_SPACER = 0.1
 LEAD = 0.25  # mm, AWG 36 with its insulation
@@ -43,8 +45,8 @@ SEEDS = st.integers(0, 2**48)
 class Draw:
     """Draws for one design; a number by its path, within its legal range and the room that is left.
 
-    hypothesis draws the seed of a design, not its numbers: of a hundred numbers it would draw four in five in the
-    lowest tenth of their ranges (measured), which is no way to cover them.
+    hypothesis draws the seed of a design, not its numbers: of a hundred numbers it would draw four in five in
+    the lowest tenth of their ranges (measured), which is no way to cover them.
     """
 
     def __init__(self, seed: int, ends: int = 20) -> None:
@@ -69,8 +71,8 @@ class Draw:
         return self.random.randrange(draws) == 0
 
     def between(self, low: float, high: float) -> float:
-        """By the logarithm where that is more than a decade, an end every now and then; in whole micrometres, or four
-        digits if smaller."""
+        """By the logarithm where that is more than a decade, an end every now and then; in whole micrometres,
+        or four digits if smaller."""
         if high <= low:
             return round(low, 6)
         u = self.random.choice((0.0, 1.0)) if self.once_in(self.ends) else self.random.random()
@@ -99,7 +101,8 @@ class Draw:
 
 
 def sound_table(seed: int, row_lengths: tuple[int, ...], rigs: bool = False) -> dict[str, Any]:
-    """Values by path of a design that keeps every rule: one or two rows, either notch form, any screw and dowel.
+    """Values by path of a design that keeps every rule: one or two rows, either notch form, any screw and
+    dowel.
 
     With `rigs` the array is small enough for them, and their tables are drawn too.
     """
@@ -124,7 +127,8 @@ def sound_table(seed: int, row_lengths: tuple[int, ...], rigs: bool = False) -> 
 
 
 def _stack(d: Draw, row_lengths: tuple[int, ...]) -> list[int]:
-    """Rows, sheet and spacer: a stack at least as long as the set screw between the end plates; returns the rows."""
+    """Rows, sheet and spacer: a stack at least as long as the set screw between the end plates; returns the
+    rows."""
     rows = [d.choice(*row_lengths) for _ in range(d.choice(1, 2))]
     n, least = max(rows), d.m.d + 0.6
     wide = (
@@ -196,7 +200,8 @@ def _overrides(d: Draw) -> None:
 
 
 def _loads(d: Draw) -> None:
-    """Material, and what its stops and loads may be: by the leaf's beam theory, with a factor of 2 for what it misses."""
+    """Material, and what its stops and loads may be: by the leaf's beam theory, with a factor of 2 for what
+    it misses."""
     least, most = min(map(min, d.arms)), max(map(max, d.arms))
     pad, sheet = d.table["element.pad_length"], d.table["sheet.thickness"]
     factor = d.number("rating.deflection_factor", high=5.0)
@@ -212,8 +217,8 @@ def _loads(d: Draw) -> None:
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", d.choice(*ALLOYS))
     ratio = d.between(min(max(low, 3e-4), 0.5), min(max(high, 3e-4), 0.5))
-    # N for each MPa of yield, so that what passes the closed stop by its lever 1 - L/a and half the hinge's length stays
-    # a tenth of it; no overload is smaller than a millionth of a newton
+    # N for each MPa of yield, so that what passes the closed stop by its lever 1 - L/a and half the hinge's
+    # length stays a tenth of it; no overload is smaller than a millionth of a newton
     force = (
         0.7
         / factor
@@ -227,7 +232,7 @@ def _loads(d: Draw) -> None:
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
     d.rest("material")
     d.elastic = 0.2 * yielding * bend * factor * least * ratio  # mm of deflection that no hinge yields at
-    gap = min(room, yielding * bend * least * ratio)
+    d.room = gap = min(room, yielding * bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     # rows that stay apart when facing pads turn towards each other
@@ -341,12 +346,30 @@ def _clamp(d: Draw) -> None:
         max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0),
         d.across_mount - 10 - 2 * mounted.d,
     )
-    d.number("clamp.hold_down_pitch", 2 * m.d + 1)
+    apart = d.number("clamp.hold_down_pitch", 2 * m.d + 1)
+    _press_on(d, apart, stop_plate, stack)
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
     # how far the pads stand from the middle
     d.far_x = (d.table["array.row_pitch"] + d.table["element.pad_length"]) / 2
     d.far_y = (stack - 2 * spacer) / 2
+
+
+def _press_on(d: Draw, apart: float, thick: float, stack: float) -> None:
+    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of steel, half as
+    stiff for shear and set screws: across to the set screws, and along the row between them."""
+    longest = max(
+        v for path, v in d.table.items() if path.endswith("hinge_length") and path.startswith("element")
+    )
+    gap, pad = d.table["clamp.stop_plate_gap"], d.table["element.pad_length"]
+    edge = (d.table["array.row_pitch"] - pad) / 2 + max(map(max, d.arms)) + longest / 2
+    edge += d.table["element.seat_length"]
+    across, along = 2 * edge, min(apart, stack)
+    wide = min(0.6 * (across - d.m.d - 0.6), stack - 2 * gap)
+    bend = across**3 / wide + along**3 / (2 * (edge - gap))
+    softest = 2 * bend / (4 * 2e5 * thick**3) + 1e-4
+    most = d.room / 100 / softest
+    d.put("rating.overload_force", min(d.table["rating.overload_force"], max(1e-6, most)))
 
 
 @st.composite

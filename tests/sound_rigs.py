@@ -1,4 +1,5 @@
-"""The rigs of a sound design: cart, vacuum holder, sample, calibration and grasping set-ups that keep every rule."""
+"""The rigs of a sound design: cart, vacuum holder, sample, calibration and grasping set-ups that keep every
+rule."""
 
 from __future__ import annotations
 

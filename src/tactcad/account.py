@@ -1,6 +1,7 @@
 """What a run made, how often and how long it took, and what it loaded and held: for `--profile`.
 
-Makers of what is dear (solids, meshes, finite-element solutions, scenes) say so through `making`; where nobody
+Makers of what is dear (solids, meshes, finite-element solutions, scenes) say so through `making`; where
+nobody
 has asked for an account that costs a comparison.
 """
 
@@ -117,7 +118,8 @@ def text(record: dict) -> str:
         ", ".join(f"{name} ({count})" for name, count in record["loaded"].items()) or "none of the heavy ones"
     )
     lines = [
-        f"profile: {record['seconds']:.2f} s, {record['peak_memory_mb']:.0f} MB at most, {record['modules']} modules",
+        f"profile: {record['seconds']:.2f} s, {record['peak_memory_mb']:.0f} MB at most, "
+        f"{record['modules']} modules",
         f"  loaded (modules): {loaded}",
     ]
     for kind, things in record["made"].items():
@@ -150,7 +152,8 @@ def _peak_memory_mb() -> float:
 
 
 def _high_water() -> int | None:
-    """Linux's VmHWM in kibibytes. getrusage's figure there begins with that of the process that started this one."""
+    """Linux's VmHWM in kibibytes. getrusage's figure there begins with that of the process that started this
+    one."""
     try:
         lines = Path("/proc/self/status").read_text("ascii").splitlines()
     except OSError:

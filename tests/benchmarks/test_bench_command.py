@@ -1,4 +1,5 @@
-"""`tactcad bench` in smoke mode: every benchmark runs, says what it measured on, and writes a whole report."""
+"""`tactcad bench` in smoke mode: every benchmark runs, says what it measured on, and writes a whole
+report."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ from tactcad.fem import calculix
 
 
 def follows_schema(result: dict) -> None:
-    """The document's promises: keys, types, tables whose rows have only described columns and plain values."""
+    """The document's promises: keys, types, tables whose rows have only described columns and plain
+    values."""
     assert result["schema"] == SCHEMA and result["mode"] in ("smoke", "short", "full")
     assert isinstance(result["seed"], int) and result["seconds"] > 0 and len(result["date"]) == 10
     assert {"processor", "cores", "memory_GB", "system", "load"} <= set(result["machine"]) and result[
@@ -169,7 +171,8 @@ def test_a_folder_with_other_things_is_refused_before_anything_is_measured(tmp_p
 
 
 def test_a_childs_memory_is_its_own():
-    """Two children of this large process: one that takes 200 MB more shows 200 MB more, and the other one little."""
+    """Two children of this large process: one that takes 200 MB more shows 200 MB more, and the other one
+    little."""
     ballast = bytearray(300_000_000)
     small = measured(python("-S", "-c", "pass"))
     large = measured(python("-S", "-c", "x = bytearray(200_000_000); x[::4096] = b'1' * len(x[::4096])"))

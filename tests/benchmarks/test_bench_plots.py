@@ -23,7 +23,8 @@ CLUSTER = [
 
 @pytest.mark.parametrize("seed", range(6))
 def test_labels_stand_free_of_each_other_and_of_markers(seed):
-    """By the renderer's own extents; the rungs' times as measured, and shuffled by up to half as much again."""
+    """By the renderer's own extents; the rungs' times as measured, and shuffled by up to half as much
+    again."""
     shift = (
         np.exp(np.random.default_rng(seed).uniform(-0.4, 0.4, len(CLUSTER)))
         if seed

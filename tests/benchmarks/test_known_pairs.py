@@ -54,7 +54,8 @@ def test_turns_are_turns():
 
 
 def inside(part, points: np.ndarray) -> np.ndarray:
-    """Which points lie in an extruded rectangle or circle with circular openings; its own definition of a solid."""
+    """Which points lie in an extruded rectangle or circle with circular openings; its own definition of a
+    solid."""
     body: Extrusion = part.body
     x, y, z = points.T
 
@@ -116,7 +117,8 @@ def test_the_kernel_knows_them_all_and_its_volume_is_the_closed_form():
 
 @pytest.mark.cad
 def test_flat_faced_meshes_are_exact_and_round_ones_miss_what_is_thinner_than_their_chords():
-    """At 0.5 rad a chord of a radius r stands r (1 - cos 0.25) off: 0.03 r. A pin's overlap of 0.1 um is lost in that."""
+    """At 0.5 rad a chord of a radius r stands r (1 - cos 0.25) off: 0.03 r. A pin's overlap of 0.1 um is lost
+    in that."""
     wrong = Counter()
     for pair in PAIRS:
         made = prepared(pair, 0.5)

@@ -39,12 +39,13 @@ def slot(length: float, r: float) -> Contour:
 
 
 def by_quadrature(contour: Contour, f) -> float:
-    """Integral of f over the area by Green: F dy with F = the x-antiderivative of f, each segment by mpmath."""
+    """Integral of f over the area by Green: F dy with F = the x-antiderivative of f, each segment by
+    mpmath."""
     total = mpmath.mpf(0)
     for s in contour:
         if isinstance(s, Line):
             (x0, y0), (x1, y1) = s.start, s.end
-            total += mpmath.quad(lambda u: f(x0 + u * (x1 - x0), y0 + u * (y1 - y0)) * (y1 - y0), [0, 1])  # noqa: B023
+            total += mpmath.quad(lambda u: f(x0 + u * (x1 - x0), y0 + u * (y1 - y0)) * (y1 - y0), [0, 1])
         else:
             (cx, cy), r, w0, w = s.centre, s.radius, s.start_angle, s.sweep
             total += mpmath.quad(
@@ -234,7 +235,8 @@ def random_polygon(seed: int) -> list[tuple[float, float]]:
 
 @pytest.mark.parametrize("seed", range(25))
 def test_fillets_are_tangent_have_their_radius_and_their_closed_form_area(seed):
-    """Each fillet takes r^2 (tan(w/2) - w/2) off an outside corner (w the turn), or adds it to an inside one."""
+    """Each fillet takes r^2 (tan(w/2) - w/2) off an outside corner (w the turn), or adds it to an inside
+    one."""
     points = random_polygon(seed)
     radius = 0.15
     contour = rounded_polygon([Corner(p, radius, f"edge {i}", f"fillet {i}") for i, p in enumerate(points)])

@@ -1,4 +1,5 @@
-"""Texts and keys of TOML and JSON files: what is only said in comments is free, what hides or misleads is refused."""
+"""Texts and keys of TOML and JSON files: what is only said in comments is free, what hides or misleads is
+refused."""
 
 from __future__ import annotations
 

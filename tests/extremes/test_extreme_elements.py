@@ -1,4 +1,5 @@
-"""Finite elements on extreme hinges: angles, condition, rounding, no locking, scaling, and refusals by name."""
+"""Finite elements on extreme hinges: angles, condition, rounding, no locking, scaling, and refusals by
+name."""
 
 from __future__ import annotations
 
@@ -59,7 +60,8 @@ def test_thin_leaves_do_not_lock(t, two, density):
 
 @BOTH
 def test_condition_grows_as_beam_theory_says_and_rounding_stays_below_it(two):
-    """Of quadrilaterals of the leaf's own thickness the condition goes with (l/t)^3 and the number of elements."""
+    """Of quadrilaterals of the leaf's own thickness the condition goes with (l/t)^3 and the number of
+    elements."""
     rows = [fem_extremes.thin(t, two, 1) for t in (0.01, 0.02, 0.05, 0.1)]
     slopes = np.diff(np.log([r.condition for r in rows])) / np.diff(np.log([r.thickness for r in rows]))
     assert np.all((-4.3 < slopes) & (slopes < -3.0))
@@ -79,7 +81,8 @@ def test_refinement_meets_no_rounding_floor_at_any_density_in_use(two):
 
 
 def test_angles_stay_open_over_the_whole_range():
-    """No element is nearly a triangle, whatever the hinge: drawn over every group's range, fillets of 6 t included."""
+    """No element is nearly a triangle, whatever the hinge: drawn over every group's range, fillets of 6 t
+    included."""
     s = section(draw_range(80, seed=99))
     for i in range(80):
         smallest, largest = corner_angles(plane_mesh(reference_shape(s.rows(i)), 2))

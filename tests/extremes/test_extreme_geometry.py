@@ -1,4 +1,5 @@
-"""Designs at the ends of what can be written: every part whole, or a refusal that names field, value and what is legal."""
+"""Designs at the ends of what can be written: every part whole, or a refusal that names field, value and what
+is legal."""
 
 from __future__ import annotations
 
@@ -167,7 +168,8 @@ def loud():
 
 
 def require_whole(design: Design) -> None:
-    """Every part of every scene: closed contours, a finite volume inside its box, and a cut file that reads back."""
+    """Every part of every scene: closed contours, a finite volume inside its box, and a cut file that reads
+    back."""
     assert broken_rules(design) == []
     for name in scene_names(design):
         scene = make_scene(design, name)
@@ -263,7 +265,8 @@ def shrunk(tree, factor: float):
 
 @pytest.mark.parametrize("factor", [1 / 25, 1e-3, 25.0])
 def test_a_jaw_sized_element_is_the_large_one_made_smaller(factor):
-    """Length and area of its outline, and the stiffness of the contour's own finite elements; screws stay what they are."""
+    """Length and area of its outline, and the stiffness of the contour's own finite elements; screws stay
+    what they are."""
     large = variant({"stop.gaps": {"4": 0.1, "5": 0.1, "6": 0.1, "7": 0.1, "8": 0.1}})
     small = shrunk(large, factor)
     assert small.element.hinge_thickness == pytest.approx(0.25 * factor)

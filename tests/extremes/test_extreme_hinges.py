@@ -22,7 +22,8 @@ ALLOY = next(iter(ALLOYS.values()))
 
 @pytest.fixture(autouse=True)
 def loud():
-    """Overflow, division by zero and NaN raise; a number too small for float64 may be zero. 50 digits for mpmath."""
+    """Overflow, division by zero and NaN raise; a number too small for float64 may be zero. 50 digits for
+    mpmath."""
     with (
         warnings.catch_warnings(),
         np.errstate(over="raise", divide="raise", invalid="raise"),
@@ -47,7 +48,7 @@ def test_stiffness_is_exact_or_refused_by_name(case, two):
         values = [mp.mpf(float(getattr(s, name))) for name in ORDER]
         truth = true_compliance(rung, values, two)
         # beams' sums have positive terms and powers up to 3, which 16 covers; the fitted forms say theirs
-        cond = condition(lambda v: true_compliance(rung, v, two), values) if rung in FITTED else 16.0  # noqa: B023
+        cond = condition(lambda v: true_compliance(rung, v, two), values) if rung in FITTED else 16.0
         assert abs(mp.mpf(float(result.stiffness)) * truth - 1) <= 16 * EPS * (1 + cond), rung
 
 
@@ -57,7 +58,7 @@ def test_strain_and_strength_are_numbers_or_refused_like_the_stiffness(case, two
     s, grid = case.section(two), 0.2 * float(REFERENCE.hinge_length)
     for rung in ladder.CLOSED_FORMS:
         if rung in case.refused:
-            for form in (lambda: strain.peak(s, 1.0, rung), lambda: strain.gauge(s, 1.0, grid, rung)):  # noqa: B023
+            for form in (lambda: strain.peak(s, 1.0, rung), lambda: strain.gauge(s, 1.0, grid, rung)):
                 with pytest.raises(CheckFailure):
                     form()
             continue

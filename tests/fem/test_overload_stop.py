@@ -1,5 +1,5 @@
-"""The overload stop by finite elements on the whole contour of every shipped element: load on the pad, tip held by a
-rigid stop plate once its gap is closed. Of the estimator it uses only the ratio of two
+"""The overload stop by finite elements on the whole contour of every shipped element: load on the pad, tip
+held by a rigid stop plate once its gap is closed. Of the estimator it uses only the ratio of two
 stiffnesses; nothing of mechanics/stop.py, nor of the strain forms."""
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ KINDS = sorted(
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one load case, per newton: deflection at the load line and rise of the tip (mm), stress in the fillets (MPa)."""
+    """Of one load case, per newton: deflection at the load line and rise of the tip (mm), stress in the
+    fillets (MPa)."""
 
     deflection: float
     tip: float
@@ -45,8 +46,8 @@ class Answer:
 
 
 def solved(layout: Layout, place: ElementPlace, modulus: float) -> tuple[Answer, Answer, Answer]:
-    """1 N spread over the pad, 1 N up at the land's tip edge, 1 N up at the pad's outer edge; plane stress, held
-    between its spacers. Deflection is always the pad's mean."""
+    """1 N spread over the pad, 1 N up at the land's tip edge, 1 N up at the pad's outer edge; plane stress,
+    held between its spacers. Deflection is always the pad's mean."""
     d = layout.design
     outer, holes = element(layout, place).body.outer, element(layout, place).body.openings
     t, l, r = place.hinge.t, place.hinge.l, place.hinge.r
@@ -76,7 +77,8 @@ def solved(layout: Layout, place: ElementPlace, modulus: float) -> tuple[Answer,
 
     def answer(load: np.ndarray) -> Answer:
         u = elasticity.solve(A, load, fixed)
-        # at a free surface the stress along it is E times the strain along it; at the mid-side node of each side
+        # at a free surface the stress along it is E times the strain along it; at the mid-side node of each
+        # side
         (xa, za), (xb, zb) = direction
         du = np.stack([u[2 * sides[1]] - u[2 * sides[0]], u[2 * sides[1] + 1] - u[2 * sides[0] + 1]])
         dx = np.stack([xb - xa, zb - za])
@@ -112,8 +114,8 @@ def gap_of(layout: Layout, place: ElementPlace) -> float:
 
 @pytest.mark.parametrize(("name", "arm"), KINDS)
 def test_no_hinge_passes_its_rated_deflection_under_the_whole_load(name, arm):
-    """Plane stress, with the modulus that makes the plane arm as stiff as its width makes it: the factor between the
-    two rungs, which test_ladder_against_elements.py holds against solid elements."""
+    """Plane stress, with the modulus that makes the plane arm as stiff as its width makes it: the factor
+    between the two rungs, which test_ladder_against_elements.py holds against solid elements."""
     design = load(name)
     layout, rating = Layout(design), design.rating
     place = next(p for p in layout.elements if p.arm == arm)

@@ -56,7 +56,8 @@ def test_one_per_cent_is_kept_on_fresh_designs(i):
 
 
 def small(seed, count):
-    """Fresh designs whose solid meshes are small enough to be refined in a test: hinges of up to 6 thicknesses."""
+    """Fresh designs whose solid meshes are small enough to be refined in a test: hinges of up to 6
+    thicknesses."""
     s = fresh(12 * count, seed)
     fits = (s.hinge_length / s.hinge_thickness < 6.0) & (s.width / s.hinge_thickness < 25.0)
     return s.rows(np.flatnonzero(fits)[np.linspace(0, fits.sum() - 1, count).astype(int)])
@@ -80,7 +81,8 @@ def test_many_accuracies_are_kept_on_many_fresh_designs(wanted, mesh, count):
 
 
 def test_mesh_of_a_tenth_of_a_per_cent_is_measured_by_refinement():
-    """On its own sample fem-solid moves less than promised when refined, and by the rate that it extrapolates with."""
+    """On its own sample fem-solid moves less than promised when refined, and by the rate that it extrapolates
+    with."""
     columns = fit_samples.shipped_table(RANGE_FILE)
     s = fit_samples.section(columns)
     for coarse, fine, mesh in (("solid_mesh_2", "solid_mesh_3", 2), ("solid_mesh_3", "solid_mesh_4", 3)):

@@ -38,7 +38,8 @@ def pairs_and_objects() -> Iterator[tuple[float, float, float]]:
 
 
 def exact(f: Callable, *values: float) -> mp.mpf:
-    """f of the numbers as they are; at infinity its limit, by a number beyond which 50 digits see no change."""
+    """f of the numbers as they are; at infinity its limit, by a number beyond which 50 digits see no
+    change."""
     return f(*(mp.mpf(10) ** 200 if np.isinf(v) else mp.mpf(float(v)) for v in values))
 
 
@@ -116,7 +117,8 @@ def test_conditions_are_the_logarithmic_derivatives_and_those_in_k_add_up_to_one
     values = [K_r, K_m, (K_r + x) / (K_m + x)]
     solve = lambda r, m, q: (r - q * m) / (q - 1)  # noqa: E731
     for i, name in enumerate(("condition_in_reference", "condition_in_measuring", "condition_in_ratio")):
-        slope = mp.diff(lambda v: solve(*values[:i], v, *values[i + 1 :]), values[i]) * values[i] / x  # noqa: B023
+        along = lambda v, i=i: solve(*values[:i], v, *values[i + 1 :])  # noqa: E731
+        slope = mp.diff(along, values[i]) * values[i] / x
         assert float(getattr(lumped, name)(80.0, 12.0, 5.0)) == pytest.approx(float(slope), rel=1e-12)
     total = lumped.condition_in_reference(80.0, 12.0, 5.0) + lumped.condition_in_measuring(80.0, 12.0, 5.0)
     assert total == pytest.approx(1.0, rel=1e-14)

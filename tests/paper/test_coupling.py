@@ -49,8 +49,8 @@ def test_shares_run_on_smoothly_where_the_sum_ends():
 
 @pytest.mark.parametrize("c, poisson", [(0.3, 0.2), (1.0, 0.3), (1.5, 0.49), (3.0, 0.4)])
 def test_layer_factor_against_the_equations_of_elasticity(c, poisson):
-    """One wave of normal load on a layer of height 1, u = U(z) sin cx, w = W(z) cos cx, solved as a boundary-value
-    problem: W(1) = 2 (1 - nu^2)/E phi/c."""
+    """One wave of normal load on a layer of height 1, u = U(z) sin cx, w = W(z) cos cx, solved as a
+    boundary-value problem: W(1) = 2 (1 - nu^2)/E phi/c."""
     mu, lam = 1 / (2 * (1 + poisson)), poisson / ((1 + poisson) * (1 - 2 * poisson))  # E = 1
 
     def slope(z, y):

@@ -72,7 +72,8 @@ def test_the_assembly_has_the_scenes_names_colours_and_places(macro_scene, whole
 
 
 def test_cadquerys_own_step_export_has_our_colours(macro_scene, whole, tmp_path):
-    """Written by CadQuery, read as text: the colours are the descriptions', in sRGB as every STEP reader takes them."""
+    """Written by CadQuery, read as text: the colours are the descriptions', in sRGB as every STEP reader
+    takes them."""
     import re
 
     path = tmp_path / "cq.step"
@@ -113,7 +114,8 @@ def test_a_cadquery_model_becomes_a_bought_part(bought, tmp_path):
 
 
 def test_it_stands_in_a_scene_with_all_that_comes_of_it(bought, macro_scene, macro_shapes):
-    """Placed on the carrier: interference, STEP, bill of materials, CadQuery's view and pictures all know it."""
+    """Placed on the carrier: interference, STEP, bill of materials, CadQuery's view and pictures all know
+    it."""
     carrier = next(p for p in macro_scene.placements if p.designator == "CA1")
     top = carrier.origin[2] + carrier.part.body.thickness
     placement = Placement("PL1", bought, (0.0, 0.0, top))

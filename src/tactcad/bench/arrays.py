@@ -23,7 +23,8 @@ def published() -> Design:
 
 
 def text(elements: int, changed: bool = False) -> str:
-    """The design file of an array of that many elements, an even number; `changed` makes its first arm longer."""
+    """The design file of an array of that many elements, an even number; `changed` makes its first arm
+    longer."""
     (line,) = (line for line in published_text().splitlines() if line.startswith("row_arms"))
     rows = _repeated(tomllib.loads(line)["row_arms"], elements)
     if changed:

@@ -94,8 +94,8 @@ def stages(elements: int) -> dict:
 
 
 def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
-    """One element built and written `repeats` times, as an export does it, to the file of "tactcad"; then the volume
-    (mm3) of the one solid in each file."""
+    """One element built and written `repeats` times, as an export does it, to the file of "tactcad"; then the
+    volume (mm3) of the one solid in each file."""
     from tactcad.export.step import part_step
     from tactcad.solids.build import build
     from tactcad.solids.files import model_file

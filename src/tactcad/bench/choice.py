@@ -28,20 +28,23 @@ def choice(result: dict) -> str:
     for row in _rows(result, "rungs"):
         error = f"{sig(100 * row['solid worst'], 2)} %"
         lines.append(
-            f"| rung, per element | `{row['rung']}` | {error} | {duration(row['seconds'])} | | {BY_NAME[row['rung']].when} |"
+            f"| rung, per element | `{row['rung']}` | {error} | {duration(row['seconds'])} | | "
+            f"{BY_NAME[row['rung']].when} |"
         )
     for row in _rows(result, "tessellation"):
         when = TESSELLATION.get(row["angular"])
         if when and row["linear"] == _rows(result, "tessellation")[0]["linear"]:
             error, size = f"{sig(100 * row['worst'], 2)} % of volume", f"{sig(row['stl_bytes'] / 1e3, 2)} kB"
             lines.append(
-                f"| triangles, array's parts | {row['angular']:g} rad | {error} | {duration(row['seconds'])} | {size} | {when} |"
+                f"| triangles, array's parts | {row['angular']:g} rad | {error} | {duration(row['seconds'])} "
+                f"| {size} | {when} |"
             )
     for row in _rows(result, "detail"):
         if row["scene"] in ("array", "grasping"):
             size = f"{sig(row['bytes'] / 1e3, 2)} kB"
             lines.append(
-                f"| scene {row['scene']} | {row['detail']} | | {duration(row['seconds'])} | {size} | {DETAIL[row['detail']]} |"
+                f"| scene {row['scene']} | {row['detail']} | | {duration(row['seconds'])} | {size} | "
+                f"{DETAIL[row['detail']]} |"
             )
     return "\n".join(lines)
 

@@ -55,7 +55,8 @@ def measure(plan: Plan) -> dict:
         ("export_bytes", "all files", tables.KILO),
     ]
     note = (
-        f"Built and written: parts described and built, assembly written and read back, in a fresh process; the kernel alone takes "
+        "Built and written: parts described and built, assembly written and read back, in a fresh process; "
+        "the kernel alone takes "
         f"{floor / 1e6:.0f} MB. Whole export: `tactcad export --scene`, empty cache (full runs only)."
     )
     return {
@@ -101,7 +102,9 @@ def findings(rows: list[dict]) -> list[str]:
     light = rows[1::2]
     sizes, times = [r["size ratio"] for r in light], [r["time ratio"] for r in light]
     return [
-        f"Envelopes take {min(times):.2f} to {max(times):.2f} of the time and {min(sizes):.2f} to {max(sizes):.2f} of the file of full parts, "
+        f"Envelopes take {min(times):.2f} to {max(times):.2f} of the time and {min(sizes):.2f} to "
+        f"{max(sizes):.2f} of the file of full parts, "
         "and show no holes, pockets or threads: for collision and layout.",
-        f"Memory is the kernel's: no scene adds more than {max(r['above'] for r in rows) / 1e6:.0f} MB to it.",
+        f"Memory is the kernel's: no scene adds more than {max(r['above'] for r in rows) / 1e6:.0f} MB to "
+        "it.",
     ]

@@ -49,7 +49,8 @@ def measure(plan: Plan) -> dict:
         ("read off", "STEP read back, off", ("ppm", 1e6)),
     ]
     note = (
-        f"{part.part_no}, {part.volume:.6f} mm3 in closed form. tactcad's build compares solid and closed form, and its file is "
+        f"{part.part_no}, {part.volume:.6f} mm3 in closed form. tactcad's build compares solid and closed "
+        "form, and its file is "
         "read back and compared before it is let out; the scripts check nothing."
     )
     missing = [] if freecad.version() else ["FreeCAD (freecadcmd) is not installed: not compared."]
@@ -118,6 +119,7 @@ def findings(rows: list[dict]) -> list[str]:
     others = "; ".join(f"{r['program']} {1e3 * (r['build'] + r['write']):.0f} ms" for r in rows[1:])
     worst = max(max(r["off"], r["read off"]) for r in rows)
     return [
-        f"tactcad builds, checks, writes and reads back an element in {1e3 * (ours['build'] + ours['write']):.0f} ms ({others}); "
+        "tactcad builds, checks, writes and reads back an element in "
+        f"{1e3 * (ours['build'] + ours['write']):.0f} ms ({others}); "
         f"all volumes agree with the closed form within {1e6 * worst:.1g} ppm."
     ]

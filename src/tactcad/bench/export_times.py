@@ -47,8 +47,10 @@ def measure(plan: Plan) -> dict:
         ("peak_bytes", "peak memory", tables.MEGA),
     ]
     note = (
-        "`tactcad export --scene array` in fresh processes, shortest of the runs. Cold: empty cache. The plain script "
-        "builds each shape once, writes each file once and reads it back once, without tactcad, cache or repeatable bytes."
+        "`tactcad export --scene array` in fresh processes, shortest of the runs. Cold: empty cache. The "
+        "plain script "
+        "builds each shape once, writes each file once and reads it back once, without tactcad, cache or "
+        "repeatable bytes."
     )
     return {
         "tables": {

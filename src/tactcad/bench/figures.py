@@ -105,7 +105,10 @@ def choose(result: dict) -> Figure:
         _error_against_time(
             right, triangles, "Triangles of the array's parts", "time for all parts", "volume error"
         )
-        key = "filled and joined: worth choosing\nhollow: something else is quicker and more accurate\nmarker: worst error; line: down to the mean"
+        key = (
+            "filled and joined: worth choosing\nhollow: something else is quicker and more accurate\nmarker: "
+            "worst error; line: down to the mean"
+        )
         left.text(
             0.36, 0.97, key, transform=left.transAxes, va="top", fontsize=9, color=GREY, linespacing=1.5
         )
@@ -113,7 +116,8 @@ def choose(result: dict) -> Figure:
         return Figure(
             "bench-choose",
             svg(figure, "bench-choose"),
-            "Error against time: markers at the worst, lines down to the mean; what is worth choosing is joined, what is dominated is hollow",
+            "Error against time: markers at the worst, lines down to the mean; what is worth choosing is "
+            "joined, what is dominated is hollow",
         )
 
 
@@ -298,7 +302,8 @@ def _scaling(rows: list[dict]) -> Figure:
 def _error_against_time(
     ax, points: Sequence[Point], title: str, across: str, up: str, legend: bool = False
 ) -> None:
-    """Markers at the worst error, a line down to the mean; the efficient front joined, what it dominates hollow."""
+    """Markers at the worst error, a line down to the mean; the efficient front joined, what it dominates
+    hollow."""
     front = efficient([(p.seconds, p.worst) for p in points])
     ax.plot(
         [points[i].seconds for i in front],

@@ -19,7 +19,8 @@ def efficient(points: Sequence[tuple[float, float]]) -> list[int]:
 
 
 def dominators(points: Sequence[tuple[float, float]]) -> dict[int, int]:
-    """For every index that is not on the front the most accurate one that costs no more: what to take instead."""
+    """For every index that is not on the front the most accurate one that costs no more: what to take
+    instead."""
     front = efficient(points)
     beaten = [i for i in range(len(points)) if i not in front]
     return {

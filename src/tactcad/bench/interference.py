@@ -1,5 +1,5 @@
-"""Do two placed parts overlap? Triangle meshes at each tolerance against the kernel, on pairs with known verdicts,
-on the array's own near pairs, and the whole check against every near pair by the kernel."""
+"""Do two placed parts overlap? Triangle meshes at each tolerance against the kernel, on pairs with known
+verdicts, on the array's own near pairs, and the whole check against every near pair by the kernel."""
 
 from __future__ import annotations
 
@@ -46,8 +46,10 @@ def measure(plan: Plan) -> dict:
         ("meshing", "meshing a part", tables.MILLI),
     ]
     note = (
-        "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, verdicts in closed form. "
-        "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median time; meshes are made once a part."
+        "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, "
+        "verdicts in closed form. "
+        "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median "
+        "time; meshes are made once a part."
     )
     others = [
         ("elements", "elements", tables.PLAIN),
@@ -85,7 +87,8 @@ def near(scene: Scene) -> list[tuple[Placement, Placement]]:
 
 
 def count_wrong(found: list[str], true: list[str]) -> dict[str, int]:
-    """Wrong verdicts in all, and by kind: overlaps not seen, overlaps that are none, touch and clear mistaken."""
+    """Wrong verdicts in all, and by kind: overlaps not seen, overlaps that are none, touch and clear
+    mistaken."""
     pairs = Counter(zip(found, true))
     missed = sum(n for (f, t), n in pairs.items() if t == "overlap" != f)
     false = sum(n for (f, t), n in pairs.items() if f == "overlap" != t)
@@ -95,8 +98,8 @@ def count_wrong(found: list[str], true: list[str]) -> dict[str, int]:
 
 @dataclass
 class Prepared:
-    """What each way of judging makes once a part, by part number: the kernel's shape with its box and its faces' boxes,
-    and closed meshes by angular tolerance."""
+    """What each way of judging makes once a part, by part number: the kernel's shape with its box and its
+    faces' boxes, and closed meshes by angular tolerance."""
 
     shapes: dict = field(default_factory=dict)
     boxes: dict = field(default_factory=dict)
@@ -226,10 +229,15 @@ def findings(rows: list[dict], situations: list[dict]) -> list[str]:
     kernel, coarsest, finest = known[0], known[1], known[-1]
     last = situations[-1]
     return [
-        f"On {kernel['count']} pairs with known verdicts the kernel is wrong {kernel['wrong']} times, {finest['by']} {finest['wrong']} times: "
+        f"On {kernel['count']} pairs with known verdicts the kernel is wrong {kernel['wrong']} times, "
+        f"{finest['by']} {finest['wrong']} times: "
         f"{finest['missed']} overlaps missed, {finest['false']} seen where there are none.",
-        f"At {coarsest['angular']:g} rad meshes, once made, take {coarsest['time ratio']:.2g} of the kernel's time a pair, at {finest['angular']:g} rad "
-        f"{finest['time ratio']:.2g}; making one takes {1e3 * coarsest['meshing']:.0f} and {1e3 * finest['meshing']:.0f} ms.",
-        f"{last['elements']} elements: the check judges {last['findings']} contacts in {last['seconds']:.1f} s, every near pair by the kernel takes "
-        f"{last['kernel seconds']:.1f} s, {last['time ratio']:.1f} times as long; {'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
+        f"At {coarsest['angular']:g} rad meshes, once made, take {coarsest['time ratio']:.2g} of the "
+        f"kernel's time a pair, at {finest['angular']:g} rad "
+        f"{finest['time ratio']:.2g}; making one takes {1e3 * coarsest['meshing']:.0f} and "
+        f"{1e3 * finest['meshing']:.0f} ms.",
+        f"{last['elements']} elements: the check judges {last['findings']} contacts in {last['seconds']:.1f} "
+        "s, every near pair by the kernel takes "
+        f"{last['kernel seconds']:.1f} s, {last['time ratio']:.1f} times as long; "
+        f"{'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
     ]

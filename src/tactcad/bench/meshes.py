@@ -1,4 +1,5 @@
-"""Every mesh density of the element rungs, as it is and as the rung takes it; CalculiX and CHOLMOD beside them."""
+"""Every mesh density of the element rungs, as it is and as the rung takes it; CalculiX and CHOLMOD beside
+them."""
 
 from __future__ import annotations
 
@@ -101,7 +102,8 @@ def measure(plan: Plan) -> dict:
         ("front", "on the front", tables.PLAIN),
     ]
     note = (
-        f"Errors over {len(designs)} designs against converged elements of their own kind; unknowns and times of the two-sided reference "
+        f"Errors over {len(designs)} designs against converged elements of their own kind; unknowns and "
+        "times of the two-sided reference "
         "element. CalculiX: a whole process, its only form, and the time that it reports itself."
     )
     missing = [] if calculix.executable() else ["CalculiX (ccx) is not installed: not compared."]
@@ -137,7 +139,8 @@ def findings(rows: list[dict]) -> list[str]:
     for against, title in (("plane", "Plane stress"), ("solid", "Three dimensions")):
         group = [r for r in rows if r["against"] == against]
         names = [
-            f"{'' if r['code'] == 'tactcad' else r['code'] + ' '}{r['elements'].replace(',', '')} at {r['density']}"
+            f"{'' if r['code'] == 'tactcad' else r['code'] + ' '}{r['elements'].replace(',', '')} at "
+            f"{r['density']}"
             for r in group
         ]
         lines.append(f"{title}. " + told(names, [(r["seconds"], r["worst"]) for r in group]))
@@ -146,8 +149,10 @@ def findings(rows: list[dict]) -> list[str]:
         ours, theirs = chosen
         ratio = ours["seconds"] / theirs["own clock"]
         lines.append(
-            f"{'met' if ratio <= GOAL_SOLVE else 'MISSED'}: plane elements within {100 * ASKED:g} %: {1e3 * ours['seconds']:.1f} ms (density "
-            f"{ours['density']}) against CalculiX's own {1e3 * theirs['own clock']:.0f} ms (density {theirs['density']}), {ratio:.2f} of its time "
+            f"{'met' if ratio <= GOAL_SOLVE else 'MISSED'}: plane elements within {100 * ASKED:g} %: "
+            f"{1e3 * ours['seconds']:.1f} ms (density "
+            f"{ours['density']}) against CalculiX's own {1e3 * theirs['own clock']:.0f} ms (density "
+            f"{theirs['density']}), {ratio:.2f} of its time "
             f"(goal {GOAL_SOLVE:g}); {1e3 * theirs['seconds']:.0f} ms as a process."
         )
     return lines

@@ -1,7 +1,8 @@
-"""Runs a command and writes its time, largest memory and exit status: `python meter.py RESULT.json COMMAND...`
+"""Runs a command and writes its time, largest memory and exit status: `python meter.py RESULT.json
+COMMAND...`
 
-A process of its own, and a small one: a child's largest memory counts from the moment it is forked, when it still
-is as large as its parent.
+A process of its own, and a small one: a child's largest memory counts from the moment it is forked, when it
+still is as large as its parent.
 """
 
 import json

@@ -1,7 +1,8 @@
-"""Pairs of parts whose verdict is known in closed form: overlap, touch or clear, at gaps from 0.1 mm to 0.1 um.
+"""Pairs of parts whose verdict is known in closed form: overlap, touch or clear, at gaps from 0.1 mm to 0.1
+um.
 
-Every pair is turned and moved at random, and round parts about their own axis too, so that facets of two meshes meet
-in every way that they can.
+Every pair is turned and moved at random, and round parts about their own axis too, so that facets of two
+meshes meet in every way that they can.
 """
 
 from __future__ import annotations

@@ -16,7 +16,8 @@ T = TypeVar("T")
 class Plan:
     """mode; seed of everything random; a scratch folder; `say` hears what is being measured.
 
-    smoke: does everything run? Its figures mean nothing. short: four minutes on two quiet cores. full: for publication, some 40 minutes.
+    smoke: does everything run? Its figures mean nothing. short: four minutes on two quiet cores. full: for
+    publication, some 40 minutes.
     """
 
     mode: Mode

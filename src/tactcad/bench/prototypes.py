@@ -73,7 +73,8 @@ def measure(plan: Plan) -> dict:
     ]
     last = rows[-1]
     finding = (
-        f"{last['elements']} elements, {last['solids']} solids: copies make the file {last['size ratio']:.1f} times as large, and "
+        f"{last['elements']} elements, {last['solids']} solids: copies make the file "
+        f"{last['size ratio']:.1f} times as large, and "
         f"writing it and reading it back {last['time ratio']:.1f} times as long."
     )
     return {

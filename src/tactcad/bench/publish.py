@@ -1,9 +1,11 @@
-"""A run's report becomes the published one: `python -m tactcad.bench.publish REPORT [FURTHER]...` in the checkout.
+"""A run's report becomes the published one: `python -m tactcad.bench.publish REPORT [FURTHER]...` in the
+checkout.
 
-What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's own, and is named.
+What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's
+own, and is named.
 
-Writes benchmarks/results/reference.json and .md, docs/images/bench-*.svg, the converged results that short runs compare
-with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in docs/.
+Writes benchmarks/results/reference.json and .md, docs/images/bench-*.svg, the converged results that short
+runs compare with, and the tables between `<!-- table bench NAME -->` and `<!-- end -->` in docs/.
 """
 
 from __future__ import annotations
@@ -27,8 +29,8 @@ DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/ch
 
 
 def load(*paths: Path) -> dict:
-    """The JSON of a report, with that of further ones in its place. Raises InputError where one is no report, they do not
-    belong together, or a benchmark is lacking or failed."""
+    """The JSON of a report, with that of further ones in its place. Raises InputError where one is no report,
+    they do not belong together, or a benchmark is lacking or failed."""
     first, *further = map(_read, paths)
     result = first
     for more in further:

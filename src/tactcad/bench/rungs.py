@@ -49,8 +49,10 @@ def measure(plan: Plan) -> dict:
     ]
     worst = max(float(np.nanmax(fine["plane_error"])), float(np.nanmax(fine["width_error"])))
     note = (
-        f"Errors of stiffness against converged elements, in three dimensions and in plane stress. These are themselves "
-        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), within 1e-4 on the held-out ones; "
+        "Errors of stiffness against converged elements, in three dimensions and in plane stress. These are "
+        "themselves "
+        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), "
+        "within 1e-4 on the held-out ones; "
         "no error of finite elements smaller than that estimate is claimed."
     )
     return {
@@ -61,8 +63,8 @@ def measure(plan: Plan) -> dict:
 
 
 def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
-    """Mean and worst size of the relative error, over the designs that have a result; none smaller than the `own`
-    estimated error of what it is measured against."""
+    """Mean and worst size of the relative error, over the designs that have a result; none smaller than the
+    `own` estimated error of what it is measured against."""
     error = np.maximum(np.abs(stiffness / exact - 1.0), own)
     error = error[np.isfinite(error)]
     if not len(error):
@@ -128,8 +130,12 @@ def findings(rows: list[dict]) -> list[str]:
     return [
         "Against solid elements: "
         + told([r["rung"] for r in rows], [(r["seconds"], r["solid worst"]) for r in rows]),
-        f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in {slowest:.2f} s (goal {GOAL_MILLION} s).",
-        f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by {100 * plane['solid worst']:.0f} % at "
-        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements are dominated by a closed form.",
-        f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at {sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
+        f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in "
+        f"{slowest:.2f} s (goal {GOAL_MILLION} s).",
+        f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by "
+        f"{100 * plane['solid worst']:.0f} % at "
+        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements "
+        "are dominated by a closed form.",
+        f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at "
+        f"{sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
     ]

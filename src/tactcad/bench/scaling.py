@@ -21,7 +21,8 @@ QUESTION = "Does any cost grow faster than the array?"
 
 # Why a stage may grow faster than its array; what is not named here is reported as unexplained.
 _PICTURES = (
-    "hidden lines: up to 300 shapes exactly, every edge against every face near it; beyond, strip by strip on triangles, but "
+    "hidden lines: up to 300 shapes exactly, every edge against every face near it; beyond, strip by strip "
+    "on triangles, but "
     "plates as long as the picture reach into every strip with all their holes"
 )
 EXPLAINED = {"picture, above": _PICTURES, "picture, open": _PICTURES, "all of these, process": "its pictures"}
@@ -52,7 +53,8 @@ def measure(plan: Plan) -> dict:
         ("why", "why", tables.PLAIN),
     ]
     note = (
-        "cost = a n^p by least squares of the logarithms, Student's interval. Fixed costs hide growth at small sizes: the last two "
+        "cost = a n^p by least squares of the logarithms, Student's interval. Fixed costs hide growth at "
+        "small sizes: the last two "
         "sizes alone stand beside it."
     )
     return {

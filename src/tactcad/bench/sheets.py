@@ -61,7 +61,10 @@ def measure(plan: Plan) -> dict:
         ("added", "over without", tables.SECONDS),
         ("peak_bytes", "peak memory", tables.MEGA),
     ]
-    note = f"`tactcad export {' '.join(scenes)}` of the published design, empty cache but for the unchanged one; one core keeps the whole export on it."
+    note = (
+        f"`tactcad export {' '.join(scenes)}` of the published design, empty cache but for the unchanged "
+        "one; one core keeps the whole export on it."
+    )
     missing = [] if pinned else ["taskset is not installed: one core was not measured."]
     return {
         "tables": {"sheets": tables.table(TITLE, columns, rows, note)},
@@ -75,5 +78,6 @@ def findings(rows: list[dict]) -> list[str]:
     if drawn["added"] is None:
         return []
     return [
-        f"{drawn['sheets']} sheets add {drawn['added']:.1f} s to an export of {drawn['seconds'] - drawn['added']:.1f} s on all cores."
+        f"{drawn['sheets']} sheets add {drawn['added']:.1f} s to an export of "
+        f"{drawn['seconds'] - drawn['added']:.1f} s on all cores."
     ]

@@ -69,7 +69,10 @@ def measure(plan: Plan) -> dict:
         ("time ratio", "over 0.2 rad", tables.PLAIN),
         ("front", "on the front", tables.PLAIN),
     ]
-    note = f"All {len(shapes)} parts of the array, each once; volume error against the closed form. STL: binary, 84 + 50 n bytes a part."
+    note = (
+        f"All {len(shapes)} parts of the array, each once; volume error against the closed form. STL: "
+        "binary, 84 + 50 n bytes a part."
+    )
     return {
         "tables": {"tessellation": tables.table(TITLE, columns, rows, note)},
         "findings": findings(rows),
@@ -81,15 +84,18 @@ def findings(rows: list[dict]) -> list[str]:
     main = [row for row in rows if row["linear"] == LINEAR]
     coarse, fine = main[0], main[-1]
     lines = [
-        f"From {coarse['angular']:g} to {fine['angular']:g} rad the volume error falls from {1e6 * coarse['volume error']:.0f} to "
-        f"{1e6 * fine['volume error']:.1f} ppm, for {fine['triangles'] / coarse['triangles']:.0f} times the triangles and "
+        f"From {coarse['angular']:g} to {fine['angular']:g} rad the volume error falls from "
+        f"{1e6 * coarse['volume error']:.0f} to "
+        f"{1e6 * fine['volume error']:.1f} ppm, for {fine['triangles'] / coarse['triangles']:.0f} times the "
+        "triangles and "
         f"{fine['seconds'] / coarse['seconds']:.1f} times the time."
     ]
     same = [row for row in rows if row["angular"] == 0.2]
     if len(same) > 1:
         worst, best = max(r["volume error"] for r in same), min(r["volume error"] for r in same)
         lines.append(
-            f"At 0.2 rad the linear tolerance from {max(r['linear'] for r in same):g} to {min(r['linear'] for r in same):g} mm changes the error "
+            f"At 0.2 rad the linear tolerance from {max(r['linear'] for r in same):g} to "
+            f"{min(r['linear'] for r in same):g} mm changes the error "
             f"from {1e6 * worst:.0f} to {1e6 * best:.0f} ppm."
         )
     return lines

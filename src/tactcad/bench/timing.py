@@ -15,7 +15,8 @@ K = TypeVar("K", bound=Hashable)
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds of one action: shortest and median of `runs` samples. The shortest counts: disturbance only adds."""
+    """Seconds of one action: shortest and median of `runs` samples. The shortest counts: disturbance only
+    adds."""
 
     least: float
     median: float
@@ -23,7 +24,8 @@ class Timed:
 
 
 def interleaved(actions: Mapping[K, Callable[[], object]], repeats: int) -> dict[K, Timed]:
-    """Each action once to warm up, then `repeats` rounds of all of them, every round beginning with the next one."""
+    """Each action once to warm up, then `repeats` rounds of all of them, every round beginning with the next
+    one."""
     loops = {
         name: max(1, ceil(LEAST_SAMPLE / max(_seconds(action, 1), 1e-9))) for name, action in actions.items()
     }

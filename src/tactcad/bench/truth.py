@@ -1,8 +1,8 @@
 """Converged finite elements, finer than any rung: what errors are measured against.
 
-Plane stress: Richardson's limit from densities 6 and 12, where the rung takes 3 and 6. Three dimensions: that limit
-times K3D/K2D on one plane mesh (both miss the fillets by the same share), Richardson's limit from densities 2 and 3,
-with what a second layer across the width changes.
+Plane stress: Richardson's limit from densities 6 and 12, where the rung takes 3 and 6. Three dimensions: that
+limit times K3D/K2D on one plane mesh (both miss the fillets by the same share), Richardson's limit from
+densities 2 and 3, with what a second layer across the width changes.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ def _reference() -> Columns:
 
 
 def compute(columns: Columns, solids: int, say: Callable[[str], None]) -> Columns:
-    """Stiffness of unit width and modulus, and K3D/K2D for the first `solids` designs, each with its estimated
-    relative error; NaN where not computed."""
+    """Stiffness of unit width and modulus, and K3D/K2D for the first `solids` designs, each with its
+    estimated relative error; NaN where not computed."""
     s, count = section(columns), len(columns["two_sided"])
     rows = []
     for i in range(count):
@@ -93,7 +93,8 @@ def shipped() -> Columns:
 
 
 def of_run(plan: Plan) -> Columns:
-    """full: solved anew on designs of this run's seed, once, into the scratch folder; else the shipped ones."""
+    """full: solved anew on designs of this run's seed, once, into the scratch folder; else the shipped
+    ones."""
     if plan.mode != "full":
         return shipped()
     path = plan.folder / SHIPPED

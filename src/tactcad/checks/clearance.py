@@ -14,10 +14,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import cache
-from math import asin, cos, sin
+from math import asin
 
-from tactcad.contour import Arc, Contour, Point, Segment
+from tactcad.contour import Arc, Contour, Segment
 from tactcad.contour.nearest import distance
+from tactcad.contour.segment import turned
 from tactcad.design.tree import Design
 from tactcad.parts.element import outline
 from tactcad.parts.finding import Finding
@@ -48,7 +49,7 @@ class _Arms:
         """Every segment that moves with the arm, turned by that angle, in (x, z) of row one."""
         arm = _left_of(self.contour(place.arm, place.hinge, stop_gap(self.layout, place)), place.hinge_x)
         centre = (place.hinge_x, hinge_centre(self.layout, place))
-        return tuple(_turned(s, centre, turn) for s in arm)
+        return tuple(turned(s, centre, -turn) for s in arm)  # an arm that points towards - x goes up
 
     def most(self, place: ElementPlace) -> float:
         """Angle by which the arm turns at most."""
@@ -65,21 +66,6 @@ def _left_of(contour: Contour, x: float) -> Iterable[Segment]:
     """Segments wholly on the arm's side; what bends with the hinge itself is left out."""
     hinge = ("slot_floor", "hinge_face", "slot_arm_fillet", "front_slot_arm_fillet")
     return (s for s in contour if s.start[0] < x and s.end[0] < x and s.name not in hinge)
-
-
-def _turned(s: Segment, centre: Point, angle: float) -> Segment:
-    """Turned clockwise: an arm that points towards - x goes up."""
-    ends = {"start": _point(s.start, centre, angle), "end": _point(s.end, centre, angle)}
-    return (
-        replace(s, centre=_point(s.centre, centre, angle), **ends)
-        if isinstance(s, Arc)
-        else replace(s, **ends)
-    )
-
-
-def _point(p: Point, centre: Point, angle: float) -> Point:
-    x, z = p[0] - centre[0], p[1] - centre[1]
-    return (centre[0] + x * cos(angle) + z * sin(angle), centre[1] - x * sin(angle) + z * cos(angle))
 
 
 def _mirrored(s: Segment) -> Segment:

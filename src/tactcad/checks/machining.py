@@ -7,9 +7,10 @@ from dataclasses import replace
 from itertools import combinations
 from math import dist, inf
 
-from tactcad.contour import Arc, Contour
+from tactcad.contour import Arc, Contour, Segment
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
+from tactcad.contour.necks import direction
 from tactcad.parts.description import Extrusion, Hole, Part, Pocket, Revolution, Vector, drill_point_height
 from tactcad.parts.finding import SAME, Finding, at_least, at_most
 from tactcad.parts.library.screws import METRIC
@@ -74,19 +75,11 @@ def _tight(
             yield from at_least("mill-corner", part.part_no, s.radius, least, what, (*s.at(0.5), 0.0))
 
 
-def _turn(a, b) -> float:
+def _turn(a: Segment, b: Segment) -> float:
     """Sine of the turn from the end of a to the start of b; positive to the left."""
-    ux, uy = _direction(a, 1.0)
-    vx, vy = _direction(b, 0.0)
+    ux, uy = direction(a, a.end)
+    vx, vy = direction(b, b.start)
     return ux * vy - uy * vx
-
-
-def _direction(s, u: float) -> tuple[float, float]:
-    x, y = s.at(u)
-    if isinstance(s, Arc):
-        rx, ry = (x - s.centre[0]) / s.radius, (y - s.centre[1]) / s.radius
-        return (-ry, rx) if s.ccw else (ry, -rx)
-    return ((s.end[0] - s.start[0]) / s.length, (s.end[1] - s.start[1]) / s.length)
 
 
 def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:

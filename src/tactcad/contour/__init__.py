@@ -1,10 +1,15 @@
-"""Lines, arcs and closed contours in mm: the truth that every output is made from."""
+"""Lines, arcs and closed contours in mm: the truth that every output is made from.
+
+In: exact points, radii, corners. Out: contours, their area and moments, cuts, offsets, distances, all in
+closed form.
+"""
 
 from .contour import Contour, chain, circle, rectangle
 from .rounded import Corner, rounded_polygon
-from .segment import Arc, Line, Point, Segment
+from .segment import LEAST_EDGE, Arc, Line, Point, Segment, is_sliver
 
 __all__ = [
+    "LEAST_EDGE",
     "Arc",
     "Contour",
     "Corner",
@@ -13,6 +18,7 @@ __all__ = [
     "Segment",
     "chain",
     "circle",
+    "is_sliver",
     "rectangle",
     "rounded_polygon",
 ]

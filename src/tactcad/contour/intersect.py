@@ -9,7 +9,8 @@ from .contour import Contour
 from .nearest import distance, meeting_points
 from .segment import Point, Segment
 
-# Neighbours that are tangent within rounding seem to meet again up to sqrt(2 r x rounding) beside their joint.
+# Neighbours that are tangent within rounding seem to meet again up to sqrt(2 r x rounding) beside their
+# joint.
 JOINT_MM = 1e-4
 
 

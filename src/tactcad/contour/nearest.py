@@ -12,7 +12,8 @@ from .segment import Arc, Line, Point, Segment
 def feet(s: Segment, p: Point) -> list[Point]:
     """Points of the segment at which the line from p meets it at a right angle; ends count.
 
-    For an arc these are the near and the far side; from its own centre every point is one, and its middle is given.
+    For an arc these are the near and the far side; from its own centre every point is one, and its middle is
+    given.
     """
     if isinstance(s, Line):
         foot = s.at(_along(s, p))

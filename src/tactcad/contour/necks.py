@@ -1,8 +1,8 @@
 """Where a part, or the space around it, is narrow: webs, walls and slots, in closed form.
 
 A neck is a straight connection of two boundary points that is normal to the boundary at both
-(at a sharp corner: lies between the normals of its two edges) and that nothing else crosses. The smallest wall
-and the narrowest slot are necks.
+(at a sharp corner: lies between the normals of its two edges) and that nothing else crosses. The smallest
+wall and the narrowest slot are necks.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ class _Piece:
 
 
 def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float("inf")) -> list[Neck]:
-    """All necks narrower than `below` (mm), the narrowest first; where walls run side by side, one for the pair."""
+    """All necks narrower than `below` (mm), the narrowest first; where walls run side by side, one for the
+    pair."""
     contours = [outer if outer.ccw else outer.reversed()]
     contours += [c.reversed() if c.ccw else c for c in openings]
     pieces = [piece for contour in contours for piece in _pieces(contour)]
@@ -111,7 +112,8 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """Which way the connection from p on the piece to q leaves it; None where it does not leave it along a normal."""
+    """Which way the connection from p on the piece to q leaves it; None where it does not leave it along a
+    normal."""
     s = piece.segment
     here = direction(s, p)
     before = piece.arriving if dist(p, s.start) <= ROUNDING_MM else here

@@ -25,8 +25,8 @@ class _Moved:
 def offset(contour: Contour, by: float) -> Contour:
     """Every point of the contour moved by `by` mm along its normal: outwards, or inwards where negative.
 
-    Corners that open are rounded about their old place (the path of a wire's centre); corners that close are cut
-    where the moved pieces meet, and a fillet smaller than the move vanishes there. Raises
+    Corners that open are rounded about their old place (the path of a wire's centre); corners that close are
+    cut where the moved pieces meet, and a fillet smaller than the move vanishes there. Raises
     ValueError where the move closes a slot, eats a web or a piece other than a fillet.
     """
     to_the_right = by if contour.ccw else -by

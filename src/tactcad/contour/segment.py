@@ -9,6 +9,13 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin, tau
 
 Point = tuple[float, float]
+# mm, a tenth of the finest step that any shop works to (0.01 mm); and what decimals lose when they are added up.
+LEAST_EDGE, LOST = 1e-3, 1e-9
+
+
+def is_sliver(length: float) -> bool:
+    """Whether an edge of that length (mm) is shorter than wire and kernel make: the one judge of rules and checks."""
+    return length < LEAST_EDGE - LOST
 
 
 @dataclass(frozen=True)
@@ -91,3 +98,17 @@ class Arc:
 
 
 Segment = Line | Arc
+
+
+def rotated(p: Point, centre: Point, angle: float) -> Point:
+    """The point turned counter-clockwise about a centre, radians."""
+    x, y = p[0] - centre[0], p[1] - centre[1]
+    return (centre[0] + x * cos(angle) - y * sin(angle), centre[1] + x * sin(angle) + y * cos(angle))
+
+
+def turned(s: Segment, centre: Point, angle: float) -> Segment:
+    """The segment turned counter-clockwise about a centre, radians."""
+    start, end = rotated(s.start, centre, angle), rotated(s.end, centre, angle)
+    if isinstance(s, Arc):
+        return Arc(start, end, rotated(s.centre, centre, angle), s.ccw, s.name)
+    return Line(start, end, s.name)

@@ -1,8 +1,9 @@
 """Tables read from CSV: every refusal names file, line and column.
 
-A line that starts with # is a comment. The first other line is the header; columns may stand in any order and unknown
-ones are left alone. What spreadsheets do to a CSV file is undone where it can only mean one thing: a byte order mark,
-a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at the end, and decimal commas.
+A line that starts with # is a comment. The first other line is the header; columns may stand in any order and
+unknown ones are left alone. What spreadsheets do to a CSV file is undone where it can only mean one thing: a
+byte order mark, a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at the
+end, and decimal commas.
 """
 
 from __future__ import annotations
@@ -69,10 +70,11 @@ class Table:
 
     @cached_property
     def records(self) -> list[tuple[int, list[str]]]:
-        """The rows as text without blanks about the cells, each at the header's width and with the line it begins on.
+        """The rows as text without blanks about the cells, each at the header's width and with the line it
+        begins on.
 
-        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is no CSV,
-        or a row is of another length.
+        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is no
+        CSV, or a row is of another length.
         """
         rows = _split(self.path, self.lines, self.numbers, self.delimiter)
         return [(n, _fitted(self, n, row)) for n, row in rows if any(row)]
@@ -250,7 +252,8 @@ def number(text: str) -> float:
 def _split(
     path: str, lines: list[str], numbers: Sequence[int], delimiter: str
 ) -> Iterator[tuple[int, list[str]]]:
-    """Every record without blanks about its cells, and the line it begins on. Raises InputError where it is no CSV."""
+    """Every record without blanks about its cells, and the line it begins on. Raises InputError where it is
+    no CSV."""
     reader = csv.reader(lines, delimiter=delimiter, strict=True)
     before = 0
     try:

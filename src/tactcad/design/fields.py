@@ -43,7 +43,8 @@ class Number:
 
 @dataclass(frozen=True)
 class Whole:
-    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one too."""
+    """A whole number, how many or which, from low to high, both legal; a TOML float without a fraction is one
+    too."""
 
     low: int
     high: int
@@ -109,7 +110,8 @@ class Text:
 
 
 def shown_text(value: Any, where: str, legal: str) -> str:
-    """Text of any length that shows as it is read. Raises InputError where it is empty or holds hidden characters."""
+    """Text of any length that shows as it is read. Raises InputError where it is empty or holds hidden
+    characters."""
     if not isinstance(value, str) or not visible(value):
         raise InputError(where, "not text", value=value, legal=legal)
     if found := hidden(value):

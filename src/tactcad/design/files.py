@@ -43,8 +43,8 @@ REFUSED_BY_MACHINE = NO_ROOM | {
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
     """All bytes of a regular file; `kind` says in messages what was expected ("a design file (TOML)").
 
-    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than `most_bytes`,
-    or may not be read.
+    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than
+    `most_bytes`, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -71,8 +71,8 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 
 
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
-    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes) where
-    it is not UTF-8.
+    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes)
+    where it is not UTF-8.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
@@ -113,7 +113,8 @@ def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
 
 
 def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
-    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of text."""
+    """Raise InputError where a key or text holds half a pair, a control, or what turns the direction of
+    text."""
     left = [value]
     while left:
         item = left.pop()
@@ -147,10 +148,12 @@ def write_whole(path: str | Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A file to write beside `path`, which is flushed and renamed over it when the block ends well, and gone else.
+    """A file to write beside `path`, which is flushed and renamed over it when the block ends well, and gone
+    else.
 
-    A link is followed; its folder must be there. What killed runs left there goes first. Raises InputError where
-    the place cannot be written to, CheckFailure where there is no room; what was there before is then unchanged.
+    A link is followed; its folder must be there. What killed runs left there goes first. Raises InputError
+    where the place cannot be written to, CheckFailure where there is no room; what was there before is then
+    unchanged.
     """
     try:
         place = Path(os.path.realpath(path))
@@ -179,7 +182,8 @@ def flush_entry(path: Path) -> None:
 
 @contextmanager
 def scratch_folder(purpose: str) -> Iterator[Path]:
-    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes first.
+    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes
+    first.
 
     Raises as `whole_file` does.
     """
@@ -194,8 +198,9 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under whatever name or
-    link, lies in a folder that is one, or is a folder with one in it. What is not there is no matter.
+    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under
+    whatever name or link, lies in a folder that is one, or is a folder with one in it. What is not there is
+    no matter.
     """
     place, around = _identity(out), _folders(out)
     for source in inputs:

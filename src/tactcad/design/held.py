@@ -1,4 +1,5 @@
-"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one left.
+"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one
+left.
 
 Whoever makes one holds a lock (flock) on it, which goes with the process however that ends. Only names of our
 own form, nobody's lock on them and, for folders, our mark in them: then it is a killed run's.
@@ -36,8 +37,8 @@ def held_folder(
 ) -> Iterator[Path]:
     """A folder `parent/STEM.tactcad-XXXXXXXX` of this process alone, gone when the block ends.
 
-    `settle` is called with it before it goes, to save what is not ours to remove. When a signal ends the program
-    `clear` is called instead; where it leaves more than MAKING the next run settles.
+    `settle` is called with it before it goes, to save what is not ours to remove. When a signal ends the
+    program `clear` is called instead; where it leaves more than MAKING the next run settles.
     """
     while True:
         folder = Path(tempfile.mkdtemp(prefix=stem + OWN, dir=parent))
@@ -69,7 +70,8 @@ def _put_away(folder: Path, settle: Settle, clear: Settle) -> None:
 
 
 def sweep_folders(parent: Path, stem: str, settle: Settle = _nothing) -> tuple[str, ...]:
-    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold others."""
+    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold
+    others."""
     holders = []
     for folder in _of_our_form(parent, stem, ""):
         if folder.is_symlink() or not folder.is_dir():

@@ -9,8 +9,8 @@ class InputError(ValueError):
     """Input that cannot be used. Commands print it as one line and exit with status 2.
 
     where   the field's path, or file with line and column ("element.hinge_thickness", "loads.csv:3:2")
-    what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever a
-            file calls its fields
+    what    what is wrong, one clause without a full stop; both are shown on one line and shortened, whatever
+            a file calls its fields
     value   the value found, shown with repr and shortened; leave it out where there is none
     legal   what would be accepted
     """
@@ -61,8 +61,9 @@ def shortened(value: object, most: int = 60) -> str:
 def hidden(text: str) -> str:
     """What a text holds that nobody sees and that changes how the rest is shown; "" where there is nothing.
 
-    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, halves of pairs,
-    and formats, among them all that turn the direction of text. The two joiners that scripts and emoji need may stand.
+    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, halves of
+    pairs, and formats, among them all that turn the direction of text. The two joiners that scripts and emoji
+    need may stand.
     """
     if text.isprintable():
         return ""

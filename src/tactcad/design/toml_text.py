@@ -8,9 +8,10 @@ from typing import Any
 
 from .messages import InputError
 
-# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes minutes for keys
-# of many thousand names, so they are refused before it sees them; 16 names are few enough to parse at once. Comments
-# and strings are stepped over: they may hold what they like. Possessive, hence linear in the length of the text.
+# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes
+# minutes for keys of many thousand names, so they are refused before it sees them; 16 names are few enough to
+# parse at once. Comments and strings are stepped over: they may hold what they like. Possessive, hence linear
+# in the length of the text.
 _LONG_KEY = re.compile(
     r"""
     \#[^\n]*+
@@ -25,7 +26,8 @@ _LONG_KEY = re.compile(
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not TOML."""
+    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not
+    TOML."""
     text = text.replace("\r\n", "\n")
     long = next((found for found in _LONG_KEY.finditer(text) if found["long"]), None)
     if long:

@@ -12,8 +12,8 @@ from .solid import SolidSolution, solve_solid
 ORDER = 4.0
 PLANE_DENSITIES = (3, 6)
 SOLID_MESH = 2  # of fem-solid, where none is asked for
-# Of the solid's share between plane stress and plane strain, observed: 1.9 to 3.3 over 28 designs of the box's
-# edges and of the whole range (measured on densities 1, 2 and 4).
+# Of the solid's share between plane stress and plane strain, observed: 1.9 to 3.3 over 28 designs of the
+# box's edges and of the whole range (measured on densities 1, 2 and 4).
 SHARE_ORDER = 2.5
 NO_POISSON = 1e-9  # relative: plane stress and plane strain are one problem, and so is the solid
 
@@ -50,13 +50,14 @@ def converged_plane(
 def converged_solid(
     shape: ElementShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
 ) -> Converged:
-    """Rung fem-solid on meshes of density mesh - 1 and `mesh` (2 or 3); `error` is what the limit adds to the finer.
+    """Rung fem-solid on meshes of density mesh - 1 and `mesh` (2 or 3); `error` is what the limit adds to the
+    finer.
 
     On one mesh of the plane the solid stands between plane stress and plane strain, at the share
     chi = (C_stress - C_solid)/(C_stress - C_strain), which converges faster than the compliances: the three
-    problems miss the fillets by nearly the same share. Three steps: chi's limit in the plane by Richardson; what
-    finer meshes across the width add to it, found on the coarsest mesh in the plane, where it is cheap; and the
-    limits of plane stress and plane strain between which it stands.
+    problems miss the fillets by nearly the same share. Three steps: chi's limit in the plane by Richardson;
+    what finer meshes across the width add to it, found on the coarsest mesh in the plane, where it is cheap;
+    and the limits of plane stress and plane strain between which it stands.
     """
     stress, strain = (converged_plane(shape, E, nu, width, plane_strain=p) for p in (False, True))
     fine = solve_solid(shape, E, nu, width, density=mesh, across=1)

@@ -1,4 +1,5 @@
-"""How far a finite-element solution can be trusted: angles of its elements, condition, and what rounding leaves."""
+"""How far a finite-element solution can be trusted: angles of its elements, condition, and what rounding
+leaves."""
 
 from __future__ import annotations
 
@@ -20,9 +21,9 @@ Array = NDArray[np.float64]
 class Health:
     """Of one plane mesh and the system that it gives. Angles in degrees, at the corners of the elements.
 
-    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Hager's method,
-    which has nothing random). rounding: relative change of the compliance by one step of iterative refinement, an estimate of
-    what rounding did to it.
+    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Hager's
+    method, which has nothing random). rounding: relative change of the compliance by one step of iterative
+    refinement, an estimate of what rounding did to it.
     """
 
     smallest_angle: float

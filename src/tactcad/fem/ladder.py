@@ -29,8 +29,8 @@ class ElementResult:
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
     """Tip stiffness of one reference element (scalars) in N/mm, friction at the pad included.
 
-    `mesh` is the density of fem-solid's finer mesh. Raises CheckFailure where the design is impossible or the mesh
-    cannot follow it.
+    `mesh` is the density of fem-solid's finer mesh. Raises CheckFailure where the design is impossible or the
+    mesh cannot follow it.
     """
     return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
 

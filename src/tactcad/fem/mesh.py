@@ -38,7 +38,8 @@ SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on 
 ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
 COLUMN = 0.6  # longest element along hinge and fillet, in hinge thicknesses, on the coarsest mesh
-STEEP = 4.0  # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
+# fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
+STEEP = 4.0
 TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
 
 
@@ -312,8 +313,8 @@ def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
 def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid, power: float = 1.0) -> Grid:
     """Transfinite interpolation between four edges that share their ends.
 
-    Blending follows arc length, so that graded edges grade the inside too. How far left and right edge bulge from
-    their chords is felt inside by the share of the way to the other one, to that power.
+    Blending follows arc length, so that graded edges grade the inside too. How far left and right edge bulge
+    from their chords is felt inside by the share of the way to the other one, to that power.
     """
     u = (_share(bottom) + _share(top))[:, None, None] / 2.0
     v = (_share(left) + _share(right))[None, :, None] / 2.0

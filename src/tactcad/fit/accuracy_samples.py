@@ -1,7 +1,8 @@
 """Designs that fill the whole range of the closed forms, and what refined elements say about them.
 
 The fit's own samples crowd where sensors are made; the range that its groups span is wider than they are
-together. Here every group is drawn over all of its range, so that worst errors are measured in its corners too.
+together. Here every group is drawn over all of its range, so that worst errors are measured in its corners
+too.
 """
 
 from __future__ import annotations
@@ -26,13 +27,14 @@ SOLID_PART, REFINED_PART = 8, 16  # two designs in so many with solid elements, 
 REFINED_EDGES = 12
 THICKNESS = 0.25  # mm; all else goes with it, and stiffness is free of size
 LONGEST_BODY = 141.0  # thicknesses: of the fit's samples; a longer one is a beam and only costs elements
-# Most elements in the plane, on its coarsest mesh, for which solids of density 3 and 4 are still affordable. Where
-# there are more the hinge is long and thin, and coarser meshes err less.
+# Most elements in the plane, on its coarsest mesh, for which solids of density 3 and 4 are still affordable.
+# Where there are more the hinge is long and thin, and coarser meshes err less.
 MOST_CELLS = {2: 1000, 3: 80, 4: 45}
 
 
 def draw_range(count: int, seed: int = SEED) -> Columns:
-    """`count` designs (mm), half of them two-sided, every group drawn by logarithm over the range of rung solid."""
+    """`count` designs (mm), half of them two-sided, every group drawn by logarithm over the range of rung
+    solid."""
     rng = np.random.default_rng(seed)
     groups = ladder_data()["range"]["groups"]
     rows = []
@@ -47,7 +49,8 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
 
 
 def draw_refined(count: int = REFINED_EDGES, seed: int = SEED + 1) -> Columns:
-    """`count` designs on the promised box's edges whose meshes are small enough to be refined to density 4."""
+    """`count` designs on the promised box's edges whose meshes are small enough to be refined to density
+    4."""
     drawn = draw_edges(6 * count, seed)
     s = section(drawn)
     small = [
@@ -77,7 +80,8 @@ def compute_range(
 ) -> Columns:
     """Stiffness (unit modulus) by plane elements of every design, by fem-solid on the `meshes` of the i-th.
 
-    `solid_mesh_2` is the rung as it is; `solid_mesh_3` and `solid_mesh_4` refine it. Seconds are processor time.
+    `solid_mesh_2` is the rung as it is; `solid_mesh_3` and `solid_mesh_4` refine it. Seconds are processor
+    time.
     """
     s, count = section(columns), len(columns["two_sided"])
     names = ("plane_stiffness", "solid_mesh_2", "solid_mesh_3", "solid_mesh_4", *SECONDS.values())

@@ -1,4 +1,5 @@
-"""Worst error of every rung by zone of the envelope, against solid elements, from the samples: data/accuracy.json."""
+"""Worst error of every rung by zone of the envelope, against solid elements, from the samples:
+data/accuracy.json."""
 
 from __future__ import annotations
 
@@ -21,8 +22,8 @@ from .fit_samples import Columns, joined, section
 # Promised is this much over the worst that was measured: a fresh design can always be somewhat worse, and the
 # more so the fewer were measured.
 MARGIN, MARGIN_OF_FEW, FEW = 1.5, 3.0, 60
-# Under l/t = 1 the hinge is shorter than thick and its two roots are one; from 2 they are apart. A leaf much longer
-# than wide curls over all of its width, which the width factor was fitted on few designs for.
+# Under l/t = 1 the hinge is shorter than thick and its two roots are one; from 2 they are apart. A leaf much
+# longer than wide curls over all of its width, which the width factor was fitted on few designs for.
 NARROW = 0.7
 ZONES: tuple[dict[str, list[float | None]], ...] = (
     {"b/l": [NARROW, None], "l/t": [0.0, 1.0]},
@@ -40,8 +41,8 @@ Errors = dict[str, np.ndarray]
 
 
 def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) -> dict:
-    """The contents of data/accuracy.json from the "fitted", "held out" and "range" samples, for the constants and
-    the range in `ladder_data` (data/ladder.json)."""
+    """The contents of data/accuracy.json from the "fitted", "held out" and "range" samples, for the constants
+    and the range in `ladder_data` (data/ladder.json)."""
     clock = closed_form_seconds()
     columns = joined(list(samples.values()))
     errors = candidate_errors(columns, ladder_data)
@@ -55,7 +56,8 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
         "reference": REFERENCE,
         "margin": {"usual": MARGIN, f"of fewer than {FEW} designs": MARGIN_OF_FEW},
         "date": today.isoformat(),
-        "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}, numpy {np.__version__}, "
+        "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}, numpy "
+        f"{np.__version__}, "
         f"{os.cpu_count()} cores, one used",
         "samples": {name: len(c["poisson"]) for name, c in samples.items()} | {"seed of range": SEED},
         "seconds a call": {c.name: clock.get(c.name, (0.0, 0.0))[0] for c in CANDIDATES},
@@ -66,8 +68,9 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
 def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
     """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
 
-    K_solid is fem-solid's, on the finest meshes that the design was solved on. A closed form that knows the width is a
-    product of the plane rung and a width factor; its error counts where only the plane part was measured, too.
+    K_solid is fem-solid's, on the finest meshes that the design was solved on. A closed form that knows the
+    width is a product of the plane rung and a width factor; its error counts where only the plane part was
+    measured, too.
     """
     s = section(columns)
     plane = columns["plane_stiffness"] * columns["width"]
@@ -92,7 +95,8 @@ def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
 
 
 def closed_form_seconds(repeats: int = 7) -> dict[str, tuple[float, float]]:
-    """(seconds of a call, seconds a design in a long table) of every closed form, shortest of several runs."""
+    """(seconds of a call, seconds a design in a long table) of every closed form, shortest of several
+    runs."""
     from .fit_samples import draw_box
 
     many = section(draw_box(200, seed=0)).rows(np.arange(TIMED) % 200)

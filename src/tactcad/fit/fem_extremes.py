@@ -31,7 +31,8 @@ ANGLES_OF = 200  # designs over the whole range, for the angles
 
 @dataclass(frozen=True)
 class Thin:
-    """One thin hinge on one density: condition, rounding, and the length that its two roots add, in thicknesses."""
+    """One thin hinge on one density: condition, rounding, and the length that its two roots add, in
+    thicknesses."""
 
     sides: str
     thickness: float
@@ -68,7 +69,8 @@ def thin_hinge(t: float, two_sided: bool) -> HingeSection:
 
 
 def thin(t: float, two_sided: bool, density: int) -> Thin:
-    """Locking would make the leaf stiffer the thinner it is, and so the added length smaller; it does not change.
+    """Locking would make the leaf stiffer the thinner it is, and so the added length smaller; it does not
+    change.
 
     Added length: what the compliance is above beam theory's of the straight part, over the compliance that a
     thickness of leaf brings, 12 L^2 t/(E b t^3).

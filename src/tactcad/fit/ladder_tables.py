@@ -116,7 +116,8 @@ def _strain_table(rungs: tuple[str, ...], strains: Callable[[HingeSection, str],
 
 
 def promised() -> str:
-    """Worst error that was measured, and promised, of the rungs that can be chosen, by zone of the envelope."""
+    """Worst error that was measured, and promised, of the rungs that can be chosen, by zone of the
+    envelope."""
     data = accuracy_data()
     names = [c.name for c in CANDIDATES if c.rung in (*ladder.FITTED, *ladder.FINITE_ELEMENTS)]
     lines = ["| zone | designs | " + " | ".join(names) + " |", "|---|---|" + "---|" * len(names)]

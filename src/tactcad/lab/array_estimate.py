@@ -62,8 +62,8 @@ def estimate(
 def estimate_sections(
     layout: Layout, section: HingeSection, rung: str, force: float
 ) -> list[ElementEstimate]:
-    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the elements)
-    instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
+    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the
+    elements) instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
     K = np.asarray(ladder.stiffness(section, rung))
     return _estimates(
         layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force
@@ -71,8 +71,8 @@ def estimate_sections(
 
 
 def choose_rung(layout: Layout, accuracy: float) -> Choice:
-    """The quickest rung that keeps the relative accuracy of stiffness at every element, each distinct one counted
-    once in the expected time as it is solved once. Raises CheckFailure where there is none."""
+    """The quickest rung that keeps the relative accuracy of stiffness at every element, each distinct one
+    counted once in the expected time as it is solved once. Raises CheckFailure where there is none."""
     places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
     names = [f"element {p.number}" for p in places.values()]
     return choose(hinge_section(layout, tuple(places.values())), accuracy, names)

@@ -1,8 +1,10 @@
-"""Stiffness, strain and strength of the elements as made: the measured dimensions in the estimator, beside the nominal ones.
+"""Stiffness, strain and strength of the elements as made: the measured dimensions in the estimator, beside
+the nominal ones.
 
-The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by one,
-added as squares. Of a dimension that was not measured it is the tolerance, as in the design's [tolerance]; of
-one that was measured with no uncertainty given it is nought. The model's own error is not in them.
+The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by
+one, added as squares. Of a dimension that was not measured it is the tolerance, as in the design's
+[tolerance]; of one that was measured with no uncertainty given it is nought. The model's own error is not in
+them.
 """
 
 from __future__ import annotations
@@ -24,8 +26,8 @@ INTERVALS = ("stiffness", "gauge_strain", "yield_force")
 
 @dataclass(frozen=True)
 class AsMade:
-    """One element by the design, and by its measured dimensions with intervals (low, high) of its stiffness, gauge
-    strain, yield force and rated force; None where the value itself is None."""
+    """One element by the design, and by its measured dimensions with intervals (low, high) of its stiffness,
+    gauge strain, yield force and rated force; None where the value itself is None."""
 
     number: int
     nominal: ElementEstimate

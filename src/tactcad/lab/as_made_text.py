@@ -93,7 +93,8 @@ def _plastic(rows: Sequence[AsMade]) -> list[str]:
 
 
 def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any]:
-    """The elements under the names of `tactcad estimate --json`, with `nominal` and `intervals` (95 %) beside them."""
+    """The elements under the names of `tactcad estimate --json`, with `nominal` and `intervals` (95 %) beside
+    them."""
     readings = [r for row in rows for r in row.readings]
     return {
         "design": design.name,

@@ -30,8 +30,8 @@ def estimate_file(
 ) -> tuple[int, int]:
     """Estimate every row of `source` into `target`; returns how many are in range, and how many there are.
 
-    With an `accuracy` every row is answered by the quickest rung that keeps it there, whatever `rung` says. Raises
-    InputError (file:line:column) where the table is malformed; nothing is then written.
+    With an `accuracy` every row is answered by the quickest rung that keeps it there, whatever `rung` says.
+    Raises InputError (file:line:column) where the table is malformed; nothing is then written.
     """
     header, rows, section = read_table(Path(source))
     if accuracy is None:
@@ -54,7 +54,8 @@ def estimate_file(
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one row: stiffness (N/mm), the chosen model and what it promises, or the reason why there is none."""
+    """Of one row: stiffness (N/mm), the chosen model and what it promises, or the reason why there is
+    none."""
 
     stiffness: float
     model: str
@@ -77,7 +78,8 @@ def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
 
 
 def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> tuple[list[float], list[str]]:
-    """Stiffness (N/mm, NaN where refused) and reason ("" where not) of every design; `mesh` as fem-solid's."""
+    """Stiffness (N/mm, NaN where refused) and reason ("" where not) of every design; `mesh` as
+    fem-solid's."""
     if rung not in ladder.FINITE_ELEMENTS:
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()

@@ -85,8 +85,9 @@ def calibrate(
 ) -> list[ElementCalibration]:
     """One row an element, in the order of the file.
 
-    load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval. tell: hears of
-    every element before it is fitted. Raises InputError where an element's readings are those of no spring.
+    load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval. tell:
+    hears of every element before it is fitted. Raises InputError where an element's readings are those of no
+    spring.
     """
     if not load_cell > 0:
         raise InputError(
@@ -186,7 +187,8 @@ def _require_spring(
     if k - half_width >= load_cell:
         raise InputError(
             where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell:g} N/mm cannot: another unit "
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell:g} N/mm cannot: another "
+            "unit "
             "of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )

@@ -44,7 +44,8 @@ class Reading:
 
     @property
     def verdict(self) -> str:
-        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a limit."""
+        """ "blank"; "outside" or "inside" the tolerance; "undecided" where the uncertainty reaches across a
+        limit."""
         if self.measured is None:
             return "blank"
         u, d = self.uncertainty or 0.0, self.dimension
@@ -59,7 +60,8 @@ class Reading:
 def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
     """Every row of the sheet, by element number and in the order of its dimensions.
 
-    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled in.
+    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled
+    in.
     """
     table = read_table(path, "an inspection sheet (CSV)", comments=False)
     require_columns(table, NEEDED)

@@ -140,8 +140,8 @@ def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) 
 def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float = 0.01) -> list[int]:
     """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
 
-    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good. The search
-    ends after PATIENCE readings in a row that the line does explain.
+    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good. The
+    search ends after PATIENCE readings in a row that the line does explain.
     """
     n = len(x)
     left = _Left(x, y, run)
@@ -164,13 +164,14 @@ def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float
     return removed[:named]
 
 
-# A cluster of so many bad readings may hide one another; each further one costs time on good data only. All of a
-# tenth are tried where an element has up to 200 readings.
+# A cluster of so many bad readings may hide one another; each further one costs time on good data only. All
+# of a tenth are tried where an element has up to 200 readings.
 PATIENCE = 20
 
 
 class _Left:
-    """A line with an intercept a run through the readings that are left, brought up to date as one is taken out.
+    """A line with an intercept a run through the readings that are left, brought up to date as one is taken
+    out.
 
     Means of a run and the common slope move in closed form (deletion of one row of least squares), so that a
     step costs a few sums and no fit.

@@ -1,11 +1,12 @@
 """The cheapest rung that keeps an asked accuracy at a design, by the worst errors that were measured near it.
 
-Error is that of the tip stiffness K against one reference for all rungs: three-dimensional linear elasticity of
-the element cut at load line and clamp edge, solved by solid elements to their limit. What the reference leaves
-out (the real hinge's thickness, where the load stands) is not in it.
+Error is that of the tip stiffness K against one reference for all rungs: three-dimensional linear elasticity
+of the element cut at load line and clamp edge, solved by solid elements to their limit. What the reference
+leaves out (the real hinge's thickness, where the load stands) is not in it.
 
-`data/accuracy.json`, written by `tactcad fit`, divides the envelope into zones by notch form and dimensionless
-groups, and holds for each the worst error of every candidate, what is promised, and the time an element takes.
+`data/accuracy.json`, written by `tactcad fit`, divides the envelope into zones by notch form and
+dimensionless groups, and holds for each the worst error of every candidate, what is promised, and the time an
+element takes.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is wh
 
 @dataclass(frozen=True)
 class Candidate:
-    """A rung as it can be chosen; `mesh` is the density of fem-solid's finer mesh, None for rungs without that choice."""
+    """A rung as it can be chosen; `mesh` is the density of fem-solid's finer mesh, None for rungs without
+    that choice."""
 
     rung: str
     mesh: int | None = None
@@ -44,8 +46,9 @@ CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in r
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen: the promised worst error |K/K_reference - 1|, the time for all designs (s, on the machine
-    that data/accuracy.json names, one thread), and the zones of the envelope that the designs lie in."""
+    """What was chosen: the promised worst error |K/K_reference - 1|, the time for all designs (s, on the
+    machine that data/accuracy.json names, one thread), and the zones of the envelope that the designs lie
+    in."""
 
     candidate: Candidate
     expected_error: float
@@ -62,8 +65,8 @@ def accuracy_data() -> dict:
 def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choice:
     """The quickest candidate that keeps the relative `accuracy` at every one of the designs.
 
-    Raises CheckFailure where a design, called by its name where `names` has one, lies outside what was measured, or
-    where no candidate keeps the accuracy.
+    Raises CheckFailure where a design, called by its name where `names` has one, lies outside what was
+    measured, or where no candidate keeps the accuracy.
     """
     where = lambda i: f" ({names[i]})" if names else ""  # noqa: E731
     outside = validity.reasons(s, MEASURED_FOR).ravel()

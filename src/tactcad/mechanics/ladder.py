@@ -54,7 +54,8 @@ def require_range(s: HingeSection, rung: str) -> None:
 
 
 def compliance(s: HingeSection, rung: str) -> Array:
-    """Tip compliance of the elastic element by a closed-form rung, without friction and wherever it gives a number; mm/N."""
+    """Tip compliance of the elastic element by a closed-form rung, without friction and wherever it gives a
+    number; mm/N."""
     form = BY_NAME[rung].compliance
     if form is None:
         raise ValueError(f"{rung} is no closed form")

@@ -66,5 +66,6 @@ def compliance(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def compliance_by(s: HingeSection, data: dict | None = None) -> Array:
-    """Tip compliance in plane stress, mm/N, by the constants in `data` (as data/ladder.json), else the shipped ones."""
+    """Tip compliance in plane stress, mm/N, by the constants in `data` (as data/ladder.json), else the
+    shipped ones."""
     return compliance(s, by_sides("root", s.two_sided, data))

@@ -1,7 +1,7 @@
 """The rungs of the model ladder, each registered once: all that asks which rungs there are reads it here.
 
-A new closed form is a file with its compliance and an entry in `REGISTER`; `tactcad fit --shipped-samples` then
-measures its errors (data/ladder.json, data/accuracy.json).
+A new closed form is a file with its compliance and an entry in `REGISTER`; `tactcad fit --shipped-samples`
+then measures its errors (data/ladder.json, data/accuracy.json).
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ class Rung:
 
     name             as `--model` takes it
     when             what it is good for, in the benchmarks' table
-    compliance       tip compliance (mm/N) by a closed form, from the fitted constants given or the shipped ones;
-                     None for finite elements, which tactcad.fem solves by the rung's name
-    fitted           what its constants were fitted on, and which groups therefore bound it: plane elements, and
-                     also the width on solid ones; empty where nothing is fitted
+    compliance       tip compliance (mm/N) by a closed form, from the fitted constants given or the shipped
+                     ones; None for finite elements, which tactcad.fem solves by the rung's name
+    fitted           what its constants were fitted on, and which groups therefore bound it: plane elements,
+                     and also the width on solid ones; empty where nothing is fitted
     constant_moment  whether the leaf's moment is taken as the same along the slot
     meshes           densities of the finer mesh that can be chosen; (None,) where there is no choice
     """

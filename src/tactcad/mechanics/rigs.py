@@ -9,7 +9,8 @@ Point = tuple[float, float]
 
 
 def inside_by(polygon: Sequence[Point], point: Point) -> float:
-    """Distance (mm) of a point from the nearest side of a convex counter-clockwise polygon; negative outside."""
+    """Distance (mm) of a point from the nearest side of a convex counter-clockwise polygon; negative
+    outside."""
     distances = []
     for (x0, y0), (x1, y1) in zip(polygon, [*polygon[1:], polygon[0]]):
         length = hypot(x1 - x0, y1 - y0)
@@ -20,15 +21,16 @@ def inside_by(polygon: Sequence[Point], point: Point) -> float:
 def tipping_margin(contacts: Sequence[Point], half: float) -> float:
     """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the contacts, mm.
 
-    `contacts` is the convex polygon of the wheels, counter-clockwise. A vertical load inside it leaves every wheel
-    pressed, however large it is; the cart's own weight only helps. The square's corners are its worst places.
+    `contacts` is the convex polygon of the wheels, counter-clockwise. A vertical load inside it leaves every
+    wheel pressed, however large it is; the cart's own weight only helps. The square's corners are its worst
+    places.
     """
     return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
 
 
 def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
-    """Horizontal force (N) at `height` (mm) over the wheels that would lift one, with `load` (N) down at `at` and
-    the cart's own weight (N) in its middle; inf where height is 0."""
+    """Horizontal force (N) at `height` (mm) over the wheels that would lift one, with `load` (N) down at `at`
+    and the cart's own weight (N) in its middle; inf where height is 0."""
     if height == 0:
         return inf
     moments = []

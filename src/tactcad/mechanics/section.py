@@ -35,9 +35,10 @@ def _none() -> Array:
 class HingeSection:
     """Parameters of one element or of many: arrays (of no dimension for one) that broadcast together.
 
-    Numbers and lists are taken too, and made arrays; where types are checked, by `HingeSection.of`. Lengths in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools. `pad_height`
-    (mm, from the hinge's face towards the object to the contact) and `friction` there only act
-    together, see `friction.factor`.
+    Numbers and lists are taken too, and made arrays; where types are checked, by `HingeSection.of`. Lengths
+    in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools. `pad_height` (mm, from the
+    hinge's face towards the object to the contact) and `friction` there only act together, see
+    `friction.factor`.
     """
 
     hinge_thickness: Array

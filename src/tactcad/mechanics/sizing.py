@@ -32,7 +32,8 @@ def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.D
     reached, found = values[result.valid], result.stiffness[result.valid]
     if not found.min() <= stiffness <= found.max():
         raise CheckFailure(
-            f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to {reached[-1]:.3g} mm, "
+            f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to "
+            f"{reached[-1]:.3g} mm, "
             f"the range of rung {rung}, stiffness goes from {found.min():.4g} to {found.max():.4g} N/mm"
         )
     at = np.flatnonzero(np.diff(np.sign(found - stiffness)) != 0)[0] if found[0] != stiffness else 0

@@ -53,15 +53,16 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
 def peak_stress(s: HingeSection, force) -> Array:
     """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
 
-    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where the
-    factor was not fitted.
+    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where
+    the factor was not fitted.
     """
     _require_fitted(s)
     return stress_beyond_the_fit(s, force)
 
 
 def stress_beyond_the_fit(s: HingeSection, force) -> Array:
-    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound a stop."""
+    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound
+    a stop."""
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 

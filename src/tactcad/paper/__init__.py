@@ -1,4 +1,5 @@
 """The published tables, and the models held against them.
 
-In: the paper's figures as printed (data/), a design. Out: `tactcad validate`'s report, and the pictures of docs/.
+In: the paper's figures as printed (data/), a design. Out: `tactcad validate`'s report, and the pictures of
+docs/.
 """

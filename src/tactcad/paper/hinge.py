@@ -186,7 +186,8 @@ def _form(
 
 
 def face_factor(s: HingeSection) -> np.ndarray:
-    """Strain on the gauge face at the hinge's centre over 6 F L/(E b t^2), plane stress: a grid of no length."""
+    """Strain on the gauge face at the hinge's centre over 6 F L/(E b t^2), plane stress: a grid of no
+    length."""
     return strain.grid_factor(s, CENTRE * s.hinge_thickness, "plane")
 
 

@@ -113,8 +113,8 @@ def residuals(
 def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
     """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
 
-    NaN where none does. A scan brackets the value nearest to the dimension's own, secant steps on ln K against
-    its logarithm, which is nearly straight, then find it.
+    NaN where none does. A scan brackets the value nearest to the dimension's own, secant steps on ln K
+    against its logarithm, which is nearly straight, then find it.
     """
     own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
     factor = np.geomspace(least, most, 400)

@@ -7,9 +7,10 @@ length; here it kinks at its centre, which moves the arm alike to first order in
 from __future__ import annotations
 
 from dataclasses import replace
-from math import asin, atan2, cos, hypot, inf, pi, sin, sqrt, tan
+from math import asin, atan2, hypot, inf, pi, sqrt, tan
 
-from tactcad.contour import Arc, Contour, Line, Point, Segment
+from tactcad.contour import Contour, Line, Point, Segment
+from tactcad.contour.segment import turned
 from tactcad.design.messages import InputError
 
 from .description import Extrusion, Part
@@ -78,16 +79,16 @@ def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:
     for s in contour:
         left_first, left_last = s.start[0] < hinge[0], s.end[0] < hinge[0]
         if left_first == left_last:
-            pieces.append(_turned(s, hinge, angle) if left_first else s)
+            pieces.append(turned(s, hinge, angle) if left_first else s)
             continue
         half = 2 * abs(s.at(_where(s, hinge[0]))[1] - hinge[1]) * tan(abs(angle))
         sign = -1.0 if left_first else 1.0
         first = replace(s, end=s.at(_where(s, hinge[0] + sign * half)))
         last = replace(s, start=s.at(_where(s, hinge[0] - sign * half)))
         if left_first:
-            first = _turned(first, hinge, angle)
+            first = turned(first, hinge, angle)
         else:
-            last = _turned(last, hinge, angle)
+            last = turned(last, hinge, angle)
         pieces += [first, Line(first.end, last.start, s.name), last]
     return Contour(tuple(pieces))
 
@@ -103,15 +104,3 @@ def _where(s: Segment, x: float) -> float:
         else:
             high = middle
     return (low + high) / 2
-
-
-def _turned(s: Segment, centre: Point, angle: float) -> Segment:
-    ends = {"start": _rotated(s.start, centre, angle), "end": _rotated(s.end, centre, angle)}
-    if isinstance(s, Arc):
-        return replace(s, centre=_rotated(s.centre, centre, angle), **ends)
-    return replace(s, **ends)
-
-
-def _rotated(p: Point, centre: Point, angle: float) -> Point:
-    x, y = p[0] - centre[0], p[1] - centre[1]
-    return (centre[0] + x * cos(angle) - y * sin(angle), centre[1] + x * sin(angle) + y * cos(angle))

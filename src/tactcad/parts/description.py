@@ -8,7 +8,7 @@ profile is (radius, z) and turns about z. All lengths in mm.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, radians, tan
 from typing import Literal
 
 from tactcad.contour import Contour
@@ -161,9 +161,12 @@ def _cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
+DRILL_POINT = 118.0  # degrees between the cutting edges: DIN 1412, type N
+
+
 def drill_point_height(diameter: float) -> float:
-    """Height of the cone that a 118 degree drill leaves, mm: (d/2)/tan(59 deg)."""
-    return diameter / 2 * 0.6008606190275604
+    """Height of the cone that a drill leaves, mm: half its diameter over tan(DRILL_POINT/2)."""
+    return diameter / 2 * tan(radians(90 - DRILL_POINT / 2))
 
 
 @dataclass(frozen=True)

@@ -1,1 +1,4 @@
-"""The only maker of solids: from a part's description to the CAD kernel's shape."""
+"""The only maker of solids.
+
+In: a part's description. Out: the CAD kernel's shape of it, each made once, measured, meshed, and written as STEP.
+"""

@@ -1,1 +1,1 @@
-"""Standard parts: sizes from their standards, as part descriptions."""
+"""Standard parts: sizes from their standards (CSV in data/), as part descriptions."""

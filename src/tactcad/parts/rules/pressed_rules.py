@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, cos, sin
 
+from tactcad.contour import LEAST_EDGE, is_sliver
+
 from ..element import outline
 from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
@@ -13,15 +15,13 @@ from ..stop_gap import stop_gap
 from . import misfit
 from .rule import rule, wrong
 
-# A tenth of the finest step that any shop here works to (0.01 mm).
-LEAST_EDGE = 1e-3
-
 
 def turns(layout: Layout) -> list[float]:
-    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance; in the calibration,
-    which has no stop plate, by what its travel gives."""
+    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance, and with
+    the stop plate as far as that gives way; in the calibration, which has none, by what its travel gives."""
     design = layout.design
-    tips = [stop_gap(layout, p) + design.stop.tolerance for p in layout.elements]
+    gives = layout.stop_give * design.rating.overload_force
+    tips = [stop_gap(layout, p) + design.stop.tolerance + gives * p.load_arm / p.arm for p in layout.elements]
     if design.calibration is not None and misfit(layout, "calibration") is None:
         for n, load in enumerate(calibration_loads(design)):
             pad = design.calibration.travel if load.refused else load.deflection
@@ -124,7 +124,7 @@ def no_slivers(layout: Layout) -> Iterator[Finding]:
             continue
         seen.add((p.arm, p.hinge, gap))
         for s in outline(layout, p.arm, p.hinge, gap):
-            if s.length < LEAST_EDGE - SAME:
+            if is_sliver(s.length):
                 yield wrong(
                     _FIELD.get(s.name, "element.corner_radius"),
                     f"leaves {s.length:.3g} mm of {s.name or 'edge'} on element {p.number}",
