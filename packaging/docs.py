@@ -1,8 +1,8 @@
 """Before and after the site's generator: `docs.py stage DIR` writes its pages, `docs.py finish SITE OUT` takes a whole site.
 
 Staged are docs/, README as the first page, CONTRIBUTING and CHANGELOG, what pages link to outside docs/, and the
-reference made from the program: the design file's fields, the commands' parsers. Finishing follows every link and
-takes out what would be fetched from elsewhere.
+reference made from the program: the design file's fields, the commands' parsers. Finishing follows every link,
+and refuses what a page would fetch from elsewhere.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ def stage(folder: Path) -> None:
     out = folder / "pages"
     shutil.copytree(ROOT / "docs", out)
     shutil.copy(ROOT / "packaging" / "zensical.toml", folder)
-    shutil.copy(ROOT / "packaging" / "site.css", out)
+    for name in ("site.css", "site.js"):
+        shutil.copy(ROOT / "packaging" / name, out)
     for source, target in TOP.items():
         (out / target).write_text((ROOT / source).read_text("utf-8").replace("](docs/", "]("), "utf-8")
     for page in out.glob("*.md"):
@@ -106,10 +107,7 @@ class Page(HTMLParser):
 
 
 def finish(site: Path) -> list[str]:
-    """Take out the one script that the generator fetches from elsewhere; return what is wrong with links and files."""
-    for path in site.rglob("*.html"):
-        text = path.read_text("utf-8")
-        path.write_text(re.sub(r'<script src="https://unpkg[^>]*></script>', "", text), "utf-8")
+    """What is wrong with the site: links that lead nowhere, files that would be fetched from elsewhere."""
     pages = {path: Page(path.read_text("utf-8")) for path in site.rglob("*.html") if path.name != "404.html"}
     wrong = []
     for path, page in pages.items():

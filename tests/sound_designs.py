@@ -232,7 +232,7 @@ def _loads(d: Draw) -> None:
     strength = d.number("material.yield_strength", E * ratio, E * ratio)
     d.rest("material")
     d.elastic = 0.2 * yielding * bend * factor * least * ratio  # mm of deflection that no hinge yields at
-    gap = min(room, yielding * bend * least * ratio)
+    d.room = gap = min(room, yielding * bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     # rows that stay apart when facing pads turn towards each other
@@ -346,12 +346,30 @@ def _clamp(d: Draw) -> None:
         max(5, mounted.d + 0.5, mounted.head + 1.1 if d.widest_pad < 48 else 0),
         d.across_mount - 10 - 2 * mounted.d,
     )
-    d.number("clamp.hold_down_pitch", 2 * m.d + 1)
+    apart = d.number("clamp.hold_down_pitch", 2 * m.d + 1)
+    _press_on(d, apart, stop_plate, stack)
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
     # how far the pads stand from the middle
     d.far_x = (d.table["array.row_pitch"] + d.table["element.pad_length"]) / 2
     d.far_y = (stack - 2 * spacer) / 2
+
+
+def _press_on(d: Draw, apart: float, thick: float, stack: float) -> None:
+    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of steel, half as
+    stiff for shear and set screws: across to the set screws, and along the row between them."""
+    longest = max(
+        v for path, v in d.table.items() if path.endswith("hinge_length") and path.startswith("element")
+    )
+    gap, pad = d.table["clamp.stop_plate_gap"], d.table["element.pad_length"]
+    edge = (d.table["array.row_pitch"] - pad) / 2 + max(map(max, d.arms)) + longest / 2
+    edge += d.table["element.seat_length"]
+    across, along = 2 * edge, min(apart, stack)
+    wide = min(0.6 * (across - d.m.d - 0.6), stack - 2 * gap)
+    bend = across**3 / wide + along**3 / (2 * (edge - gap))
+    softest = 2 * bend / (4 * 2e5 * thick**3) + 1e-4
+    most = d.room / 100 / softest
+    d.put("rating.overload_force", min(d.table["rating.overload_force"], max(1e-6, most)))
 
 
 @st.composite

@@ -9,9 +9,12 @@ from __future__ import annotations
 import pytest
 from variants import variant
 
+from tactcad.checks.brep import check_brep
+from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
 from tactcad.parts.rules import broken_rules
 from tactcad.scenes import left_out, scene_names
+from tactcad.solids.build import build
 
 TWO = {"array.row_arms": [[8.0], [8.0]]}
 
@@ -137,3 +140,21 @@ def test_set_screws_stand_in_mirrored_places_to_the_last_digit():
             }
             y = Layout(variant(changes)).hold_down_y
             assert y == tuple(-v for v in reversed(y))
+
+
+@pytest.mark.cad
+@pytest.mark.parametrize("short", [0.001, 0.0010000001, 0.00099, 0.0011])
+@pytest.mark.parametrize("sides", ["one", "two"])
+def test_an_edge_at_the_limit_is_the_same_to_rule_and_check(short, sides):
+    """A slot floor of 0.001 mm between its fillets: the rule had taken it, the solid's edge was "under 0.001"."""
+    both = {
+        "array.row_arms": [[4.0]],
+        "element.sides": sides,
+        "element.body_height": 3.6 if sides == "two" else 3.0,
+    }
+    design = variant({**both, "element.hinge_length": round(0.6 + short, 10)})
+    refused = [b.check for b in broken_rules(design) if b.check == "no_slivers"]
+    layout = Layout(design)
+    part = element(layout, layout.elements[0])
+    tiny = [f for f in check_brep(part, build(part).wrapped) if f.check == "tiny-edge"]
+    assert bool(refused) == bool(tiny) == (short < 0.001)

@@ -111,6 +111,8 @@ BAD_VALUES = {
     ),
     "gap by word": ({"stop.gaps": {"short": 0.1}}, "stop.gaps.short", "arm length", "mm"),
     "gap of zero": ({"stop.gaps": {"4": 0}}, "stop.gaps.4", "out of range", "mm"),
+    "gap by 4_0": ({"stop.gaps": {"4_0": 0.1}}, "stop.gaps.4_0", "arm length", "mm"),
+    "gap by Arabic digits": ({"stop.gaps": {"\u0664": 0.1}}, "stop.gaps.\u0664", "arm length", "mm"),
     "gap twice": ({"stop.gaps": {"4": 0.1, "4.0": 0.2}}, "stop.gaps.4.0", "twice", "mm"),
     "gaps as a number": ({"stop.gaps": 0.1}, "stop.gaps", "table", "gap by arm length"),
     "origin of nothing": (

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
-from variants import table, variant
+from variants import DROP, table, variant
 
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
@@ -30,11 +30,23 @@ THIN = {
     "gauge.grid_width": 0.4,
 }
 ONE = {"array.row_arms": [[4.0]]}
+FIFTY_A_ROW = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
 TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
 
 # rule -> designs that break it alone: what is changed, and the field that the message points at
 WITNESSES = {
     "override_names_element": [({"element.override.11.hinge_thickness": 0.2}, "element.override.11")],
+    "gaps_name_an_arm": [
+        ({"stop.gaps": {"4.1": 0.05}}, "stop.gaps.4.1"),
+        ({"stop.gaps": {"4": 0.05, "40": 0.05}}, "stop.gaps.40"),
+    ],
+    "stop_plate_stays": [
+        (
+            {**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0, "clamp.stop_plate_thickness": 2.0},
+            "clamp.hold_down_pitch",
+        ),
+        ({**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0}, "clamp.hold_down_pitch"),
+    ],
     "pitch_is_sheet_and_spacer": [
         ({"array.spacer": 1.1}, "array.spacer"),
         ({"array.pitch": 4.5}, "array.spacer"),
@@ -144,7 +156,7 @@ WITNESSES = {
     "stop_gap_above_tolerance": [
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
         ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
-        ({"rating.overload_force": 250.0}, "rating.overload_force"),
+        ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 6.0}, "rating.overload_force"),
     ],
     "stop_keeps_rated_deflection": [({"stop.gaps": {"4": 0.115}}, "stop.gaps.4")],
     "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],
@@ -174,7 +186,7 @@ WITNESSES = {
         ({"element.seat_length": 1.7}, "element.seat_length"),
         ({"clamp.stop_plate_gap": 0.85}, "clamp.stop_plate_gap"),
         ({"element.rear_height": 20.0}, "clamp.stop_plate_thickness"),
-        ({"clamp.stop_plate_thickness": 0.5}, "clamp.stop_plate_thickness"),
+        ({"clamp.stop_plate_thickness": 0.5, "rating.overload_force": 1.0}, "clamp.stop_plate_thickness"),
         ({**ONE, **THIN}, "clamp.screw"),
     ],
     "carrier_holes_apart": [
@@ -375,3 +387,15 @@ def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_draw
     design: Design = from_table(tree)
     if not broken_rules(design):
         make_scene(design, "array")
+
+
+def test_what_the_stop_plate_s_rule_calls_legal_is_legal():
+    """Its own word put back; and left out, the pitch is one that holds, thin plate or usual."""
+    soft = {**FIFTY_A_ROW, "clamp.stop_plate_thickness": 2.0, "clamp.hold_down_pitch": 200.0}
+    (found,) = broken_rules(variant(soft))
+    assert (found.part, found.value) == ("clamp.hold_down_pitch", 200.0)
+    most = float(str(found.limit).split()[2])
+    assert broken_rules(variant({**soft, "clamp.hold_down_pitch": most})) == []
+    for thickness in (2.0, 4.0):
+        derived = {**soft, "clamp.stop_plate_thickness": thickness, "clamp.hold_down_pitch": DROP}
+        assert broken_rules(variant(derived)) == []

@@ -15,6 +15,7 @@ from OCP.GProp import GProp_GProps
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_ShapeEnum, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
+from tactcad.contour import LEAST_EDGE, is_sliver
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.solids.explore import subshapes
@@ -25,10 +26,14 @@ VOLUME_AGREES = 1e-6
 # What comes back from a STEP file is what went in, but for the last of its 15 digits: shares of volume and
 # area, and mm.
 STEP_AGREES, STEP_AGREES_MM = 1e-9, 1e-6
+<<<<<<< HEAD
 # A tenth of the finest step that any shop here works to (0.01 mm), and its square; smaller is a modelling
 # slip.
 LEAST_EDGE = 1e-3
 LEAST_FACE = 1e-6
+=======
+LEAST_FACE = LEAST_EDGE**2  # mm2
+>>>>>>> main
 
 
 def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
@@ -51,7 +56,7 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
         fail("brep-valid", 0, 1, "the kernel calls the solid invalid")
     if not BRep_Tool.IsClosed_s(shells[0]):
         fail("shell-closed", 0, 1, "the solid's shell is open")
-    found += [*_tiny(part, shape, TopAbs_EDGE, LEAST_EDGE), *_tiny(part, shape, TopAbs_FACE, LEAST_FACE)]
+    found += [*_tiny(part, shape, TopAbs_EDGE), *_tiny(part, shape, TopAbs_FACE)]
     if _meets_itself(shape):
         fail("self-intersection", 1, 0, "faces or edges of the solid pass through each other")
     volume = measure(shape)["volume"]
@@ -94,11 +99,12 @@ def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Findin
     return found
 
 
-def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum, limit: float) -> Iterator[Finding]:
-    name, unit = ("edge", "mm") if kind == TopAbs_EDGE else ("face", "mm2")
+def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[Finding]:
+    edges = kind == TopAbs_EDGE
+    name, unit, limit = ("edge", "mm", LEAST_EDGE) if edges else ("face", "mm2", LEAST_FACE)
     for sub in subshapes(shape, kind):
         size, place = _size(sub, kind)
-        if size < limit:
+        if is_sliver(size) if edges else size < limit:
             message = f"{name} of only {size:.3g} {unit}, under {limit:g}"
             yield Finding(f"tiny-{name}", "fail", part.part_no, place, size, limit, message)
 

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
@@ -116,10 +117,10 @@ def _asked_accuracy(args: argparse.Namespace) -> float | None:
         raise InputError("--accuracy", f"chooses the rung itself; leave out --model {args.model}")
     text = args.accuracy.strip()
     try:
-        number = float(text.removesuffix("%"))
+        given = as_number(text.removesuffix("%"))
     except ValueError:
-        number = math.nan
-    value = number / 100.0 if text.endswith("%") else number
+        given = math.nan
+    value = given / 100.0 if text.endswith("%") else given
     if not 0.0 < value < 1.0:
         raise InputError(
             "--accuracy",

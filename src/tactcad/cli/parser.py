@@ -7,10 +7,16 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 from tactcad.design.messages import InputError, near, one_of
+from tactcad.design.plain_numbers import as_number, as_whole
 
 
 class Parser(argparse.ArgumentParser):
     """argparse's parser without its page of usage before the message, and with the word that was meant."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self.register("type", float, as_number)
+        self.register("type", int, as_whole)
 
     def parse_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> argparse.Namespace:
         if args and args[-1] == "--":

@@ -6,9 +6,10 @@ closed form.
 
 from .contour import Contour, chain, circle, rectangle
 from .rounded import Corner, rounded_polygon
-from .segment import Arc, Line, Point, Segment
+from .segment import LEAST_EDGE, Arc, Line, Point, Segment, is_sliver
 
 __all__ = [
+    "LEAST_EDGE",
     "Arc",
     "Contour",
     "Corner",
@@ -17,6 +18,7 @@ __all__ = [
     "Segment",
     "chain",
     "circle",
+    "is_sliver",
     "rectangle",
     "rounded_polygon",
 ]

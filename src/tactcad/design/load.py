@@ -13,6 +13,7 @@ from .fields import Number, shown_text
 from .files import read_text
 from .materials import ALLOYS
 from .messages import InputError, near, one_of
+from .plain_numbers import as_number
 from .toml_text import parse_toml
 from .tree import Design, Element, Hinge, Stop
 
@@ -137,7 +138,7 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
     gaps = {}
     for key, value in table.items():
         try:
-            arm = float(key)
+            arm = as_number(key)
         except ValueError:
             arm = math.nan
         if not (math.isfinite(arm) and arm > 0):

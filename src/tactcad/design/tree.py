@@ -163,8 +163,10 @@ class Clamp:
     spacer_drop: float = given(Number("mm", 0, 20, "spacers end this far below the rear body's top"), 0.1)
     stop_plate_thickness: float = given(Number("mm", 0.5, 20, "stop plate"), 4.0)
     stop_plate_gap: float = given(Number("mm", 0.05, 5, "stop plate to rear bodies and end plates"), 0.4)
-    hold_down_pitch: float = given(
-        Number("mm", 5, 200, "largest distance of the set screws that hold the stop plate down"), 40.0
+    hold_down_pitch: float | None = given(
+        Number("mm", 5, 200, "largest distance of the set screws that hold the stop plate down"),
+        None,
+        "the stop plate between them gives way by a tenth of stop.tolerance under rating.overload_force",
     )
     carrier_thickness: float = given(Number("mm", 2, 40, "carrier plate"), 6.0)
     carrier_margin: float = given(Number("mm", 0, 20, "carrier beyond the end plates"), 2.0)

@@ -13,6 +13,7 @@ from functools import cached_property
 from tactcad.design.tree import Design
 
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
+from .stop_give import derived_pitch, stop_plate_beams
 
 # Least gap between parts that must not meet, in mm; chosen: a hair.
 LEAST_GAP = 0.1
@@ -266,7 +267,23 @@ class Layout:
         ledge."""
         return round(self.clamp_edge - METRIC[self.design.clamp.screw].d / 2 - BESIDE_SET_SCREW, 6)
 
+    @cached_property
+    def hold_down_pitch(self) -> float:
+        """Largest distance of a row's set screws: the design's, or what the plate's bending leaves."""
+        given = self.design.clamp.hold_down_pitch
+        return derived_pitch(self) if given is None else given
+
     @property
+    def beyond_screws(self) -> float:
+        """How far the outermost elements' mid-planes stand beyond the last set screw, mm."""
+        return max(0.0, self.position_y(self.positions - 1) - self.hold_down_y[-1])
+
+    @cached_property
+    def stop_give(self) -> float:
+        """How far the stop plate gives way for each newton of one arm, mm/N."""
+        return stop_plate_beams(self).one
+
+    @cached_property
     def hold_down_y(self) -> tuple[float, ...]:
         """y of the set screws of a row: over the outermost elements or as near as the end plates allow,
         even, no further apart than allowed; one in the middle where two would run into each other."""
@@ -275,7 +292,7 @@ class Layout:
         if span < d + HOLE_WEB:
             return (0.0,)
         count = 2
-        while span / (count - 1) > self.design.clamp.hold_down_pitch:
+        while span / (count - 1) > self.hold_down_pitch:
             count += 1
         # by whole numbers that mirror each other, so that the rounded places do too
         return tuple(round(span * i / (2 * (count - 1)), 6) for i in range(1 - count, count, 2))

@@ -50,20 +50,20 @@ def overloads(layout: Layout) -> list[Overload]:
     s, alloy = hinge_section(layout, places), design_alloy(design)
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
     K, arm, tolerance = known.stiffness, np.array([p.arm for p in places]), design.stop.tolerance
-    gap = np.array([stop_gap(layout, p) for p in places])
+    gap, give = np.array([stop_gap(layout, p) for p in places]), layout.stop_give
     # the rigid arm's lever carries the gap at the tip to the load line
     earliest = K * (gap - tolerance) * s.load_arm / arm
     closing = np.minimum(K * (gap + tolerance) * s.load_arm / arm, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
-    stress = strain.stress_beyond_the_fit(s, closing + stress_share(s, K, arm) * beyond)
+    stress = strain.stress_beyond_the_fit(s, closing + stress_share(s, K, arm, give) * beyond)
     yields = strength.yield_force_where_known(s, alloy)
     columns = (
         gap + tolerance,
         earliest,
         closing,
         beyond * s.load_arm / arm,
-        (closing + deflection_share(s, K, arm) * beyond) / K,
+        (closing + deflection_share(s, K, arm, give) * beyond) / K,
         yields / rating.deflection_factor / K,
         stress,
         alloy.yield_strength / stress,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from math import floor
 
 from tactcad.design.messages import InputError, one_of
+from tactcad.design.plain_numbers import as_number, as_whole
 from tactcad.design.tree import Design
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 
@@ -67,12 +68,12 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
         low, high = limits[key]
         legal = f"{key} from {low:g} to {high:g}"
         try:
-            number = int(value) if isinstance(low, int) else float(value)
+            found = as_whole(value) if isinstance(low, int) else as_number(value)
         except ValueError:
             raise InputError("--pose", "not a number", value=text, legal=legal) from None
-        if not low <= number <= high:
+        if not low <= found <= high:
             raise InputError("--pose", "out of range", value=text, legal=legal)
-        if 0 < abs(number) < LEAST:
+        if 0 < abs(found) < LEAST:
             raise InputError("--pose", "below a micrometre", value=text, legal=f"0, or {LEAST:g} mm and more")
-        values[key] = number
+        values[key] = found
     return Pose(**values) if values else None

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import asin, cos, sin
 
+from tactcad.contour import LEAST_EDGE, is_sliver
+
 from ..element import outline
 from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
@@ -13,15 +15,13 @@ from ..stop_gap import stop_gap
 from . import misfit
 from .rule import rule, wrong
 
-# A tenth of the finest step that any shop here works to (0.01 mm).
-LEAST_EDGE = 1e-3
-
 
 def turns(layout: Layout) -> list[float]:
-    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance; in the
-    calibration, which has no stop plate, by what its travel gives."""
+    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance, and with
+    the stop plate as far as that gives way; in the calibration, which has none, by what its travel gives."""
     design = layout.design
-    tips = [stop_gap(layout, p) + design.stop.tolerance for p in layout.elements]
+    gives = layout.stop_give * design.rating.overload_force
+    tips = [stop_gap(layout, p) + design.stop.tolerance + gives * p.load_arm / p.arm for p in layout.elements]
     if design.calibration is not None and misfit(layout, "calibration") is None:
         for n, load in enumerate(calibration_loads(design)):
             pad = design.calibration.travel if load.refused else load.deflection
@@ -36,8 +36,7 @@ def hinge_centre(layout: Layout, place: ElementPlace) -> float:
 
 @rule(after="stop_land_above_arm")
 def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
-    """On the closed stop the arm's back is a land's height under the stop plate, which its tolerance may
-    take."""
+    """On the closed stop the arm's back is a land's height under the stop plate, which its tolerance may take."""
     taken = layout.design.tolerance.arm_height
     for p in layout.elements:
         high = layout.ledge_of(p.hinge) - stop_gap(layout, p) - p.hinge.h
@@ -52,8 +51,7 @@ def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="land_stands_over_arm")
 def slots_stay_open(layout: Layout) -> Iterator[Finding]:
-    """The upper corner of the slot's arm wall, (-l/2, h - z) from the hinge's middle, turns towards the
-    body's wall."""
+    """The upper corner of the slot's arm wall, (-l/2, h - z) from the hinge's middle, turns towards the body's wall."""
     limit = layout.design.tolerance.hinge_length
     kinds = {(p.arm, p.hinge): (p, w) for p, w in zip(layout.elements, turns(layout))}
     for p, w in kinds.values():
@@ -71,8 +69,7 @@ def slots_stay_open(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="slots_stay_open")
 def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
-    """A pad's inner corner, (-a, -(pad height + z)) from the hinge's middle, turns towards the facing
-    pad's."""
+    """A pad's inner corner, (-a, -(pad height + z)) from the hinge's middle, turns towards the facing pad's."""
     d = layout.design
     towards: dict[int, float] = {}
     for p, w in zip(layout.elements, turns(layout)):
@@ -91,8 +88,7 @@ def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
         )
 
 
-# Which field makes a piece of the contour short; what is not named here lies between holes.web and the
-# body's heights.
+# Which field makes a piece of the contour short; what is not named here lies between holes.web and the body's heights.
 _FIELD = {
     "pad_face": "element.pad_length",
     "pad_side": "element.pad_height",
@@ -119,8 +115,8 @@ _FIELD = {
 
 @rule(after="pressed_arms_clear_opposite_row")
 def no_slivers(layout: Layout) -> Iterator[Finding]:
-    """Every piece of every element's contour is LEAST_EDGE long, or not there at all: neither wire nor
-    kernel makes a shorter one."""
+    """Every piece of every element's contour is LEAST_EDGE long, or not there at all: neither wire nor kernel makes a
+    shorter one."""
     seen = set()
     for p in layout.elements:
         gap = stop_gap(layout, p)
@@ -128,7 +124,7 @@ def no_slivers(layout: Layout) -> Iterator[Finding]:
             continue
         seen.add((p.arm, p.hinge, gap))
         for s in outline(layout, p.arm, p.hinge, gap):
-            if s.length < LEAST_EDGE - SAME:
+            if is_sliver(s.length):
                 yield wrong(
                     _FIELD.get(s.name, "element.corner_radius"),
                     f"leaves {s.length:.3g} mm of {s.name or 'edge'} on element {p.number}",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot, pi, sqrt, tan
+from dataclasses import replace
+from math import ceil, floor, hypot, pi, sqrt, tan
 
 from ..finding import SAME, Finding
 from ..layout import Layout
 from ..stop_gap import land_room, stop_gap, stop_limit
+from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
 from .rule import at_least, at_most, rule, wrong
 
 # Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
@@ -76,6 +78,15 @@ def recess_fits_rear(layout: Layout) -> Iterator[Finding]:
 
 
 @rule(after="override_names_element")
+def gaps_name_an_arm(layout: Layout) -> Iterator[Finding]:
+    arms = sorted({p.arm for p in layout.elements})
+    for arm, gap in (layout.design.stop.gaps or {}).items():
+        if arm not in arms:
+            legal = f"a gap for arms of {', '.join(f'{a:g}' for a in arms)} mm"
+            yield wrong(f"stop.gaps.{arm:g}", "no element has an arm of this length", gap, legal)
+
+
+@rule(after="override_names_element")
 def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     for p in layout.elements:
@@ -91,6 +102,56 @@ def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
 
 
 @rule(after="stop_land_above_arm")
+def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
+    """Under an arm that the overload force presses on it the stop plate gives way by SHARE of the gap at most.
+
+    The gap is that of a stop that gives no way: what it protects does not depend on the plate.
+    """
+    d, give = layout.design, layout.stop_give
+    for p in layout.elements:
+        force = d.rating.overload_force * p.load_arm / p.arm
+        gap = stop_limit(layout, p, give=0.0).gap
+        allowed = SHARE * gap / force
+        if gap <= d.stop.tolerance or give <= allowed:
+            continue  # where there is no gap, other rules say why
+        what = (
+            f"the stop plate gives way by {give * force:.3g} mm under element {p.number} and "
+            f"{d.rating.overload_force:g} N, more than a tenth of its gap"
+        )
+        yield _what_helps(layout, what, allowed)
+        return
+
+
+def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
+    """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given and
+    enough, else a thicker plate, else less force."""
+    d, c = layout.design, layout.design.clamp
+    if c.hold_down_pitch is not None:
+        pitch = _largest_pitch(layout, allowed)
+        if pitch is not None:
+            return wrong("clamp.hold_down_pitch", what, c.hold_down_pitch, f"at most {pitch:g} mm")
+    for tenths in range(ceil(10 * c.stop_plate_thickness), 201):
+        thicker = replace(d, clamp=replace(c, stop_plate_thickness=tenths / 10))
+        if Layout(thicker).stop_give <= allowed:  # other set screws reach to it
+            return wrong(
+                "clamp.stop_plate_thickness", what, c.stop_plate_thickness, f"at least {tenths / 10:g} mm"
+            )
+    most = d.rating.overload_force * allowed / layout.stop_give
+    return wrong("rating.overload_force", what, d.rating.overload_force, f"at most {most:.2g} N")
+
+
+def _largest_pitch(layout: Layout, allowed: float) -> float | None:
+    """Largest pitch (mm, by halves) of set screws that is allowed; None where none is."""
+    pitch = floor(2 * layout.hold_down_pitch) / 2
+    least = max(shortest_pitch(layout), 2 * layout.beyond_screws)
+    while pitch >= least:
+        if stop_plate_beams(layout, pitch=pitch).one <= allowed:
+            return pitch
+        pitch -= 0.5
+    return None
+
+
+@rule(after="stop_plate_stays")
 def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
     """A gap that the design gives is no wider than the hinge bears; a derived one is made so."""
     stop = layout.design.stop
@@ -108,7 +169,7 @@ def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
             )
 
 
-@rule(after="stop_land_above_arm")
+@rule(after="stop_plate_stays")
 def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
     """The arm moves before its stop closes; what leaves it no gap is the overload or the tolerance."""
     d = layout.design
@@ -132,7 +193,7 @@ def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
             )
 
 
-@rule(after="stop_land_above_arm")
+@rule(after="stop_plate_stays")
 def stop_land_fits_arm(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     for p in layout.elements:

@@ -1,0 +1,105 @@
+"""How far the stop plate gives way where an arm presses it off its ledges, from the set screws that hold it down.
+
+Two beams in a row, each on supports that let it turn: across, from one row of set screws to the other, a strip as
+wide as a slab lends to one load (2.4 a (1 - a/span), in the middle 0.6 of the span; BS 8110-1, 3.5.2.2) carries the
+arm; along, the whole plate spans from one pair of set screws to the next. To that comes the set screw's own length.
+Ledges, further spans, and the screws' seating, which presses the plate on its ledges, only take from it.
+
+The carrier is not in it: held at its threads in the middle it bends so that gaps close (docs/rigs.md).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, pi
+from typing import TYPE_CHECKING
+
+from tactcad.mechanics.bending import Beam
+
+from .library.screws import METRIC
+
+if TYPE_CHECKING:
+    from .layout import Layout
+
+# 1.4301, EN 10088-1; A2 screws are of the same steel. MPa
+STEEL_MODULUS, STEEL_POISSON = 200000.0, 0.3
+SLAB = 0.6
+# Of its gap, what the plate may give way under an arm. The gap is cut narrower by what is told here; were it a third
+# more, which elements do not find, that were 3 % of the gap, where the rated deflection keeps 5 % (1.2 over 1.14).
+SHARE = 0.1
+
+
+@dataclass(frozen=True)
+class StopPlate:
+    """Its beams between set screws, the compliance of one set screw (mm/N), and what bears on a span when all arms do.
+
+    strip     across, under one of the arms that press in each place of the row
+    per_span  arms on the plate from one pair of set screws to the next
+    """
+
+    across: Beam
+    along: Beam
+    screw: float
+    strip: Beam
+    rows: int
+    per_span: float
+
+    @property
+    def one(self) -> float:
+        """mm/N of one arm alone, wherever it stands."""
+        return self.across.supported() + self.along.supported() + self.screw
+
+    @property
+    def every(self) -> float:
+        """mm for each newton on every arm of the array at once."""
+        along = self.along.supported_evenly() + self.screw / 2
+        return self.rows * self.strip.supported() + self.per_span * along
+
+
+def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
+    """The design's; with set screws `pitch` mm apart, if given, instead."""
+    d = layout.design
+    t = d.clamp.stop_plate_thickness
+    span = unheld(layout) if pitch is None else pitch
+    across = 2 * layout.hold_down_x
+    rows = len(d.array.row_arms)
+    m = METRIC[d.clamp.screw]
+    core = pi / 4 * (m.d - 0.9382 * m.pitch) ** 2  # stress area, ISO 898-1
+
+    def steel(length: float, width: float) -> Beam:
+        return Beam(length, width, t, STEEL_MODULUS, STEEL_POISSON)
+
+    return StopPlate(
+        steel(across, min(SLAB * across, layout.stop_plate_width)),
+        steel(span, 2 * layout.stop_plate_half),
+        (layout.hold_down.length or 0.0) / (STEEL_MODULUS * core),
+        steel(across, min(d.array.pitch, layout.stop_plate_width)),
+        rows,
+        rows * max(1.0, span / d.array.pitch),
+    )
+
+
+def unheld(layout: Layout) -> float:
+    """Largest length along the row without set screws, mm: between two pairs, or twice what arms stand beyond the last."""
+    screws = layout.hold_down_y
+    return max([b - a for a, b in zip(screws, screws[1:])] + [2 * layout.beyond_screws])
+
+
+def derived_pitch(layout: Layout) -> float:
+    """Largest whole mm between set screws at which the plate, along the row, gives way by SHARE of the gap's
+    tolerance under the overload force: a gap is always more than its tolerance."""
+    d = layout.design
+    width, t = 2 * layout.stop_plate_half, d.clamp.stop_plate_thickness
+    for pitch in range(LONGEST_PITCH, ceil(shortest_pitch(layout)), -1):
+        along = Beam(pitch, width, t, STEEL_MODULUS, STEEL_POISSON).supported()
+        if along * d.rating.overload_force <= SHARE * d.stop.tolerance:
+            return float(pitch)
+    return shortest_pitch(layout)
+
+
+def shortest_pitch(layout: Layout) -> float:
+    """The shortest at which neighbouring set screws, half of it apart, still have metal between them; mm."""
+    return max(5.0, 2 * METRIC[layout.design.clamp.screw].d + 1)
+
+
+LONGEST_PITCH = 200  # mm, the field's range

@@ -1,0 +1,41 @@
+"""Numbers in keys, options, poses and tables are what people write, not all that Python reads."""
+
+from __future__ import annotations
+
+from math import isnan
+
+import pytest
+from variants import variant
+
+from tactcad.cli.parser import Parser
+from tactcad.design.csv_table import number
+from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_number, as_whole
+from tactcad.scenes.poses import pose_of
+
+NONE = ["4_0", "\u0664", "", "4 0", "0x10", "1e", "--1", "4,0", "\u00a04", "1e1_0"]
+
+
+@pytest.mark.parametrize("text", NONE)
+def test_what_only_python_reads_is_refused(text):
+    for read in (as_number, as_whole):
+        with pytest.raises(ValueError):
+            read(text)
+
+
+@pytest.mark.parametrize(
+    "text, value", [("4", 4), (" 4.0 ", 4), ("-.5e-3", -5e-4), ("+2.", 2), ("1E3", 1000)]
+)
+def test_a_plain_number_is_read(text, value):
+    assert as_number(text) == value
+
+
+def test_a_cell_of_a_table_an_option_and_a_pose_are_read_by_it(capsys):
+    assert isnan(number("1_0"))
+    with pytest.raises(InputError):
+        pose_of(["element=1_0"], variant({}))
+    parser = Parser(prog="tactcad")
+    parser.add_argument("--force", type=float)
+    with pytest.raises(SystemExit):
+        parser.parse_args(["--force", "4_0"])
+    assert "4_0" in capsys.readouterr().err
