@@ -56,7 +56,7 @@ WHOLE = {
         "stop.tolerance": 0.001,
         "clamp.stop_plate_thickness": 4.4,
     },
-    "arm 100 mm": {"array.row_arms": [[100.0]]},
+    "arm 100 mm": {"array.row_arms": [[100.0]], "clamp.stop_plate_thickness": 5.0},
     "arms of 4 and 100 mm": {"array.row_arms": [[4.0, 100.0]], "clamp.hold_down_pitch": 100.0},
     "1 x 1": {"array.row_arms": [[4.0]]},
     "2 x 20": {"array.row_arms": [LONG * 4] * 2},

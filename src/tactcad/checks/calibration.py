@@ -9,7 +9,8 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 
 def check_calibration(design: Design) -> list[Finding]:
-    """Fail where the travel would make a hinge yield, flag where it passes the rated deflection, with the travel that does not.
+    """Fail where the travel would make a hinge yield, flag where it passes the rated deflection, with the
+    travel that does not.
 
     An element whose strength the estimator cannot tell is flagged by the strength check.
     """
@@ -20,7 +21,8 @@ def check_calibration(design: Design) -> list[Finding]:
         severity = "fail" if design.calibration.travel > load.travel_at_yield else "flag"
         who = f"{load.place.designator} ({element_number(design, load.place)})"
         message = (
-            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated for {load.rated_deflection:.4g}: "
+            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is "
+            f"rated for {load.rated_deflection:.4g}: "
             f"calibrate it to {load.travel_at_rated:.4g} mm of travel"
         )
         found.append(

@@ -137,6 +137,9 @@ def _opposite(layout: Layout, arms: _Arms) -> Iterator[Finding]:
 
 
 def _pressed(check: str, place: ElementPlace, value: float, limit: float, what: str) -> Finding:
-    message = f"pressed as far as it goes the arm comes within {value:.3f} mm of {what}; tolerances take {limit:.3f} mm"
+    message = (
+        f"pressed as far as it goes the arm comes within {value:.3f} mm of {what}; tolerances take "
+        f"{limit:.3f} mm"
+    )
     at = (place.hinge_x - place.arm, 0.0)
     return Finding(check, "fail", place.designator, at, value, limit, message)

@@ -32,8 +32,8 @@ VOLUME_AGREES = 1e-6
 
 @dataclass(frozen=True)
 class Meeting:
-    """How two placed parts stand to each other: overlap in mm3, distance in mm, a point of it (mm, in the frame
-    of the part `anchor`: 0 the first, 1 the second)."""
+    """How two placed parts stand to each other: overlap in mm3, distance in mm, a point of it (mm, in the
+    frame of the part `anchor`: 0 the first, 1 the second)."""
 
     overlap: float
     distance: float
@@ -96,7 +96,8 @@ def relative(first: Placement, second: Placement) -> tuple[float, ...]:
 def _situation(
     first: Placement, second: Placement, local: Mapping[str, list], changing: Mapping[str, tuple | None]
 ) -> tuple[tuple, int]:
-    """A key that pairs have in common only where they have one verdict, and which part it is seen from (0, 1).
+    """A key that pairs have in common only where they have one verdict, and which part it is seen from (0,
+    1).
 
     Where one part looks the same along an axis around the other one, the place along that axis is left out.
     """
@@ -121,8 +122,8 @@ def meeting(
     faces: dict[str, Faces],
     anchor: int = 0,
 ) -> Meeting:
-    """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these are
-    measured. One part may hold the other without touching it only where its box holds the other's."""
+    """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these
+    are measured. One part may hold the other without touching it only where its box holds the other's."""
     reach = [
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
     ]

@@ -1,4 +1,5 @@
-"""Can the milled, turned and ground parts be made by their process: cutters, drills, taps, walls, slender shafts."""
+"""Can the milled, turned and ground parts be made by their process: cutters, drills, taps, walls, slender
+shafts."""
 
 from __future__ import annotations
 
@@ -39,7 +40,8 @@ def _thin(
 
 
 def _pockets(part: Part) -> Iterator[Pocket]:
-    """Pockets that a cutter has to enter from above: those that take off the whole rim are milled from outside."""
+    """Pockets that a cutter has to enter from above: those that take off the whole rim are milled from
+    outside."""
     outer = part.body.outer if isinstance(part.body, Extrusion) else None
     for f in part.features:
         if isinstance(f, Pocket) and f.contour != outer:
@@ -68,7 +70,10 @@ def _tight(
     for s, after in zip(segments, segments[1:] + segments[:1]):
         turn = _turn(s, after)
         if (turn if inside else -turn) > 1e-6:
-            what = f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of {least:.3g} mm or more"
+            what = (
+                f"{name}: sharp inside corner, {depth:g} deep: a cutter leaves a radius of "
+                f"{least:.3g} mm or more"
+            )
             yield from at_least("mill-corner", part.part_no, 0.0, least, what, (*s.end, 0.0))
         if isinstance(s, Arc) and s.ccw == inside:
             what = f"{name}: inside radius {s.radius:.3g} mm, {depth:g} deep, wants {least:.3g} mm or more"
@@ -88,7 +93,10 @@ def _narrow_pockets(part: Part, limit: Machining) -> Iterator[Finding]:
         least = max(2 * limit.cutter_radius, pocket.depth / limit.cutter_reach)
         for island in pocket.island:
             wide = min(distance(a, b) for a in pocket.contour for b in island)
-            what = f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants {least:.3g} mm or more"
+            what = (
+                f"groove {pocket.name}: {wide:.3g} mm wide and {pocket.depth:g} deep, wants "
+                f"{least:.3g} mm or more"
+            )
             yield from at_least("mill-groove", part.part_no, wide, least, what, pocket.at)
 
 
@@ -109,7 +117,10 @@ def _drills(part: Part, limit: Machining) -> Iterator[Finding]:
         yield from at_least("drill-diameter", part.part_no, h.diameter, limit.drill, what, h.at)
         wide, entry = h.counterbore or (h.diameter, 0.0)
         for deep, diameter in ((h.depth - entry, h.diameter), (entry, wide)):
-            what = f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} diameters"
+            what = (
+                f"hole {h.name}: {deep:g} mm at {diameter:g} diameter, at most {limit.drill_reach:g} "
+                "diameters"
+            )
             yield from at_most("drill-depth", part.part_no, deep, limit.drill_reach * diameter, what, h.at)
         if h.counterbore:
             yield from _under_head(part, h, h.depth - h.counterbore[1], limit)
@@ -126,7 +137,10 @@ def _under_head(part: Part, h: Hole, left: float, limit: Machining) -> Iterator[
         what = f"hole {h.name}: counterbore as deep as the hole"
         yield from at_least("counterbore", part.part_no, left, limit.wall, what, h.at)
     elif h.through:
-        what = f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        what = (
+            f"hole {h.name}: {left:.3g} mm left under the head, advised {limit.wall:g}, at least "
+            f"{limit.wall_least:g}"
+        )
         yield from _thin("counterbore", part, h.at, left, limit, what)
 
 
@@ -152,7 +166,10 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
         if h is k:
             continue
         wall = _between(a, b, c, d) - r - q
-        what = f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        what = (
+            f"{wall:.3g} mm between {h.name} and {k.name}, advised {limit.wall:g}, at least "
+            f"{limit.wall_least:g}"
+        )
         yield from _thin("hole-web", part, a, wall, limit, what)
     if not isinstance(part.body, Extrusion):
         return
@@ -163,7 +180,10 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
             wall = (clearance(part.body.outer, a[:2]) if inside else -inf) - r
         else:
             wall = min(a[2], t - a[2], b[2], t - b[2]) - r
-        what = f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least {limit.wall_least:g}"
+        what = (
+            f"{wall:.3g} mm between {h.name} and the part's side, advised {limit.wall:g}, at least "
+            f"{limit.wall_least:g}"
+        )
         yield from _thin("hole-wall", part, a, wall, limit, what)
 
 
@@ -185,7 +205,8 @@ def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
 
 
 def _between(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
-    """Smallest distance of the segments ab and cd, by their closest points (clamped projections, both ways)."""
+    """Smallest distance of the segments ab and cd, by their closest points (clamped projections, both
+    ways)."""
 
     def sub(p: Vector, q: Vector) -> Vector:
         return tuple(x - y for x, y in zip(p, q))

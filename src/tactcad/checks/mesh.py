@@ -16,7 +16,8 @@ LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
 
 
 def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
-    """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in bounds."""
+    """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in
+    bounds."""
     with making("mesh", part.part_no):
         vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
     mesh = trimesh.Trimesh(vertices, faces, process=False)

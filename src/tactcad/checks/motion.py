@@ -49,7 +49,8 @@ class _Pair:
 
 
 def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]:
-    """Findings on every motion of the scene; `full` and `envelope` are shapes by part number in their own frames."""
+    """Findings on every motion of the scene; `full` and `envelope` are shapes by part number in their own
+    frames."""
     boxes = {part.part_no: bounding_box(full[part.part_no]) for part in scene.parts}
     placed = {p.designator: placed_box(p, boxes[p.part.part_no]) for p in scene.placements}
     meant = {frozenset((c.first, c.second)): c.kind for c in scene.contacts}
@@ -128,7 +129,8 @@ def _meets(
 
 
 def _slides(pair: _Pair, full: Shapes) -> tuple[float, str] | None:
-    """Parts that are meant to touch somewhere: they may slide on each other, and may not cut into each other."""
+    """Parts that are meant to touch somewhere: they may slide on each other, and may not cut into each
+    other."""
     for n in range(SLIDING):
         t = n / (SLIDING - 1)
         a, b = _shapes(pair, t, full)
@@ -153,7 +155,8 @@ def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS
 def _finding(motion: Motion, pair: _Pair, t: float, what: str) -> Finding:
     a, b = pair.first, pair.second
     message = (
-        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at {100 * t:.0f} % of the "
+        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at "
+        f"{100 * t:.0f} % of the "
         f"motion '{motion.name}'"
     )
     return Finding("motion", "fail", a.designator, pair.offset(t), t, 0.0, message)

@@ -1,4 +1,5 @@
-"""The weight that moves with the array in the grasping set-up, from the parts, against the design's (the paper's 3.235 N)."""
+"""The weight that moves with the array in the grasping set-up, from the parts, against the design's (the
+paper's 3.235 N)."""
 
 from __future__ import annotations
 

@@ -88,8 +88,8 @@ class Shop:
 
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
-    """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them, [machining] and
-    [machining_source]: all of them, or those in which it differs from what comes with tactcad.
+    """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them,
+    [machining] and [machining_source]: all of them, or those in which it differs from what comes with tactcad.
 
     Raises InputError where it cannot be read or a field is missing, unknown or not legal.
     """
@@ -111,7 +111,8 @@ def load_shop(path: str | Path = DEFAULT) -> Shop:
 def _section(
     where: str, table: Mapping[str, Any], kind: type, name: str, source_name: str, usual: Shop | None = None
 ) -> tuple[Any, Mapping[str, str]]:
-    """Limits and their sources from two tables of the same fields; those left out from `usual`, where it is given."""
+    """Limits and their sources from two tables of the same fields; those left out from `usual`, where it is
+    given."""
     known = {f.name for f in fields(kind)}
     given = []
     for section in (name, source_name):

@@ -1,4 +1,5 @@
-"""The overload stop: no hinge passes its rated deflection, nor its stress, when the whole load comes down on one element."""
+"""The overload stop: no hinge passes its rated deflection, nor its stress, when the whole load comes down on
+one element."""
 
 from __future__ import annotations
 
@@ -34,7 +35,10 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 f"the estimator cannot tell its strength: {state.refused}",
             )
         ]
-    closed = f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, tolerance included"
+    closed = (
+        f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
+        "tolerance included"
+    )
     stress = design.material.yield_strength / design.rating.deflection_factor
     found = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
@@ -46,7 +50,8 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 at_hinge,
                 state.deflection,
                 state.rated_deflection,
-                f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for {state.rated_deflection:.4g}",
+                f"the hinge gives way by {state.deflection:.4g} mm {closed}; it is rated for "
+                f"{state.rated_deflection:.4g}",
             )
         )
     if state.stress > stress * (1 + ROUNDING):
@@ -58,7 +63,8 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 at_hinge,
                 state.stress,
                 stress,
-                f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears {stress:.4g}",
+                f"the fillet bears {state.stress:.4g} MPa {closed}; at its rated deflection it bears "
+                f"{stress:.4g}",
             )
         )
     if state.rated_force < design.rating.force:
@@ -70,7 +76,8 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 at_hinge,
                 state.rated_force,
                 design.rating.force,
-                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there the fillet "
+                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: "
+                "there the fillet "
                 f"would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )

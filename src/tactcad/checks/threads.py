@@ -1,4 +1,5 @@
-"""How much a screw may overlap the part that it is screwed into: the thread's ring, as long as both are engaged."""
+"""How much a screw may overlap the part that it is screwed into: the thread's ring, as long as both are
+engaged."""
 
 from __future__ import annotations
 
@@ -15,8 +16,8 @@ COAXIAL = 1e-6
 
 
 def thread_overlap(first: Placement, second: Placement) -> float:
-    """Largest overlap (mm3) that a thread between the two explains: pi/4 (D^2 - d^2) e, with D the thread's major
-    diameter, d the tapped hole's as drilled, e the length of full thread that the screw reaches into.
+    """Largest overlap (mm3) that a thread between the two explains: pi/4 (D^2 - d^2) e, with D the thread's
+    major diameter, d the tapped hole's as drilled, e the length of full thread that the screw reaches into.
 
     The screw's axis is its part's z. 0 where neither stands in a tapped hole of the other.
     """

@@ -24,7 +24,8 @@ from tactcad.solids.near import Faces, boxed, faces_within, nearest
 
 from .interference import TOUCH_MM
 
-# A key's long arm or a bit with its handle reaches this far from the screw (mm); chosen: a hand needs no less.
+# A key's long arm or a bit with its handle reaches this far from the screw (mm); chosen: a hand needs no
+# less.
 REACH = 40.0
 # The tool begins this far off the faces that it turns (mm), so that it does not count as touching them.
 OFF = 0.05
@@ -61,7 +62,8 @@ def _reached(fastener: Placement, tool: Placement, others: list[Placement], know
         free, place = nearest(faces_within(shape, tool, other_box, 0.0), faces_within(faces, other, box, 0.0))
         if free < TOUCH_MM:
             message = (
-                f"{other.designator} ({other.part.part_no}) is in the way of the {tool.part.name} of {REACH:g} mm for "
+                f"{other.designator} ({other.part.part_no}) is in the way of the {tool.part.name} of "
+                f"{REACH:g} mm for "
                 f"{fastener.designator} ({fastener.part.part_no})"
             )
             yield Finding("tool-room", "fail", fastener.designator, place, free, OFF, message)

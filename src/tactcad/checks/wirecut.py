@@ -156,7 +156,8 @@ def walls(cut: _Cut) -> Iterator[Finding]:
 def _hinge(cut: _Cut, neck: Neck, wall: float) -> Finding:
     thinnest = cut.shop.limits.thinnest_published_web
     text = (
-        f"hinge {neck.width:.3f} mm thick, slot {_slot_length(cut):.3f} mm long, under the general wall of {wall:.3f} mm: "
+        f"hinge {neck.width:.3f} mm thick, slot {_slot_length(cut):.3f} mm long, under the general wall "
+        f"of {wall:.3f} mm: "
         "quote at least three passes with both hinge faces skimmed, the order of cuts, and the holding tab"
     )
     if neck.width < thinnest:

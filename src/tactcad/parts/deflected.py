@@ -19,7 +19,8 @@ from .layout import ElementPlace, Layout
 
 
 def deflected_element(layout: Layout, place: ElementPlace, deflection: float, roller: float) -> Part:
-    """The element while a roller (radius in mm, its axis under the pad's middle) has come up by `deflection` mm.
+    """The element while a roller (radius in mm, its axis under the pad's middle) has come up by `deflection`
+    mm.
 
     The arm turns until the pad's face touches the roller: seen from the turned arm, the roller's centre
     (u, v) from the hinge has come to the height -(pad height + radius) that touching means, which is
@@ -52,7 +53,8 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
 
 
 def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -> float:
-    """Deflection, mm, at which the arm has turned the pad's edge towards the hinge under the roller of that radius, mm.
+    """Deflection, mm, at which the arm has turned the pad's edge towards the hinge under the roller of that
+    radius, mm.
 
     Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w + d)^2, on
     the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0. Infinite where no
@@ -65,7 +67,8 @@ def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -
 
 
 def _heights(layout: Layout, place: ElementPlace, roller: float) -> tuple[float, float]:
-    """The hinge's centre over the flat face, and the roller's over it while it touches the pad of the arm at rest, mm."""
+    """The hinge's centre over the flat face, and the roller's over it while it touches the pad of the arm at
+    rest, mm."""
     z = place.hinge.t / 2 if layout.design.element.sides == "one" else place.hinge.h / 2
     return z, -layout.design.element.pad_height - roller - z
 

@@ -192,8 +192,8 @@ class Purchase:
 
 @dataclass(frozen=True)
 class ModelFile:
-    """A bought part whose shape is read from a STEP file; volume (mm3) and box (least and largest corner, mm) as
-    measured on loading."""
+    """A bought part whose shape is read from a STEP file; volume (mm3) and box (least and largest corner,
+    mm) as measured on loading."""
 
     path: str
     sha256: str

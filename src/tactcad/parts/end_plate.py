@@ -1,4 +1,5 @@
-r"""End plate of the stack: takes the clamping screws and dowels of both rows, and the carrier's screws from above.
+r"""End plate of the stack: takes the clamping screws and dowels of both rows, and the carrier's screws from
+above.
 
 +--o-----------------------------o--+   carrier's threads into the upper edge
 |                                   |   ^ z

@@ -41,7 +41,8 @@ def clamping(layout: Layout) -> Clamping:
     plate, stack = d.end_plate_thickness, layout.stack
     dowel = _dowel(layout)
     for length in CAP_SCREW_LENGTHS[d.screw]:
-        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside, and no deeper than its thread
+        # as deep in the tapped plate as 2/3 of it, which leaves the screw's end inside, and no deeper than
+        # its thread
         engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
         if LEAST_UNDER_HEAD <= web <= plate and engaged <= plate:

@@ -21,10 +21,11 @@ LEAST_GAP = 0.1
 END_PLATE_WEB = 1.0
 # Set screws end this far below the carrier's top, so that the axis's plate lies flat on it.
 SUNK = 1.0
-# Set screws stand this far from rear bodies and end plates; chosen: more than their threads' play in the carrier.
+# Set screws stand this far from rear bodies and end plates; chosen: more than their threads' play in the
+# carrier.
 BESIDE_SET_SCREW = 0.3
-# Least material between holes of a plate: feasible in metal, where 0.8 is advised and less is flagged (vendors' guides,
-# see checks/data/shop.toml).
+# Least material between holes of a plate: feasible in metal, where 0.8 is advised and less is flagged
+# (vendors' guides, see checks/data/shop.toml).
 HOLE_WEB = 0.5
 # Least material to the carrier's edge; chosen: as END_PLATE_WEB.
 CARRIER_EDGE = 1.0
@@ -123,7 +124,8 @@ class Layout:
 
     @cached_property
     def clamp_edge(self) -> float:
-        """x where spacers and rear bodies begin, one line for all arms: the longest arm's seat behind its slot."""
+        """x where spacers and rear bodies begin, one line for all arms: the longest arm's seat behind its
+        slot."""
         ends = []
         number = 0
         for arms in self.design.array.row_arms:
@@ -218,7 +220,8 @@ class Layout:
 
     @cached_property
     def lowest_carrier(self) -> float:
-        """Least z of the carrier's underside: over the rear bodies, and its threads over screw heads and dowels."""
+        """Least z of the carrier's underside: over the rear bodies, and its threads over screw heads and
+        dowels."""
         c = self.design.clamp
         below = max(counterbore_diameter(c.screw), float(c.dowel)) / 2 + END_PLATE_WEB
         return max(
@@ -260,7 +263,8 @@ class Layout:
 
     @property
     def hold_down_x(self) -> float:
-        """x of the set screws: as near the clamp edge as the rear bodies beside them allow, over every ledge."""
+        """x of the set screws: as near the clamp edge as the rear bodies beside them allow, over every
+        ledge."""
         return round(self.clamp_edge - METRIC[self.design.clamp.screw].d / 2 - BESIDE_SET_SCREW, 6)
 
     @cached_property
@@ -281,8 +285,8 @@ class Layout:
 
     @cached_property
     def hold_down_y(self) -> tuple[float, ...]:
-        """y of the set screws of a row: over the outermost elements or as near as the end plates allow, even, no
-        further apart than allowed; one in the middle where two would run into each other."""
+        """y of the set screws of a row: over the outermost elements or as near as the end plates allow,
+        even, no further apart than allowed; one in the middle where two would run into each other."""
         d = METRIC[self.design.clamp.screw].d
         span = min((self.positions - 1) * self.design.array.pitch, self.stack - d - 2 * BESIDE_SET_SCREW)
         if span < d + HOLE_WEB:
@@ -295,12 +299,14 @@ class Layout:
 
     @property
     def mount_x(self) -> float:
-        """x of the carrier's threads for the axis: midway between set screws and carrier screws, to 0.5 mm."""
+        """x of the carrier's threads for the axis: midway between set screws and carrier screws, to 0.5
+        mm."""
         return round(self.hold_down_x + self.carrier_screw_x) / 2
 
     @property
     def carrier_size(self) -> tuple[float, float]:
-        """Length along x, width along y: over the end plates, its own screws' heads, and the axis's threads."""
+        """Length along x, width along y: over the end plates, its own screws' heads, and the axis's
+        threads."""
         c = self.design.clamp
         edge = 4.0  # material beyond a thread of the axis's pattern: one diameter of the usual M4
         head = counterbore_diameter(c.screw) / 2 + CARRIER_EDGE

@@ -1,4 +1,5 @@
-"""What is measured on every numbered element as cut: the part's own characteristics, and what the estimator takes in."""
+"""What is measured on every numbered element as cut: the part's own characteristics, and what the estimator
+takes in."""
 
 from __future__ import annotations
 
@@ -50,8 +51,8 @@ AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance 
 
 
 def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurement, ...]]]:
-    """Every element by number: its place, its part number, and what to measure on it: its part's characteristics,
-    then what only the estimator needs."""
+    """Every element by number: its place, its part number, and what to measure on it: its part's
+    characteristics, then what only the estimator needs."""
     known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
     found = []
     for place in layout.elements:

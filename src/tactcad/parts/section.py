@@ -23,7 +23,8 @@ def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
 
 
 def cut_section(part: Part) -> Extrusion | None:
-    """What a cut file leaves of a part before anything else is done to it: its section, extruded. None where it has none.
+    """What a cut file leaves of a part before anything else is done to it: its section, extruded. None where
+    it has none.
 
     Wire-cut parts are cut with all their holes. A part that is milled or ground from plate has a cut file of its blank:
     the outline, and what may be cut with it to its final or its tap drill's size. Holes with a fit are left to the reamer;

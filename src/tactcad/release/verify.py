@@ -121,7 +121,10 @@ def _dxf_faults(files: Mapping[str, bytes], path: str, part: Part) -> Iterator[s
         file.write_bytes(files[path])
         faults = check_dxf(file, part)
         yield from (f"{path}: {fault}" for fault in faults)
-        area, meant = 0.0 if faults else read_dxf(file).area, cut_section(part).section_area
+        section = cut_section(part)
+        if section is None:
+            raise ValueError(f"{part.part_no} is not cut along a contour")
+        area, meant = 0.0 if faults else read_dxf(file).area, section.section_area
     if not faults and not isclose(area, meant, rel_tol=1e-9):
         yield f"{path}: area {area!r} mm2 instead of {meant!r}"
 

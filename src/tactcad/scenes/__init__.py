@@ -1,4 +1,5 @@
-"""Which parts stand where, under which designator, with which meant contacts, and in which order they are put together.
+"""Which parts stand where, under which designator, with which meant contacts, and in which order they are
+put together.
 
 In: a design, and a pose. Out: a scene, which is a list of placements and no geometry; a scene is a module of this room
 with a function of its own name. Which scenes a design has is known without importing them: that must cost nothing.
@@ -41,13 +42,15 @@ def left_out(design: Design) -> list[str]:
         why = _misfit(design, name)
         if why:
             lines.append(
-                f"scene {name} left out: rule {why.check}: {why.message} ({why.part} = {why.value}; legal: {why.limit})"
+                f"scene {name} left out: rule {why.check}: {why.message} ({why.part} = {why.value}; "
+                f"legal: {why.limit})"
             )
     return lines
 
 
 def fitting_rules(scene: str) -> dict[str, Rule]:
-    """Rules that an array must keep to have that scene, by name; what asks for placements stands in this room."""
+    """Rules that an array must keep to have that scene, by name; what asks for placements stands in this
+    room."""
     rules = scene_rules(scene)
     if scene == "grasping":
         from .moving_axis import ballast_trims_moving_weight as trimmed
@@ -67,7 +70,8 @@ def _with_tables(design: Design) -> list[str]:
 
 
 def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
-    """The scenes asked for, each once, in the house's order; all where none is. Raises InputError for an unknown one."""
+    """The scenes asked for, each once, in the house's order; all where none is. Raises InputError for an
+    unknown one."""
     names = scene_names(design)
     for name in wanted or ():
         if name not in names:
@@ -82,7 +86,8 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
 
 
 def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
-    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or another.
+    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or
+    another.
 
     The array has no other pose. Raises InputError where the pose is impossible.
     """

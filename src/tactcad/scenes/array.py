@@ -74,7 +74,8 @@ def _cover(b: Builder) -> set[str]:
 
 
 def _stack(b: Builder, layout: Layout, instead: Mapping[int, Part]) -> list[str]:
-    """Elements and blanks, a spacer before, between and after them, row by row; end plates and carrier around them.
+    """Elements and blanks, a spacer before, between and after them, row by row; end plates and carrier
+    around them.
 
     Returns the designators of elements and blanks.
     """
@@ -166,7 +167,8 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
 
 
 def _steps(layout: Layout) -> tuple[Step, ...]:
-    """How the array is put together and its pads are made coplanar, in order; what each step places is not in yet."""
+    """How the array is put together and its pads are made coplanar, in order; what each step places is not
+    in yet."""
     d = layout.design
     gap, stack = 2 * layout.pad_inner, layout.stack
     width = stack + 2 * d.clamp.end_plate_thickness
@@ -176,21 +178,25 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             GAUGES,
             (),
             (0, 0, 0),
-            f"Measure and record the hinge thickness of every element. Bond a gauge on each flat face, its grid centred on the "
-            f"hinge within 0.1 mm, carrier trimmed to {d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, "
+            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, "
+            "its grid centred on the "
+            "hinge within 0.1 mm, carrier trimmed to "
+            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, "
             "solder three leads, and lay them in the wire recess towards the rear end.",
         ),
         Step(
             FIRST_PLATE,
             (),
             (0, 0.6 * width, 0),
-            "Press the dowels square into the tapped end plate (H7, light press). Stand the plate on its outer face.",
+            "Press the dowels square into the tapped end plate (H7, light press). Stand the plate on its "
+            "outer face.",
         ),
         Step(
             STACK,
             (),
             (0, -1.5 * stack - 20.0, 0),
-            "Slide spacer, element, spacer, ... on the dowels, each row in the order of its numbers. Nothing is tight yet.",
+            "Slide spacer, element, spacer, ... on the dowels, each row in the order of its numbers. "
+            "Nothing is tight yet.",
             fan=True,
         ),
         Step(
@@ -203,19 +209,25 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             COPLANAR,
             (),
             (0, -1.5 * stack - 40.0 - 1.6 * width, 0),
-            f"Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of {gap:g} mm between the rows' "
-            "pads. Press the elements' rear bodies down with a bar of rubber so that every pad stands on the plate, then tighten the "
+            "Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of "
+            f"{gap:g} mm between the rows' "
+            "pads. Press the elements' rear bodies down with a bar of rubber so that every pad stands on "
+            "the plate, then tighten the "
             "clamping screws crosswise, in three rounds: a third, two thirds, the whole torque. "
-            f"Measure: no pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on its back and read each pad "
-            f"with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in the calibration set-up the "
-            "heights at which the force gauge first reads 0.01 N show the same to a micrometre. Record them; loosen and repeat if one is off.",
+            f"Measure: no pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on "
+            "its back and read each pad "
+            f"with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in "
+            "the calibration set-up the "
+            "heights at which the force gauge first reads 0.01 N show the same to a micrometre. Record "
+            "them; loosen and repeat if one is off.",
         ),
         Step(
             STOP_PLATE,
             (),
             (0, 0, 0.8 * width),
             (
-                "An array that is still to be calibrated goes to that set-up without stop plate and set screws, its carrier on: the stops would "
+                "An array that is still to be calibrated goes to that set-up without stop plate and set "
+                "screws, its carrier on: the stops would "
                 "close before the end of the travel. Afterwards take the carrier off again. "
                 if d.calibration
                 else ""
@@ -232,7 +244,8 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             HOLD_DOWN,
             (),
             (0, 0, 2.1 * width),
-            f"Turn the set screws in, crosswise, to {seating_torque(d.clamp.screw):g} N m, locked with a drop of thread lacquer. Check each stop: push every pad with a "
+            f"Turn the set screws in, crosswise, to {seating_torque(d.clamp.screw):g} N m, locked with a "
+            "drop of thread lacquer. Check each stop: push every pad with a "
             "plastic rod; it must give way and come to a stop, with "
             + ", ".join(
                 sorted(

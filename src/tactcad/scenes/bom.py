@@ -32,7 +32,8 @@ ORDERABLE = {
 
 @dataclass(frozen=True)
 class BomRow:
-    """One line. `qty` counts what the scene holds (spares come on top); `mass_g` is of one piece, None unknown."""
+    """One line. `qty` counts what the scene holds (spares come on top); `mass_g` is of one piece, None
+    unknown."""
 
     item: int
     part_no: str

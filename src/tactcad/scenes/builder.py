@@ -31,8 +31,8 @@ POINTING: dict[Vector, Rotation] = {
 
 
 class Builder:
-    """Placements in order. A group or a step takes what is placed while it is open; `placed_in` keeps what was placed
-    for a step that is named where the part is."""
+    """Placements in order. A group or a step takes what is placed while it is open; `placed_in` keeps what
+    was placed for a step that is named where the part is."""
 
     def __init__(self) -> None:
         self.placements: list[Placement] = []

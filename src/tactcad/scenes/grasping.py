@@ -40,7 +40,8 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         b.step(
             "Weights",
             (0, 0, 330),
-            "One disc a loading step, laid on without a knock; each is weighed before. Without any, the grasping force is "
+            "One disc a loading step, laid on without a knock; each is weighed before. Without any, the "
+            "grasping force is "
             f"the moving weight: {g.moving_weight:g} N.",
         )
     if pose.height == 0:
@@ -75,7 +76,8 @@ def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
     b.step(
         "Riser",
         (0, -50, 110),
-        "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square on the base plate.",
+        "Screw the riser on the post's rows, its front upright within 0.01 mm on 100 mm against a square "
+        "on the base plate.",
     )
     rail = b.place("RL", rigs.rail(length), (0, front, z), AGAINST_Y)
     b.meet(riser, rail)
@@ -84,6 +86,7 @@ def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
     b.step(
         "Guide rail",
         (0, -85, 110),
-        "Lay the rail against a parallel set upright on the base plate; tighten its screws from the middle outwards.",
+        "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
+        "middle outwards.",
     )
     return rail

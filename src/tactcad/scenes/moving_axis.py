@@ -1,4 +1,5 @@
-"""What moves with the array in the grasping set-up: its parts, what they weigh, and the ballast that trims them.
+"""What moves with the array in the grasping set-up: its parts, what they weigh, and the ballast that trims
+them.
 
 The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no stop gap:
 which scenes a design has must be known without the estimator.
@@ -39,7 +40,8 @@ from .scene import ALONG_Y, UPRIGHT, Rotation, Scene
 ALONG_RAIL: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # carriage: local y out of the rail, z along it
 PIN_SCREW = ("M4", 10.0)
 NEWTON = STANDARD_GRAVITY * 1e-3  # weight of a gram
-# A thinner disc is not turned flat (chosen); a longer pin, in steps of 5 mm, bends under the tool: 12 diameters.
+# A thinner disc is not turned flat (chosen); a longer pin, in steps of 5 mm, bends under the tool: 12
+# diameters.
 LEAST_BALLAST = 0.5
 LONGEST_PIN = 5.0 * floor(12 * PIN / 5.0)
 
@@ -53,7 +55,8 @@ def moving_mass(scene: Scene) -> float:
 
 
 def moving_weight(scene: Scene) -> float:
-    """Initial grasping force, N: the moving axis's weight at standard gravity, the guide's friction left out."""
+    """Initial grasping force, N: the moving axis's weight at standard gravity, the guide's friction left
+    out."""
     return moving_mass(scene) * NEWTON
 
 
@@ -78,14 +81,16 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     b.step(
         "Ballast",
         (0, 0, 305),
-        f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the ballast "
+        f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the "
+        "ballast "
         "thinner until it is.",
     )
     return name, z + disc.body.thickness
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
-    """Thickness (mm) and mass (g) of the ballast for what else moves, without its pin; no mass where that is too heavy.
+    """Thickness (mm) and mass (g) of the ballast for what else moves, without its pin; no mass where that is
+    too heavy.
 
     A pin that is longer for the ballast's sake weighs a little more itself.
     """
@@ -166,7 +171,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Array under the foot",
         (0, -140, -35),
-        "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to the post.",
+        "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
+        "the post.",
     )
     for sx in (-1, 1):
         for sy in (-1, 1):
@@ -176,8 +182,10 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under any pad; the "
-        f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, shim under the foot.",
+        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show "
+        "under any pad; the "
+        f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, "
+        "shim under the foot.",
     )
     b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD

@@ -16,10 +16,11 @@ LEAST = 1e-3  # mm; less is more likely a slip, and edges so short are none for 
 
 
 def poses(design: Design, name: str) -> tuple[Pose, ...]:
-    """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half and all
-    the way into the sample; the array lifted, without weights, and pressed in."""
+    """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half
+    and all the way into the sample; the array lifted, without weights, and pressed in."""
     if name == "calibration":
-        # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no stiffness
+        # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no
+        # stiffness
         free = [
             design.calibration.travel if load.refused else load.deflection
             for load in calibration_loads(design)
@@ -50,7 +51,8 @@ def _pressed_in(design: Design) -> tuple[Pose, ...]:
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
-    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError for what is no pose."""
+    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError for what is no
+    pose."""
     limits = {
         "element": (1, sum(len(row) for row in design.array.row_arms)),
         "deflection": (0.0, 5.0),

@@ -45,7 +45,8 @@ class Contact:
 
 @dataclass(frozen=True)
 class Motion:
-    """A straight way of some groups, all at the same time: (group, from, to), offsets from the placed pose in mm."""
+    """A straight way of some groups, all at the same time: (group, from, to), offsets from the placed pose
+    in mm."""
 
     name: str
     ways: tuple[tuple[str, Vector, Vector], ...]

@@ -40,7 +40,8 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
 
 
 def _merged(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Join vertices that are the same to 1e-7 mm, the kernel's own tolerance; drop triangles that collapse."""
+    """Join vertices that are the same to 1e-7 mm, the kernel's own tolerance; drop triangles that
+    collapse."""
     keys = np.round(points / 1e-7).astype(np.int64)
     _, first, inverse = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     faces = inverse.reshape(-1)[faces]

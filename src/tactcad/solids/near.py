@@ -29,7 +29,8 @@ class Faces:
 
 
 def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) -> TopoDS_Compound | None:
-    """The faces, placed, whose boxes come within `reach` mm of a box (2, 3) of the scene; None where none does."""
+    """The faces, placed, whose boxes come within `reach` mm of a box (2, 3) of the scene; None where none
+    does."""
     low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
     near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
     if not len(near):

@@ -12,7 +12,8 @@ from OCP.TopoDS import TopoDS_Shape
 
 
 def write_step(shape: TopoDS_Shape) -> bytes:
-    """The shape as a STEP file, without names or colours. Raises ValueError where the kernel cannot write it."""
+    """The shape as a STEP file, without names or colours. Raises ValueError where the kernel cannot write
+    it."""
     writer, stream = STEPControl_Writer(), BytesIO()
     set_up_writer()
     if (

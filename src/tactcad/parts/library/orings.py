@@ -13,7 +13,8 @@ NITRILE = Material("NBR 70", 1200)
 SECTION = 1.78
 # Inside diameter by size code, mm.
 INSIDE = {row["code"]: number(row["inside"]) for row in rows("orings")}
-# Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse 0.4.0).
+# Groove of a static face seal for 1.78: depth 1.27 to 1.40, width 2.41 (makers' tables, as in bd_warehouse
+# 0.4.0).
 GROOVE_DEPTH = 1.32
 GROOVE_WIDTH = 2.4
 
@@ -29,7 +30,8 @@ def groove(code: str) -> tuple[float, float]:
 
 
 def squeeze() -> float:
-    """Share of the cross section's height that the closed joint takes off; 0.15 to 0.30 is usual for a face seal."""
+    """Share of the cross section's height that the closed joint takes off; 0.15 to 0.30 is usual for a face
+    seal."""
     return 1 - GROOVE_DEPTH / SECTION
 
 

@@ -70,8 +70,8 @@ def engagement(thread: str) -> float:
 
 
 def seating_torque(thread: str) -> float:
-    """N m for a set screw that holds a plate down: a third of the cap screw's, to one digit; chosen: thread lacquer keeps
-    it, so that it need not clamp."""
+    """N m for a set screw that holds a plate down: a third of the cap screw's, to one digit; chosen: thread
+    lacquer keeps it, so that it need not clamp."""
     return float(f"{METRIC[thread].torque / 3:.1g}")
 
 
@@ -95,7 +95,8 @@ def counterbore_diameter(thread: str) -> float:
 
 
 def cap_screw(thread: str, length: float) -> Part:
-    """ISO 4762 socket head cap screw. Raises KeyError for a size or ValueError for a length not in the standard."""
+    """ISO 4762 socket head cap screw. Raises KeyError for a size or ValueError for a length not in the
+    standard."""
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")

@@ -13,5 +13,6 @@ def rows(name: str) -> list[dict[str, str]]:
 
 
 def number(text: str) -> float:
-    """A cell's number, mm where its table says nothing else; a whole one stays whole, as part numbers print it."""
+    """A cell's number, mm where its table says nothing else; a whole one stays whole, as part numbers print
+    it."""
     return float(text) if "." in text else int(text)

@@ -103,7 +103,8 @@ class CartLayout:
 
     @cached_property
     def holder_fixing(self) -> tuple[float, float] | None:
-        """M3 screw through lid and body into the cart: length, and the lid under its sunk head; None if none fits."""
+        """M3 screw through lid and body into the cart: length, and the lid under its sunk head; None if none
+        fits."""
         most = self.holder.lid_thickness - METRIC["M3"].head_height
         for length in CAP_SCREW_LENGTHS["M3"]:
             engaged = round(length - self.holder_body - most, 9)

@@ -1,4 +1,5 @@
-r"""One added weight, bought: a steel disc with a bore for the platform's pin; its height follows from its mass.
+r"""One added weight, bought: a steel disc with a bore for the platform's pin; its height follows from its
+mass.
 
 +------+ +------+
 |      | |      |   z up
@@ -28,7 +29,8 @@ def disc_weight(rig: GuideLayout) -> Part:
         body=Extrusion(outer, height, (bore,)),
         colour="#c9a227",
         purchase=Purchase(
-            f"disc weight {rig.weight_mass:.4g} g, bore {PIN + 0.5:g}, diameter {diameter:g}, checked on a balance to 0.1 g",
+            f"disc weight {rig.weight_mass:.4g} g, bore {PIN + 0.5:g}, diameter {diameter:g}, checked on "
+            "a balance to 0.1 g",
             alternates="slotted weights of the same mass",
         ),
         mass_override=rig.weight_mass,

@@ -20,7 +20,8 @@ from .stand_layout import StandLayout
 
 
 def flat_tip(rig: StandLayout) -> Part:
-    """Tip for the sample: a land of one pad's size under a round body. z = 0 is the land, the thread from the top."""
+    """Tip for the sample: a land of one pad's size under a round body. z = 0 is the land, the thread from
+    the top."""
     d = rig.design
     a, b = d.element.pad_length / 2, d.sheet.thickness / 2
     body = max(10.0, float(ceil(2 * hypot(a, b) + 1.0)))  # 0.5 mm around the land's corners

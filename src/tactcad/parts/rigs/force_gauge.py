@@ -23,7 +23,8 @@ GAUGE_THREADS = (-20.0, 20.0)  # of the gauge's back, from the middle of its pla
 
 
 def force_gauge(rig: StandLayout) -> Part:
-    """Digital force gauge, shaft down: (x, y) the scene's, z = 0 the shaft's end, z = 10 the housing's lower face."""
+    """Digital force gauge, shaft down: (x, y) the scene's, z = 0 the shaft's end, z = 10 the housing's lower
+    face."""
     w, deep, high = GAUGE_SIZE
     c = rig.design.calibration
     around = rectangle(-w / 2, -deep / 2, w / 2, deep / 2)
@@ -56,7 +57,8 @@ def force_gauge(rig: StandLayout) -> Part:
             f"{c.load_cell_stiffness:g} N/mm at its shaft, M6 shaft",
             manufacturer="Sauter",
             mpn="FH 5",
-            alternates="any gauge of that range; enter its measured stiffness in calibration.load_cell_stiffness",
+            alternates="any gauge of that range; enter its measured stiffness in "
+            "calibration.load_cell_stiffness",
         ),
         mass_override=640.0,
     )

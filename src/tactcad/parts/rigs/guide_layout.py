@@ -69,8 +69,8 @@ class GuideLayout:
 
     @property
     def riser_middle(self) -> float:
-        """z of the riser's and the rail's middle: the highest row of threads from which the carriage, with the
-        pads on the sample, can still fall 2 mm."""
+        """z of the riser's and the rail's middle: the highest row of threads from which the carriage, with
+        the pads on the sample, can still fall 2 mm."""
         rail = self.grasping.rail_length
         highest = self.carriage_middle - CARRIAGE_LENGTH / 2 + rail / 2 - 2.0
         return ROW_PITCH * floor((highest - 5.0) / ROW_PITCH) + 5.0

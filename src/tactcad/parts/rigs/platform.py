@@ -22,7 +22,8 @@ PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
 
 
 def platform(rig: GuideLayout) -> Part:
-    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the underside."""
+    """Plate on the bar's upper end; the weights' pin stands over the array's middle. z = 0 is the
+    underside."""
     half = rig.grasping.weight_diameter / 2
     features: list[Feature] = [
         sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, PLATFORM), (0, 0, -1), PLATFORM, PLATFORM_UNDER_HEAD)

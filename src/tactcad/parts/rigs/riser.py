@@ -23,7 +23,8 @@ RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, hea
 
 
 def riser(rig: GuideLayout) -> Part:
-    """Block between post and guide rail. Front face (the rail's) at local z = 0, contour in (x, z) about its middle."""
+    """Block between post and guide rail. Front face (the rail's) at local z = 0, contour in (x, z) about its
+    middle."""
     length, depth = rig.grasping.rail_length, rig.riser_depth
     half = max(length / 2, RISER_PITCH + 8.0)
     features: list[Feature] = [

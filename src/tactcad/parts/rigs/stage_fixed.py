@@ -17,7 +17,8 @@ from .frame import PLATE_SCREW, STAGE, STAGE_HOLE, STAGE_PLATE
 
 
 def stage_fixed(travel: float) -> Part:
-    """Fixed half of a micro-stage: back at z = 0, slideway at the top; screws enter from the slideway's side."""
+    """Fixed half of a micro-stage: back at z = 0, slideway at the top; screws enter from the slideway's
+    side."""
     half, t = STAGE / 2, STAGE_PLATE
     thread, _, under = PLATE_SCREW
     holes = tuple(
@@ -34,7 +35,8 @@ def stage_fixed(travel: float) -> Part:
         features=holes,
         colour="#3f4650",
         purchase=Purchase(
-            f"crossed roller stage {STAGE:g} x {STAGE:g} x {2 * t:g} mm, travel +-{travel:g} mm, M4 at {2 * STAGE_HOLE:g} x {2 * STAGE_HOLE:g}",
+            f"crossed roller stage {STAGE:g} x {STAGE:g} x {2 * t:g} mm, travel +-{travel:g} mm, M4 at "
+            f"{2 * STAGE_HOLE:g} x {2 * STAGE_HOLE:g}",
             alternates="any stage of that travel and hole pattern",
         ),
     )

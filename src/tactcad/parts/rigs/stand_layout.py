@@ -61,7 +61,8 @@ class StandLayout:
 
     @property
     def pads_up(self) -> float:
-        """z of the pads in the calibration set-up: two stages of two plates, mount, and the array on its back."""
+        """z of the pads in the calibration set-up: two stages of two plates, mount, and the array on its
+        back."""
         a = self.array
         carrier_top = a.carrier_bottom + self.design.clamp.carrier_thickness
         return round(4 * STAGE_PLATE + PLATE + carrier_top + self.design.element.pad_height, 9)

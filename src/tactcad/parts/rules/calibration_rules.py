@@ -53,7 +53,8 @@ def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
-    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every pad."""
+    """High pads of short arms swing sideways: at the end of the travel the roller still stands on every
+    pad."""
     c = layout.design.calibration
     if c is None or misfit(layout, "calibration") is not None:
         return

@@ -224,7 +224,8 @@ def _set_screw_holds(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
-    """Screw heads, axis threads and set screws in the carrier leave HOLE_WEB between them, CARRIER_EDGE around."""
+    """Screw heads, axis threads and set screws in the carrier leave HOLE_WEB between them, CARRIER_EDGE
+    around."""
     c, seat = layout.design.clamp, "element.seat_length"
     head, mount, m = counterbore_diameter(c.screw), METRIC[c.mount_thread].d, METRIC[c.screw]
     offset = c.carrier_screw_offset

@@ -10,11 +10,11 @@ from ..layout import LEAST_GAP, Layout
 from ..spacer import SPACER_TOLERANCE
 from .rule import at_least, at_most, rule, wrong
 
-# A lead is AWG 36 (0.127 mm, ASTM B258) with 0.06 mm of insulation around it: 0.25 mm; chosen: three a gauge, so that
-# the leads' own resistance cancels in the bridge.
+# A lead is AWG 36 (0.127 mm, ASTM B258) with 0.06 mm of insulation around it: 0.25 mm; chosen: three a
+# gauge, so that the leads' own resistance cancels in the bridge.
 LEAD, LEADS = 0.25, 3
-# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air that stays
-# where all tolerances add up, mm; chosen: burrs of the wire are smaller.
+# Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air
+# that stays where all tolerances add up, mm; chosen: burrs of the wire are smaller.
 LEAST_ARM_GAP = 0.1
 LEAST_BESIDE = 0.02
 
@@ -59,8 +59,8 @@ def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
 
 
 def neighbours_take(layout: Layout) -> float:
-    """By how much tolerances bring an arm nearer to what stands a spacer beside it (mm): half of both sheets', and
-    the spacer's own."""
+    """By how much tolerances bring an arm nearer to what stands a spacer beside it (mm): half of both
+    sheets', and the spacer's own."""
     return layout.design.tolerance.sheet_thickness + SPACER_TOLERANCE
 
 
@@ -72,14 +72,16 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
         "arms too near their neighbours and the end plates to move freely",
         layout.spacer,
         max(LEAST_ARM_GAP, with_tolerances),
-        f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + {SPACER_TOLERANCE + LEAST_BESIDE:g} = "
+        f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + "
+        f"{SPACER_TOLERANCE + LEAST_BESIDE:g} = "
         f"{with_tolerances:g} mm",
     )
 
 
 @rule(after="override_names_element")
 def leads_have_room(layout: Layout) -> Iterator[Finding]:
-    """Leads run in the wire recess, as wide as element and spacer; before it under the face, beside the gauge."""
+    """Leads run in the wire recess, as wide as element and spacer; before it under the face, beside the
+    gauge."""
     d, e = layout.design, layout.design.element
     if leads_that_fit(layout) < LEADS:
         rows = -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME)))
