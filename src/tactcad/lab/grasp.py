@@ -7,15 +7,20 @@ and f = K s (force) per unit approach, equation (1) is f + x s = the same for al
 pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All elements together give
 the x that makes f + x s most equal; pairs that share a reference element are correlated, and this is their
 generalised least squares.
+
+Two things act on all elements at once and are known within limits only: the load cell of the calibration, and how far
+the pads feel each other through the object, from separate springs to an elastic half-space. Every interval
+holds for all of that: it is the hull of the intervals at the limits.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import inf, isinf, pi, tan
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc
+from scipy.special import fdtrc
 
 from tactcad.design.messages import InputError
 from tactcad.lab.readings import GraspReadings
@@ -24,12 +29,21 @@ from tactcad.lab.regression import require_level, t_quantile
 STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
 DISAGREE = 0.01  # probability below which the elements are said to disagree
 ANGLES = 721  # scan of the projective line of K_obj
+PRIOR_DOF = (
+    6.0  # weight of what the elements have in common against an element's own degrees of freedom, chosen
+)
+KNOWN = 1e6  # degrees of freedom of what counts as known
+COUPLED = (
+    0.25,
+    0.5,
+    1.0,
+)  # shares of the given coupling that are tried: K_obj need not be extreme at the largest
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of
-    freedom.
+    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of freedom; the load
+    cell that stood in series, N/mm, and the half-width of its limits.
     """
 
     element: np.ndarray
@@ -39,7 +53,33 @@ class Sensitivity:
     signal_per_deflection_se: np.ndarray
     correlation: np.ndarray
     dof: np.ndarray
+    load_cell: np.ndarray
+    load_cell_half_width: np.ndarray
     path: str = "calibration"
+
+    def at_load_cell_limit(self, sign: float) -> Sensitivity:
+        """What the same readings give with the load cell at its lower (sign -1) or upper (1) limit.
+
+        Raises InputError where the softest cell would have given way as much as cell and element together.
+        """
+        cell = self.load_cell + sign * self.load_cell_half_width
+        old = 1 / (1 + self.stiffness / self.load_cell)  # 1 - k/K_c, as k = K K_c/(K + K_c)
+        k, v = self.stiffness * old, self.signal_per_deflection * old
+        new = 1 - k / cell
+        if not (new > 0).all():
+            raise InputError(
+                "calibration",
+                "the softest load cell within its limits is no stiffer than cell and element together",
+                value=float(cell[new <= 0][0]),
+                legal=f"above {float(k[new <= 0].max()):.4g} N/mm",
+            )
+        return replace(
+            self,
+            stiffness=k / new,
+            stiffness_se=self.stiffness_se * (old / new) ** 2,
+            signal_per_deflection=v / new,
+            signal_per_deflection_se=self.signal_per_deflection_se * old / new,
+        )
 
 
 @dataclass(frozen=True)
@@ -80,6 +120,7 @@ class Pair:
     ratio_low: float
     ratio_high: float
     object: Interval
+    object_by_noise: Interval  # noise and calibration alone
     condition: float  # of K_obj in R, at the estimate
 
 
@@ -90,6 +131,8 @@ class Grasp:
     sample: int
     pairs: tuple[Pair, ...]
     combined: Interval
+    combined_by_noise: Interval  # noise and calibration alone
+    combined_by_limits: tuple[tuple[str, Interval], ...]  # what is known within limits, one after the other
     noise: float  # of one signal about the common approach, V
     dof: int
     disagreement_p: float  # of so much disagreement between the elements by noise alone
@@ -115,13 +158,36 @@ class Slopes:
     def covariance(self) -> np.ndarray:
         return self.from_signal + self.from_calibration
 
+    def coupled(self, share: np.ndarray) -> Slopes:
+        """What equation (1) sees where each pad also sinks by share[i, j] of what the force on pad j does there:
+        p = s_i + sum_j share_ij f_j/x, with 1 on the diagonal.
+        """
+        return replace(self, f=self.f + (share - np.diag(np.diag(share))) @ self.f)
+
 
 def evaluate(
-    readings: GraspReadings, calibration: Sensitivity, *, reference: int | None = None, level: float = 0.95
+    readings: GraspReadings,
+    calibration: Sensitivity,
+    *,
+    reference: int | None = None,
+    level: float = 0.95,
+    coupling: np.ndarray | None = None,
 ) -> Grasp:
-    """K_obj of one sample. The reference is the stiffest element of those read, unless given.
+    """K_obj of one sample.
 
-    Raises InputError: an element without calibration, fewer than two elements or three loads in contact.
+    Parameters
+    ----------
+    reference : int, optional
+        Number of the reference element; by default the stiffest of those read.
+    coupling : array, [element, element], optional
+        Largest displacement of a pad by the force on another, over that by the same force on itself, in the order of
+        `readings.element`; the object's is taken to lie between nothing and this. Without it the pads are taken
+        to be on separate springs.
+
+    Raises
+    ------
+    InputError
+        An element without calibration, fewer than two elements or three loads in contact.
     """
     require_level(level)
     touching = readings.load > 0
@@ -138,14 +204,14 @@ def evaluate(
             f"element {stranger} of the grasp is not in {calibration.path}",
             legal=str(calibration.element.tolist()),
         )
-    slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
+    signal = readings.signal[:, touching]
+    slopes, noise = common_slopes(readings.element, signal, calibration)
     for still in slopes.element[slopes.s == 0][:1]:
         raise InputError(
             f"{readings.path}: sample {readings.sample}",
             f"element {still}: its signal does not change with the load",
         )
-    stiffness = slopes.f / slopes.s
-    number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
+    number = int(readings.element[np.argmax(slopes.f / slopes.s)]) if reference is None else reference
     if number not in readings.element:
         raise InputError(
             f"{readings.path}: reference",
@@ -154,17 +220,21 @@ def evaluate(
             legal=str(readings.element.tolist()),
         )
     r = int(np.flatnonzero(readings.element == number)[0])
-    others = [i for i in np.argsort(-stiffness, kind="stable") if i != r]
-    pairs = tuple(_pair(slopes, int(m), r, level) for m in others)
+    others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
+    limits = _limits(readings.element, signal, calibration, slopes, coupling)
+    everywhere = [at for group in limits.values() for at in group]
+    pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
+    by_limits = tuple(
+        (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()
+    )
     notes = []
     dropped = int((~touching).sum())
     if dropped:
         notes.append(
-            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
-            "enter"
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter"
         )
-    notes += _strays(readings.element, readings.signal[:, touching])
+    notes += _strays(readings.element, signal)
     if widened > 1:
         notes.append(
             f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened "
@@ -173,7 +243,9 @@ def evaluate(
     return Grasp(
         readings.sample,
         pairs,
+        hull(combined, [i for _, i in by_limits]),
         combined,
+        by_limits,
         noise,
         slopes.signal_dof,
         p,
@@ -182,6 +254,45 @@ def evaluate(
         dropped,
         tuple(notes),
     )
+
+
+def _limits(
+    element: np.ndarray,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    slopes: Slopes,
+    coupling: np.ndarray | None,
+) -> dict[str, list[Slopes]]:
+    """The slopes at the limits of what acts on all elements, by name; the later names on top of the earlier ones."""
+    at: dict[str, list[Slopes]] = {}
+    cells = [slopes]
+    if (calibration.load_cell_half_width > 0).any():
+        cells += [
+            common_slopes(element, signal, calibration.at_load_cell_limit(sign))[0] for sign in (-1.0, 1.0)
+        ]
+        at["with the load cell's limits"] = cells[1:]
+    if coupling is not None:
+        at["with coupling of the pads too"] = [
+            there.coupled(share * shape)
+            for shape in (coupling, _even(coupling))
+            for share in COUPLED
+            for there in cells
+        ]
+    return at
+
+
+def _even(coupling: np.ndarray) -> np.ndarray:
+    """The same coupling between any two pads, as strong as the given one is on average."""
+    n = len(coupling)
+    return np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))
+
+
+def hull(best: Interval, others: Sequence[Interval]) -> Interval:
+    """The smallest interval about all of them that are not empty, with the estimate of the first."""
+    held = [i for i in (best, *others) if not i.empty]
+    if not held:
+        return best
+    return Interval(best.estimate, min(i.low for i in held), max(i.high for i in held))
 
 
 def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitivity) -> tuple[Slopes, float]:
@@ -242,6 +353,8 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     """
     m = list(range(len(slopes.s))) if members is None else members
     f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
+    if len(m) > 2:
+        c = slopes.from_signal[m] + _moderated(slopes, m)
     scale = float(np.median(np.abs(f / s)))
     # without noise in K and K_v, f + x s of an element has no variance at x = -K: hold it above zero there
     smallest = np.maximum(1e-14 * c[:, 0, 0], np.finfo(float).tiny)
@@ -257,19 +370,53 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     best = _minimum(misfit, angle)
     least = float(misfit(np.array([best]))[0])
     extra = len(m) - 2
-    p = float(chdtrc(extra, least)) if extra > 0 else 1.0
+    inflation, dof = _scatter(slopes, m, c, scale * tan(best))
+    # the variances are estimates themselves: F, not chi-squared
+    p = float(fdtrc(extra, dof, least / extra / inflation)) if extra > 0 else 1.0
     widened = (least / extra) ** 0.5 if p < DISAGREE else 1.0
-    dof = extra if widened > 1 else _satterthwaite(slopes, m, scale * tan(best))
-    limit = least + (t_quantile(level, dof) * widened) ** 2
+    dof = extra if widened > 1 else dof
+    limit = least + (t_quantile(level, dof) * widened) ** 2 * inflation
     return _interval(misfit, best, limit, scale), p, widened
 
 
-def _pair(slopes: Slopes, m: int, r: int, level: float) -> Pair:
+def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
+    """Covariances of (f, s) by the calibration that weigh the elements: each one's own, with few degrees of freedom,
+    drawn towards what all of them have relative to their size (as Smyth 2004 does with variances).
+    """
+    size = np.stack([slopes.f[m], slopes.s[m]], -1)
+    size = size[:, :, None] * size[:, None, :]
+    dof = slopes.calibration_dof[m][:, None, None]
+    own = slopes.from_calibration[m]
+    common = (dof * own / size).sum(0) / dof.sum()
+    return (dof * own + PRIOR_DOF * common * size) / (dof + PRIOR_DOF)
+
+
+def _scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
+    """Variance of the x that makes f + x s most equal under weights from c, by the elements' own covariances, over the
+    one that c would give; and its degrees of freedom (Welch and Satterthwaite).
+    """
+    along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
+    w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), np.finfo(float).tiny)
+    s = slopes.s[m] if abs(x) < 1e12 else slopes.f[m]
+    pull = w * (s - (w * s).sum() / w.sum())  # of each element's f + x s on x
+    signal = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_signal[m], along)
+    calibration = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_calibration[m], along)
+    total = float((signal + calibration).sum())
+    bottom = signal.sum() ** 2 / slopes.signal_dof + (calibration**2 / slopes.calibration_dof[m]).sum()
+    model = float((pull**2 / w).sum())
+    if not (total > 0 and model > 0 and bottom > 0):
+        return 1.0, KNOWN
+    return total / model, float(min(total**2 / bottom, KNOWN))
+
+
+def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
     object_, _, _ = combine(slopes, level, [m, r])
+    everywhere = hull(object_, [combine(at, level, [m, r])[0] for at in limits])
     ratio = slopes.s[m] / slopes.s[r]
     k_m, k_r = slopes.f[m] / slopes.s[m], slopes.f[r] / slopes.s[r]
     var = [slopes.covariance[i][1, 1] / slopes.s[i] ** 2 for i in (m, r)]
-    half = t_quantile(level, _satterthwaite(slopes, [m, r], 0.0)) * sum(var) ** 0.5 * abs(ratio)
+    _, dof = _scatter(slopes, [m, r], slopes.covariance[[m, r]], 0.0)
+    half = t_quantile(level, dof) * sum(var) ** 0.5 * abs(ratio)
     x = object_.estimate
     condition = (
         inf
@@ -284,6 +431,7 @@ def _pair(slopes: Slopes, m: int, r: int, level: float) -> Pair:
         float(ratio),
         float(ratio - half),
         float(ratio + half),
+        everywhere,
         object_,
         float(condition),
     )
@@ -298,23 +446,6 @@ def _row(calibration: Sensitivity, number: int) -> int:
             legal=str(calibration.element.tolist()),
         )
     return int(found[0])
-
-
-def _satterthwaite(slopes: Slopes, m: list[int], x: float) -> float:
-    """Effective degrees of freedom of f + x s, signal and calibration together (Welch-Satterthwaite)."""
-    along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
-    signal = np.array([along @ slopes.from_signal[i] @ along for i in m])
-    parts = np.array([along @ slopes.from_calibration[i] @ along for i in m])
-    weight = 1 / np.maximum(signal + parts, np.finfo(float).tiny)
-    weight = weight * (
-        1 - weight / weight.sum()
-    )  # what each element's noise does to the contrast between them
-    bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + (
-        (weight * parts) ** 2 / slopes.calibration_dof[m]
-    ).sum()
-    if bottom == 0:  # readings and calibration without any scatter
-        return float(slopes.signal_dof)
-    return float((weight * (signal + parts)).sum() ** 2 / bottom)
 
 
 def _minimum(misfit, angle: np.ndarray) -> float:
