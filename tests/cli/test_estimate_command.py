@@ -130,6 +130,52 @@ def test_batch_row_out_of_range_has_no_stiffness_but_a_reason(tmp_path):
     )
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("value", ["1e-320", "1e-300", "1e-7", "1e9", "1e300", "1.7e308"])
+def test_absurd_options_are_refused_without_a_warning(capsys, value):
+    commands = [
+        ["estimate", "--force", value],
+        *(
+            ["size", "--stiffness", "10", "--load-arm", "5", f"--{o}", value, "--model", "short"]
+            for o in ABSURD
+        ),
+        ["size", "--stiffness", value, "--load-arm", "5"],
+        ["size", "--stiffness", "10", "--load-arm", value],
+    ]
+    for command in commands:
+        try:
+            status = main(command)
+        except SystemExit as end:
+            status = end.code
+        said = capsys.readouterr()
+        # a negligible fillet, and heights and lengths of a block that hardly bends, leave rung short a result
+        assert status in (1, 2) or (status == 0 and not set("nan inf".split()) & set(said.out.split())), (
+            command
+        )
+        assert "Traceback" not in said.err and "arning" not in said.err
+
+
+ABSURD = (
+    "force tolerance hinge-length fillet-radius arm-height body-height body-length width youngs-modulus poisson"
+).split()
+
+
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+@pytest.mark.parametrize("rung", ladder.CLOSED_FORMS)
+def test_batch_answers_absurd_sizes_by_a_reason_and_no_warning(tmp_path, rung):
+    """Every column at every absurd value, alone, and all columns at once."""
+    absurd = ["1e-320", "1e-300", "1e-30", "1e-7", "2e6", "1e30", "1e300", "1.7e308", "-1e308", "0"]
+    columns = len(ROW.split(","))
+    rows = [ROW.split(",")[:i] + [x] + ROW.split(",")[i + 1 :] for i in range(columns) for x in absurd]
+    rows += [[x] * columns for x in absurd] + [ROW.split(",")]
+    text = "\n".join([HEADER, *(",".join(row) for row in rows)]) + "\n"
+    status, found = batch(tmp_path, text, "--model", rung)
+    assert status == 0 and found[-1]["valid"] == "true"
+    for row, given in zip(found, rows):
+        assert (row["stiffness"] == "") == (row["reason"] != "") == (row["valid"] == "false")
+        assert not row["stiffness"] or 0 < float(row["stiffness"]) < 1e6, given
+
+
 @pytest.mark.parametrize(
     "text,where",
     [

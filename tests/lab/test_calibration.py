@@ -8,7 +8,7 @@ from scipy.stats import binom, norm
 from scipy.stats import t as t_distribution
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab import calibration, calibration_text, readings, regression, simulate
+from tactcad.lab import calibration, calibration_text, contact, readings, regression, simulate
 from tactcad.lab.calibration import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
@@ -255,6 +255,43 @@ def test_a_gap_over_more_than_a_step_is_found_and_said():
     for row, K in zip(calibration.calibrate(late, EXACT), TRUTH.stiffness):
         assert row.stiffness.value == pytest.approx(K, rel=1e-4)
         assert "no contact before 50 um" in " ".join(row.notes)
+
+
+def a_ramp(gap: float, seed: int) -> tuple[np.ndarray, ...]:
+    """2000 displacements of 0 to 0.15 mm and the force of 20 N/mm from the gap (mm) on, 5 mN of noise; one run."""
+    x = np.linspace(0, 0.15, 2000)
+    force = 20 * np.maximum(x - gap, 0) + 0.005 * np.random.default_rng(seed).standard_normal(len(x))
+    return x, force, np.ones(len(x), int)
+
+
+def test_of_a_ramp_in_contact_hardly_more_than_a_step_is_left_out():
+    """Stated: at most 16 steps are tried, each wrong in one of a thousand. 200 ramps: 3.2 expected, more than 12 by a chance under 1e-4."""
+    late = [contact.first_in_contact(*a_ramp(0, seed)) for seed in range(200)]
+    assert sum(left_out > 1 for _, left_out in late) <= 12
+    assert min(first for first, _ in late) == pytest.approx(0.15 / contact.MOST, abs=1e-4)
+
+
+@pytest.mark.parametrize("gap", [0.020, 0.060])
+def test_where_a_ramp_meets_the_pad_is_found(gap):
+    first, left_out = contact.first_in_contact(*a_ramp(gap, 1))
+    assert gap - 0.001 < first < gap + 2 * 0.15 / contact.MOST and left_out > 1
+
+
+@pytest.mark.parametrize(
+    "lines, named",
+    [
+        ([(1, 0.0), (1, 1e-10), (1, 2e-10), (1, 3e-10)], "too few readings of element 1"),
+        ([(1, 0.0), (1, 0.1), (2, 0.0), (2, 0.12), (3, 0.0), (3, 0.15)], "too few readings in contact"),
+    ],
+    ids=["one place to a picometre", "one reading a run in contact"],
+)
+@pytest.mark.filterwarnings("error::RuntimeWarning")
+def test_readings_that_leave_no_line_are_refused(tmp_path, lines, named):
+    file = tmp_path / "few.csv"
+    file.write_text(HEADER + "".join(f"1,{run},{x!r},{20 * x!r},{-9 * x!r}\n" for run, x in lines))
+    with pytest.raises(InputError, match=named) as refused:
+        calibration.calibrate(readings.calibration(file), EXACT)
+    assert str(file) in str(refused.value)
 
 
 def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():

@@ -12,6 +12,8 @@ from tactcad.mechanics.section import REFERENCE
 BREAKS = {
     "a value is not a finite number": dict(load_arm=np.nan),
     "a length, width or modulus is not positive": dict(hinge_thickness=0.0),
+    "a length or width is outside 1e-06 to 1e+06 mm": dict(body_length=1.01e6),
+    "youngs_modulus is outside 1e-06 to 1e+12 MPa": dict(youngs_modulus=0.99e-6),
     "fillet_radius is negative": dict(fillet_radius=-0.1),
     "poisson is outside 0 to 0.5": dict(poisson=0.5),
     "fillets longer than the slot: 2 r > l": dict(fillet_radius=0.376),

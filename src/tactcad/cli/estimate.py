@@ -79,8 +79,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    if args.force is not None and not (0.0 < args.force < math.inf):
-        raise InputError("--force", "not a force", value=args.force, legal="a positive number of newtons")
+    if args.force is not None:
+        from tactcad.design.tree import ASKED_FORCE
+
+        ASKED_FORCE.read(args.force, "--force")
     accuracy = _asked_accuracy(args)
     if args.batch is not None:
         return _batch(args, accuracy)

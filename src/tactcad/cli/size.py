@@ -68,10 +68,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    for option in ("stiffness", "load_arm", "force", "tolerance", "youngs_modulus", *LENGTHS):
+    for option in ("stiffness", "load_arm", "tolerance", "youngs_modulus", *LENGTHS):
         value = getattr(args, option)
         if value is not None and not 0.0 < value < math.inf:
             raise InputError(f"--{option.replace('_', '-')}", "not a positive number", value=value)
+    if args.force is not None:
+        from tactcad.design.tree import ASKED_FORCE
+
+        ASKED_FORCE.read(args.force, "--force")
     if args.poisson is not None and not 0.0 <= args.poisson < 0.5:
         raise InputError("--poisson", "not a Poisson's ratio", value=args.poisson, legal="0 to 0.5")
     parameter = f"hinge_{args.solve}"

@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
         samples = readings.grasps(args.file)
         for g in samples:
             tell(len(found), len(samples), f"sample {g.sample}")
-            coupling = pads.coupling(args.design or DEFAULT_DESIGN, g.element, args.coupling)
+            coupling = pads.coupling(args.design or DEFAULT_DESIGN, g, args.coupling)
             found.append(
                 grasp.evaluate(g, known, reference=args.reference, level=args.level, coupling=coupling)
             )

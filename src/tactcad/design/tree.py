@@ -327,11 +327,14 @@ class Stop:
     )
 
 
+ASKED_FORCE = Number("N", 1e-6, 1e4, "force asked of each element at its pad")
+
+
 @dataclass(frozen=True)
 class Rating:
     """[rating]: loads that the design is rated for."""
 
-    force: float = given(Number("N", 1e-6, 1e4, "force asked of each element at its pad"), 2.0)
+    force: float = given(ASKED_FORCE, 2.0)
     yield_factor: float = given(Number("", 1, 10, "safety against yield of the rated force, in use"), 1.5)
     deflection_factor: float = given(
         Number(

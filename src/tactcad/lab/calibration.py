@@ -28,6 +28,8 @@ from tactcad.lab.regression import (
     ratio_interval,
     require_level,
     rounding,
+    spare_steps,
+    steps,
     t_quantile,
     variance_weights,
 )
@@ -184,9 +186,11 @@ def _element(
     alarm: float,
 ) -> ElementCalibration:
     notes: list[str] = []
+    where = f"{all_.path}: element {number}"
     here = _touching(all_, here, notes)
     x, run = all_.displacement[here], all_.run[here]
     y = np.column_stack([all_.force[here], all_.signal[here]])
+    _require_line(where, x, run)
     bad = [extreme_deviates(x, y[:, k], run, alarm) for k in (0, 1)]
     outliers = tuple(
         Outlier(number, int(run[i]), float(x[i]), name, int(all_.line[here[i]]))
@@ -196,12 +200,13 @@ def _element(
     if drop and outliers:
         keep = np.setdiff1d(np.arange(len(x)), np.union1d(*bad).astype(int))
         x, run, y = x[keep], run[keep], y[keep]
+        _require_line(where, x, run)
     lines = fit_lines(x, y, run)
     lines = fit_lines(x, y, run, variance_weights(lines, x, 0))
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
-    _require_spring(f"{all_.path}: element {number}", x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
+    _require_spring(where, x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
     stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
     per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
     averaged = _averaged(x, y, run)
@@ -229,19 +234,29 @@ def _element(
 def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> np.ndarray:
     """Which of an element's readings are surely in contact."""
     x = all_.displacement[here]
-    first = first_in_contact(x, all_.force[here], all_.run[here])
-    kept = here[x >= first - 1e-9]
-    steps = len(np.unique(np.round(x[x < first - 1e-9], 9)))
-    if steps > 1:
+    first, left_out = first_in_contact(x, all_.force[here], all_.run[here])
+    kept = here[steps(x) >= first]
+    if left_out > 1:
         notes.append(
             f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above the line "
             "of the others; they are left out"
         )
-    if not steps:
+    if not left_out:
         notes.append(
             "three displacements only: the first is kept, and a gap before contact would bias the slope"
         )
     return kept
+
+
+def _require_line(where: str, x: np.ndarray, run: np.ndarray) -> None:
+    """Raise InputError where the readings in contact leave no noise about a line."""
+    if spare_steps(x, run) < 1:
+        raise InputError(
+            where,
+            "too few readings in contact",
+            value=f"{len(x)} in {len(np.unique(run))} runs",
+            legal="after the first displacement two more than runs, in one run at two displacements at least",
+        )
 
 
 def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tuple[np.ndarray, float]:
@@ -345,7 +360,7 @@ def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray
     """Mean readings at each displacement (equal within 1e-9 mm) that every run has; all readings where none
     is shared.
     """
-    step, index = np.unique(np.round(x, 9), return_inverse=True)
+    step, index = np.unique(steps(x), return_inverse=True)
     count = np.bincount(index)
     shared = count == len(np.unique(run))
     if shared.sum() < 3:

@@ -33,6 +33,7 @@ PRIOR_DOF = (
     6.0  # weight of what the elements have in common against an element's own degrees of freedom, chosen
 )
 KNOWN = 1e6  # degrees of freedom of what counts as known
+NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 and V2/N2
 COUPLED = (
     0.25,
     0.5,
@@ -357,7 +358,7 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
         c = slopes.from_signal[m] + _moderated(slopes, m)
     scale = float(np.median(np.abs(f / s)))
     # without noise in K and K_v, f + x s of an element has no variance at x = -K: hold it above zero there
-    smallest = np.maximum(1e-14 * c[:, 0, 0], np.finfo(float).tiny)
+    smallest = np.maximum(1e-14 * c[:, 0, 0], NO_VARIANCE)
     angle = np.linspace(-pi / 2, pi / 2, ANGLES)
 
     def misfit(a: np.ndarray) -> np.ndarray:
@@ -396,9 +397,10 @@ def _scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[flo
     one that c would give; and its degrees of freedom (Welch and Satterthwaite).
     """
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
-    w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), np.finfo(float).tiny)
+    w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), NO_VARIANCE)
+    share = w / w.max()
     s = slopes.s[m] if abs(x) < 1e12 else slopes.f[m]
-    pull = w * (s - (w * s).sum() / w.sum())  # of each element's f + x s on x
+    pull = share * (s - (share * s).sum() / share.sum())  # relative, of each element's f + x s on x
     signal = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_signal[m], along)
     calibration = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_calibration[m], along)
     total = float((signal + calibration).sum())

@@ -8,6 +8,7 @@ from math import inf
 import numpy as np
 
 from tactcad.design.messages import InputError
+from tactcad.lab.readings import GraspReadings
 from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
@@ -22,15 +23,15 @@ def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     return side * layout.design.array.row_pitch / 2, side * y
 
 
-def coupling(source: str, element: np.ndarray, share: float) -> np.ndarray | None:
+def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray | None:
     """Displacement of each pad by the force on another over that by the same force on itself, [element, element].
 
     Parameters
     ----------
     source : str
         The design, by name or path.
-    element : array of int
-        Numbers of the elements.
+    readings : GraspReadings
+        Its elements, in their order.
     share : float
         Of the coupling by an elastic half-space, 0 to 1; 0 gives None.
 
@@ -45,15 +46,15 @@ def coupling(source: str, element: np.ndarray, share: float) -> np.ndarray | Non
         return None
     x, y, number, length, width = _pads(source)
     place = {int(n): i for i, n in enumerate(number)}
-    for n in element:
+    for n in readings.element:
         if int(n) not in place:
             raise InputError(
-                "element",
+                f"{readings.path}: sample {readings.sample}, element",
                 f"design {source} has no such element, so nobody knows where its pad stands",
                 value=int(n),
                 legal=f"{number.tolist()}, another --design, or --coupling 0",
             )
-    rows = [place[int(n)] for n in element]
+    rows = [place[int(n)] for n in readings.element]
     return share * shares_between(x[rows], y[rows], length, width, inf, INCOMPRESSIBLE)
 
 

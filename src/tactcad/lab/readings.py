@@ -12,6 +12,7 @@ import numpy as np
 
 from tactcad.design.csv_table import Field, Rows, Table, numeric, read_table, refuse_duplicates
 from tactcad.design.messages import InputError
+from tactcad.lab.regression import steps
 
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)
 RUN = Field("run", "1", 0, 1_000_000, integer=True)
@@ -67,8 +68,8 @@ def calibration(path: str | Path) -> CalibrationReadings:
         rows.path,
     )
     for number, here in groups(out.element):
-        runs, steps = len(np.unique(out.run[here])), len(np.unique(out.displacement[here]))
-        if len(here) < runs + 3 or steps < 3:
+        runs, at = len(np.unique(out.run[here])), np.unique(steps(out.displacement[here]))
+        if len(here) < runs + 3 or len(at) < 3:
             raise InputError(
                 rows.where(int(here[-1]), "element"),
                 f"too few readings of element {number}",

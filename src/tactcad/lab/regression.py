@@ -41,6 +41,22 @@ class Lines:
         return len(self.run_slope)
 
 
+def steps(x: np.ndarray) -> np.ndarray:
+    """Displacements, mm: those that agree within 1e-9 mm are one step."""
+    return np.round(x, 9)
+
+
+def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
+    """How many steps there are, each counted in every run, beyond those that give every run its intercept and all of
+    them a slope; below 0 there is no line.
+    """
+    at = steps(x)
+    order = np.lexsort((at, run))
+    another_run = np.diff(run[order]) != 0
+    different = another_run | (np.diff(at[order]) != 0)
+    return int(different.sum()) - int(another_run.sum()) - 1
+
+
 def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
     """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x; weights need only be right in
     proportion.

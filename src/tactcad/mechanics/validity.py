@@ -15,6 +15,11 @@ from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
+# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a nanometre to a
+# kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
+LENGTH = (1e-6, 1e6)  # mm
+MODULUS = (1e-6, 1e12)  # MPa
+LENGTHS = tuple(name for name in POSITIVE if name != "youngs_modulus")
 
 
 @dataclass(frozen=True)
@@ -34,6 +39,13 @@ def _not_positive(s: HingeSection) -> np.ndarray:
     return np.logical_or.reduce(np.broadcast_arrays(*(getattr(s, name) <= 0.0 for name in POSITIVE)))
 
 
+def _length_outside(s: HingeSection) -> np.ndarray:
+    low, high = LENGTH
+    small = [getattr(s, name) < low for name in LENGTHS]
+    large = [getattr(s, name) > high for name in (*LENGTHS, "fillet_radius", "pad_height")]
+    return np.logical_or.reduce(np.broadcast_arrays(*small, *large))
+
+
 def _slot_depth(s: HingeSection) -> np.ndarray:
     """Height that the hinge and its fillets take up, mm."""
     return s.hinge_thickness + s.notch_sides * s.fillet_radius
@@ -42,6 +54,11 @@ def _slot_depth(s: HingeSection) -> np.ndarray:
 GEOMETRY = (
     Rule("a value is not a finite number", _not_finite),
     Rule("a length, width or modulus is not positive", _not_positive),
+    Rule(f"a length or width is outside {LENGTH[0]:g} to {LENGTH[1]:g} mm", _length_outside),
+    Rule(
+        f"youngs_modulus is outside {MODULUS[0]:g} to {MODULUS[1]:g} MPa",
+        lambda s: (s.youngs_modulus < MODULUS[0]) | (s.youngs_modulus > MODULUS[1]),
+    ),
     Rule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
     Rule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
     Rule("fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -ROUNDING * s.hinge_length),
