@@ -13,18 +13,14 @@ from typing import Literal
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam
 
+from . import seating
 from .layout import Layout
-from .library.screws import seating_force
 from .stop_gap import stop_gap
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
 # Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
 # of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
 TENTH = 0.1
-# Of the pads' tolerance, what the set screws' seating may bow the stack by: it makes the pads' error an eighth larger.
-SEATED = 0.5
-# mm within which the rigs' plates and the lid are made flat (`finish`); the carrier's bow is held to it too.
-FLAT = 0.02
 
 
 @dataclass(frozen=True)
@@ -94,7 +90,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         1e3 * force * plate.supported(),
         *pads_plane(design),
     )
-    stack = _stack(layout)
+    stack = seating.stack_beam(layout)
     yield Deflection(
         "array",
         "stack of elements",
@@ -105,27 +101,28 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         *pads_plane(design),
         "flag",
     )
-    screw = seating_force(design.clamp.screw)
-    seated = 2 * screw * len(layout.hold_down_y), f"{screw:.0f} N of each set screw at its torque"
+    screw = seating.force(layout)
+    load = 2 * screw * len(layout.hold_down_y)
+    turned = f"{screw:.0f} N of each set screw at {seating.torque(layout):g} N m"
     yield Deflection(
         "array",
         "stack of elements",
         "between the end plates, pressed under each set screw",
-        *seated,
-        1e3 * _seated(layout, stack, screw),
-        1e3 * SEATED * design.tolerance.pad_height,
+        load,
+        turned,
+        1e3 * screw * seating.stack_bow(layout),
+        1e3 * seating.BOW * design.tolerance.pad_height,
         "half of tolerance.pad_height: the pads' error an eighth larger",
-        "flag",
     )
     yield Deflection(
         "array",
         "carrier",
         "between the end plates, pressed at each set screw",
-        *seated,
-        1e3 * _seated(layout, carrier_beam(layout, 2 * layout.end_plate_y), screw),
-        1e3 * FLAT,
+        load,
+        turned,
+        1e3 * screw * seating.carrier_bow(layout),
+        1e3 * seating.FLAT,
         "as flat as the plate that it is screwed on",
-        "flag",
     )
 
 
@@ -150,16 +147,3 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
 
 def _plate(layout: Layout, y: float) -> float:
     return layout.stop_give
-
-
-def _stack(layout: Layout) -> Beam:
-    """Both rows' rear bodies and spacers, as high as the spacers, between the end plates."""
-    d = layout.design
-    z0, z1 = layout.spacer_z
-    m = d.material
-    return Beam(layout.stack, 2 * d.element.rear_length, z1 - z0, m.youngs_modulus, m.poisson)
-
-
-def _seated(layout: Layout, beam: Beam, screw: float) -> float:
-    """mm in the beam's middle when every set screw presses on it."""
-    return sum(2 * screw * beam.supported_beside(beam.length / 2 - abs(y)) for y in layout.hold_down_y)

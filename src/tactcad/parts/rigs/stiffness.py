@@ -12,7 +12,8 @@ from tactcad.mechanics.bending import Beam, rod, round_plate
 from ..layout import Layout
 from ..library.dowels import dowel_diameter
 from ..materials import plate_material
-from ..stiffness_table import FLAT, TENTH, Deflection, pads_plane
+from ..seating import FLAT
+from ..stiffness_table import TENTH, Deflection, pads_plane
 from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
 from .bar import BAR_MIDDLE
 from .cart_layout import CartLayout
