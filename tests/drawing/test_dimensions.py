@@ -15,19 +15,8 @@ from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.measure import (
-    OUTER,
-    PLACES,
-    THICKNESS,
-    Owner,
-    Quantity,
-    Radius,
-    Slope,
-    Span,
-    Spot,
-    level,
-    variables,
-)
+from tactcad.drawing.keys import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot
+from tactcad.drawing.measure import Radius, Slope, Span, level, variables
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.plan import Dimension, number
 from tactcad.drawing.prism import prism_plan

@@ -63,10 +63,11 @@ class Reader:
 
 
 def calibrate(path: Path) -> None:
-    rows = calibration.calibrate(readings.calibration(path), 57.04)
-    calibration_text.to_text(rows, 57.04, 0.95), calibration_text.to_json(rows, 57.04, 0.95)
+    cell = calibration.LoadCell(57.04)
+    rows = calibration.calibrate(readings.calibration(path), cell)
+    calibration_text.to_text(rows, cell, 0.95), calibration_text.to_json(rows, cell, 0.95)
     try:
-        calibration_text.to_csv(rows, 57.04)
+        calibration_text.to_csv(rows, cell)
     except CheckFailure as refusal:  # of one element, after the file was read
         assert str(refusal).startswith("element ")
 
@@ -142,9 +143,10 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
     (place / "A.toml").write_text(one_by_one(4.0, "A"), encoding="utf-8")
     design = load(place / "A.toml")
     layout, old = Layout(design), sides.read_side(str(place / "A.toml"))
-    rows = calibration.calibrate(readings.calibration(EXAMPLES / "calibration.csv"), 57.04)
+    cell = calibration.LoadCell(57.04)
+    rows = calibration.calibrate(readings.calibration(EXAMPLES / "calibration.csv"), cell)
     known = place / "calibration.csv"
-    known.write_text(calibration_text.to_csv(rows, 57.04))
+    known.write_text(calibration_text.to_csv(rows, cell))
     export = Export(design)
     cache = Cache(place / "cache", say=lambda text: None)
     lines = (EXAMPLES / "calibration.csv").read_bytes().split(b"\n")
@@ -171,7 +173,7 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
         ),
         Reader(
             "calibration.json",
-            calibration_text.to_json(rows, 57.04, 0.95).encode(),
+            calibration_text.to_json(rows, cell, 0.95).encode(),
             lambda path: stiffness(str(path), EXAMPLES / "grasp.csv"),
         ),
         Reader(

@@ -78,7 +78,7 @@ def test_noise_about_zero_is_no_reversed_sign():
     data = readings.CalibrationReadings(
         *(c for c in table.T[:2].astype(int)), *table.T[2:], np.arange(len(table))
     )
-    found = calibration.calibrate(data, 57.04)[0]
+    found = calibration.calibrate(data, calibration.LoadCell(57.04))[0]
     assert "do not tell the stiffness from zero" in " ".join(found.notes) and found.stiffness.low == 0
 
 
@@ -137,8 +137,7 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
 
 
 def test_outliers_cost_no_fit_each(monkeypatch):
-    """Extreme deviates are downdated: the same readings as by fitting again after each, in 60 random
-    cases."""
+    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random cases."""
     rng, compared = np.random.default_rng(11), 0
     for _ in range(60):
         run = np.repeat(np.arange(rng.integers(1, 6)), rng.integers(6, 20))
@@ -147,11 +146,14 @@ def test_outliers_cost_no_fit_each(monkeypatch):
         for i in rng.integers(0, len(run), rng.integers(0, 4)):
             y[i] += rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 1)
         named = regression.extreme_deviates(x, y, run)
+        weight = regression.variance_weights(regression.fit_lines(x, y[:, None], run), x, 0)
         left = np.ones(len(x), bool)
         for i in named:  # by fits of what is left: each one named was the most extreme
             index = np.flatnonzero(left)
-            lines = regression.fit_lines(x[index], y[index, None], run[index])
-            ratio = np.abs(lines.residual[:, 0]) / np.sqrt(np.maximum(1 - lines.leverage, 1e-12))
+            lines = regression.fit_lines(x[index], y[index, None], run[index], weight[index])
+            ratio = np.abs(lines.residual[:, 0]) * np.sqrt(
+                lines.weight / np.maximum(1 - lines.leverage, 1e-12)
+            )
             assert index[np.argmax(ratio)] == i
             left[i] = False
             compared += 1

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.stats import binom
+from scipy.stats import binom, norm
+from scipy.stats import t as t_distribution
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab import calibration, calibration_text, readings, regression, simulate
+from tactcad.lab.calibration import LoadCell
 from tactcad.lab.readings import CalibrationReadings
 from tactcad.lab.simulate import Noise, Truth
 
 CELL = 57.04
+EXACT = LoadCell(CELL)
 STEPS = 0.025 * np.arange(7)
 TRUTH = Truth(np.array([4, 8]), np.array([5.78, 80.38]), np.array([-3.8, -9.0]), np.array([-2.14, 0.2]))
 
@@ -25,7 +28,7 @@ def simulated(noise, seed=0, runs=3, truth=TRUTH, steps=STEPS, cell=CELL) -> Cal
 
 def test_without_noise_both_fits_give_the_truth():
     for row, K, k_v, zero in zip(
-        calibration.calibrate(simulated(Noise(0, 0, 0)), CELL),
+        calibration.calibrate(simulated(Noise(0, 0, 0)), EXACT),
         TRUTH.stiffness,
         TRUTH.signal_per_deflection,
         TRUTH.zero_signal,
@@ -56,28 +59,28 @@ def test_a_late_contact_shifts_only_the_intercept():
             shifted.signal,
             shifted.line,
         ),
-        CELL,
+        EXACT,
     )[0]
     assert row.stiffness.value == pytest.approx(5.78, rel=1e-10)
     assert row.zero_signal == pytest.approx(-2.14, abs=1e-10)
 
 
 def test_a_rigid_load_cell_takes_nothing():
-    row = calibration.calibrate(simulated(Noise(0, 0, 0), cell=1e12), np.inf)[1]
+    row = calibration.calibrate(simulated(Noise(0, 0, 0), cell=1e12), LoadCell(np.inf))[1]
     assert row.stiffness.value == pytest.approx(80.38, rel=1e-9)
 
 
 def test_as_the_paper_did_is_a_straight_line_through_averages():
     """Against numpy's polyfit on readings averaged by hand."""
     data = simulated(Noise(0.01, 0.001, 0.002), seed=3)
-    row = calibration.calibrate(data, CELL)[1]
+    row = calibration.calibrate(data, EXACT)[1]
     here = data.element == 8
-    force = data.force[here].reshape(3, 7).mean(0)
-    signal = data.signal[here].reshape(3, 7).mean(0)
-    d = STEPS - force / CELL
+    force = data.force[here].reshape(3, 7).mean(0)[1:]  # the first step may be before contact
+    signal = data.signal[here].reshape(3, 7).mean(0)[1:]
+    d = STEPS[1:] - force / CELL
     assert row.stiffness_as_paper.value == pytest.approx(np.polyfit(d, force, 1)[0], rel=1e-9)
     assert row.signal_per_deflection_as_paper.value == pytest.approx(np.polyfit(d, signal, 1)[0], rel=1e-9)
-    line = np.polyval(np.polyfit(STEPS, force, 1), STEPS)
+    line = np.polyval(np.polyfit(STEPS[1:], force, 1), STEPS[1:])
     assert row.linearity_force == pytest.approx(np.abs(force - line).max() / np.ptp(force), rel=1e-9)
 
 
@@ -111,7 +114,7 @@ def test_stated_intervals_hold_the_truth_as_often_as_they_say(noise):
     held = np.zeros(4)
     for seed in range(trials):
         for row, K, k_v in zip(
-            calibration.calibrate(simulated(noise, seed), CELL), TRUTH.stiffness, TRUTH.signal_per_deflection
+            calibration.calibrate(simulated(noise, seed), EXACT), TRUTH.stiffness, TRUTH.signal_per_deflection
         ):
             held += [
                 e.low <= truth <= e.high
@@ -151,12 +154,12 @@ def test_outliers_are_named_by_element_run_displacement_and_line():
     bad = 7 * 3 + 7 + 4  # element 8, run 2, fifth step
     data.force[bad] += 0.08
     data.signal[bad + 2] += 0.02
-    row = calibration.calibrate(data, CELL)[1]
+    row = calibration.calibrate(data, EXACT)[1]
     assert [(o.element, o.run, round(o.displacement, 3), o.quantity, o.line) for o in row.outliers] == [
         (8, 2, 0.100, "force", bad + 2),
         (8, 2, 0.150, "signal", bad + 4),
     ]
-    kept, dropped = (calibration.calibrate(data, CELL, drop_outliers=d)[1] for d in (False, True))
+    kept, dropped = (calibration.calibrate(data, EXACT, drop_outliers=d)[1] for d in (False, True))
     assert (
         abs(dropped.stiffness.value - 80.38) < abs(kept.stiffness.value - 80.38)
         or dropped.stiffness.standard_error < kept.stiffness.standard_error
@@ -181,12 +184,77 @@ def test_good_readings_are_seldom_called_outliers():
     assert named <= binom.ppf(1 - 1e-4, 400, 0.02)
 
 
-def test_runs_with_other_slopes_are_said_and_widen_the_interval():
+def test_the_interval_comes_from_the_runs_own_slopes():
+    """Equal steps in every run and equal weights: the mean of the runs' slopes with Student's t, two degrees of freedom."""
     data = simulated(Noise(), seed=5)
     data.force[(data.element == 4) & (data.run == 3)] *= 1.08
-    row = calibration.calibrate(data, CELL)[0]
-    assert "runs' force slopes differ" in row.notes[0] and row.dof == 2
-    assert row.stiffness.low < 5.78 < row.stiffness.high
+    row = calibration.calibrate(data, EXACT)[0]
+    here = data.element == 4
+    force, x = data.force[here].reshape(3, 7)[:, 1:], STEPS[1:]
+    lines = regression.fit_lines(np.tile(x, 3), force.reshape(-1, 1), np.repeat([1, 2, 3], 6))
+    w = regression.variance_weights(lines, np.tile(x, 3), 0).reshape(3, 6)
+    slope = np.array([np.polyfit(x, f, 1, w=np.sqrt(v))[0] for f, v in zip(force, w)])
+    half = t_distribution.ppf(0.975, 2) * slope.std(ddof=1) / 3**0.5
+    low, high = ((s * CELL / (CELL - s)) for s in (slope.mean() - half, slope.mean() + half))
+    assert row.dof == 2
+    assert row.stiffness.low == pytest.approx(low, rel=1e-9) and row.stiffness.high == pytest.approx(
+        high, rel=1e-9
+    )
+
+
+def test_one_run_is_given_an_assumed_scatter_and_says_so():
+    row = calibration.calibrate(simulated(Noise(0, 0, 0), runs=1), EXACT)[0]
+    k = 5.78 * CELL / (5.78 + CELL)
+    half = norm.ppf(0.975) * calibration.RUN_SCATTER * k  # nothing else scatters here
+    assert row.stiffness.low == pytest.approx((k - half) * CELL / (CELL - k + half), rel=1e-6)
+    assert "assumed, not measured" in " ".join(row.notes)
+
+
+def test_a_known_scatter_takes_the_place_of_the_runs_own():
+    row = calibration.calibrate(simulated(Noise(0, 0, 0), runs=4), EXACT, run_scatter=0.02)[0]
+    k = 5.78 * CELL / (5.78 + CELL)
+    half = norm.ppf(0.975) * 0.02 * k / 4**0.5
+    assert row.stiffness.low == pytest.approx((k - half) * CELL / (CELL - k + half), rel=1e-6)
+    assert "assumed" not in " ".join(row.notes)
+
+
+def test_an_interval_holds_for_every_load_cell_within_its_limits():
+    """The readings of a cell at either limit, evaluated with the nominal one: without noise the interval's end is the
+    truth.
+    """
+    for true, pick in ((CELL + 1, 0), (CELL - 1, 1)):
+        row = calibration.calibrate(simulated(Noise(0, 0, 0), cell=true), LoadCell(CELL, 1.0))[1]
+        ends = (row.stiffness.low, row.stiffness.high)
+        assert ends[pick] == pytest.approx(80.38, rel=1e-9)
+        ends = (row.signal_per_deflection.high, row.signal_per_deflection.low)  # it is negative
+        assert ends[pick] == pytest.approx(-9.0, rel=1e-9)
+        assert row.signal_per_force.low == pytest.approx(row.signal_per_force.high, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "text, stiffness, half", [("57.04+-1", 57.04, 1), ("50+-2%", 50, 1), ("50", 50, 1), ("inf", np.inf, 0)]
+)
+def test_a_load_cell_is_read_with_its_limits(text, stiffness, half):
+    cell = LoadCell.parse(text)
+    assert (cell.stiffness, cell.half_width) == (stiffness, pytest.approx(half))
+
+
+@pytest.mark.parametrize("gap", [0.002, 0.005, 0.010])
+def test_a_gap_before_contact_within_the_first_step_changes_nothing(gap):
+    late = simulated(Noise(0, 0, 0), steps=np.maximum(STEPS - gap, 0))
+    displacement = np.tile(STEPS, 6)
+    late = CalibrationReadings(late.element, late.run, displacement, late.force, late.signal, late.line)
+    for row, K in zip(calibration.calibrate(late, EXACT), TRUTH.stiffness):
+        assert row.stiffness.value == pytest.approx(K, rel=1e-9)
+
+
+def test_a_gap_over_more_than_a_step_is_found_and_said():
+    late = simulated(Noise(1e-5, 0, 1e-5), seed=3, steps=np.maximum(STEPS - 0.040, 0))
+    displacement = np.tile(STEPS, 6)
+    late = CalibrationReadings(late.element, late.run, displacement, late.force, late.signal, late.line)
+    for row, K in zip(calibration.calibrate(late, EXACT), TRUTH.stiffness):
+        assert row.stiffness.value == pytest.approx(K, rel=1e-4)
+        assert "no contact before 50 um" in " ".join(row.notes)
 
 
 def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():
@@ -195,7 +263,7 @@ def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():
         seed=1,
         truth=Truth(np.array([1]), np.array([5e4]), np.array([-9.0]), np.array([0.0])),
     )
-    row = calibration.calibrate(data, CELL)[0]
+    row = calibration.calibrate(data, EXACT)[0]
     assert (
         np.isinf(row.stiffness.high) and row.stiffness.low > CELL and "from below only" in " ".join(row.notes)
     )
@@ -204,7 +272,7 @@ def test_an_element_as_stiff_as_the_cell_is_bounded_from_below_only():
 @pytest.mark.parametrize("cell", [0.0, -3.0, np.nan])
 def test_a_load_cell_without_stiffness_is_refused(cell):
     with pytest.raises(InputError, match="load cell"):
-        calibration.calibrate(simulated(Noise()), cell)
+        LoadCell(cell)
 
 
 HEADER = "element,run,displacement,force,signal\n"
@@ -244,16 +312,16 @@ def test_units_stand_in_the_columns_names(tmp_path):
             for e, r, x, f, v in zip(data.element, data.run, data.displacement, data.force, data.signal)
         )
     )
-    rows = calibration.calibrate(readings.calibration(file), CELL)
+    rows = calibration.calibrate(readings.calibration(file), EXACT)
     assert [r.stiffness.value for r in rows] == pytest.approx([5.78, 80.38], rel=1e-7)
     assert [r.signal_per_deflection.value for r in rows] == pytest.approx([-3.8, -9.0], rel=1e-7)
 
 
 def test_a_calibration_is_read_back_as_written(tmp_path):
-    rows = calibration.calibrate(simulated(Noise(), seed=2), CELL)
+    rows = calibration.calibrate(simulated(Noise(), seed=2), EXACT)
     csv, js = tmp_path / "c.csv", tmp_path / "c.json"
-    csv.write_text(calibration_text.to_csv(rows, CELL))
-    js.write_text(calibration_text.to_json(rows, CELL, 0.95))
+    csv.write_text(calibration_text.to_csv(rows, EXACT))
+    js.write_text(calibration_text.to_json(rows, EXACT, 0.95))
     for known in (calibration_text.read(str(csv)), calibration_text.read(str(js))):
         assert known.element.tolist() == [4, 8]
         assert known.stiffness == pytest.approx([r.stiffness.value for r in rows], rel=1e-8)
@@ -270,9 +338,9 @@ def test_no_calibration_is_written_that_the_readings_do_not_give():
         seed=1,
         truth=Truth(np.array([1]), np.array([5e4]), np.array([-9.0]), np.array([0.0])),
     )
-    rows = calibration.calibrate(data, 55.0)  # the slope is 55.8 N/mm, within noise of it
+    rows = calibration.calibrate(data, LoadCell(55.0))  # the slope is 55.8 N/mm, within noise of it
     with pytest.raises(CheckFailure, match="element 1"):
-        calibration_text.to_csv(rows, 55.0)
+        calibration_text.to_csv(rows, LoadCell(55.0))
 
 
 @pytest.mark.parametrize(

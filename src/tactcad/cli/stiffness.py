@@ -16,6 +16,8 @@ several, run and sample: every element at every load. The calibration is what `t
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    from tactcad.design.load import DEFAULT_DESIGN
+
     parser.add_argument("file", metavar="FILE", help="grasp readings (CSV)")
     parser.add_argument(
         "--calibration", required=True, metavar="FILE", help="calibration of the elements (CSV or JSON)"
@@ -30,11 +32,27 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
     )
+    parser.add_argument(
+        "--design",
+        metavar="DESIGN",
+        default=None,
+        help="the array that was pressed: where its pads stand says how far they feel each other through the object "
+        f"(default {DEFAULT_DESIGN})",
+    )
+    parser.add_argument(
+        "--coupling",
+        type=float,
+        default=1.0,
+        metavar="C",
+        help="the object couples the pads by at most this share of what an elastic half-space does (default 1; 0: each "
+        "pad on an object of its own); the intervals hold for all up to it",
+    )
     parser.add_argument("--json", action="store_true", help="print as JSON")
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.lab import calibration_text, grasp, grasp_text, readings
+    from tactcad.design.load import DEFAULT_DESIGN
+    from tactcad.lab import calibration_text, grasp, grasp_text, pads, readings
 
     from .progress import slow_work
 
@@ -45,7 +63,10 @@ def run(args: argparse.Namespace) -> int:
         samples = readings.grasps(args.file)
         for g in samples:
             tell(len(found), len(samples), f"sample {g.sample}")
-            found.append(grasp.evaluate(g, known, reference=args.reference, level=args.level))
+            coupling = pads.coupling(args.design or DEFAULT_DESIGN, g.element, args.coupling)
+            found.append(
+                grasp.evaluate(g, known, reference=args.reference, level=args.level, coupling=coupling)
+            )
     sys.stdout.write(
         grasp_text.to_json(found, args.level) if args.json else grasp_text.to_text(found, args.level)
     )

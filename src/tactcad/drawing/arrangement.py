@@ -13,7 +13,8 @@ from .assembly_notes import notes_of
 from .dimension_lines import stacked
 from .extent import projected_box
 from .ink import Item, moved
-from .measure import WHOLE, size
+from .keys import WHOLE
+from .measure import size
 from .page import MARGIN, Page, edges, fewer
 from .paper import A0, A1, A2, A3, A3_UPRIGHT, Paper
 from .plan import Dimension, Linear

@@ -17,7 +17,7 @@ from .callouts import widest
 from .contours import contours
 from .holes import Round
 from .ink import THIN, Arc, Hatch, Point, Stroke
-from .measure import Owner
+from .keys import Owner
 from .plan import Breaks, Callout, Datum, Plan, View
 from .window import clipped, fine
 

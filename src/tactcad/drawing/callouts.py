@@ -12,22 +12,8 @@ from tactcad.parts.description import Hole, Part, Pocket
 from .contours import contours
 from .holes import Group
 from .ink import Point
-from .measure import (
-    OUTER,
-    Difference,
-    Offset,
-    Owner,
-    Quantity,
-    Radius,
-    Slope,
-    Span,
-    Spot,
-    Width,
-    halfway,
-    in_part,
-    level,
-    size,
-)
+from .keys import OUTER, Owner, Quantity, Spot
+from .measure import Difference, Offset, Radius, Slope, Span, Width, halfway, in_part, level, size
 from .plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 

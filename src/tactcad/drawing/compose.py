@@ -12,8 +12,8 @@ from .board import Board
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
 from .ink import CENTRE, THIN, Arc, Hatch, Item, Point, Sheet, Stroke, Text, box, moved, points_of
+from .keys import Values
 from .layout import bounds, layout_faults
-from .measure import Values
 from .paper import A3, A4, Paper, frame
 from .plan import Box, Callout, Plan, View, seen
 from .scale import SERIES, factor, shown

@@ -5,7 +5,8 @@ from __future__ import annotations
 from tactcad.contour import Contour
 from tactcad.parts.description import Part, Pocket
 
-from .measure import OUTER, Owner, in_part
+from .keys import OUTER, Owner
+from .measure import in_part
 
 
 def contours(part: Part) -> list[tuple[Owner, Contour]]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 from .fonts import ink_box
 from .ink import CENTRE, THIN, Arc, Fill, Item, Point, Stroke, Text, arrow, polar, segment
-from .measure import Values
+from .keys import Values
 from .plan import Across, Box, Linear, Running, Side
 
 HEIGHT = 2.5  # of dimension texts, mm

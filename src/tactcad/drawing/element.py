@@ -19,7 +19,8 @@ from tactcad.parts.description import Part
 from .callouts import hole_callout, radius_callout
 from .holes import Group, Round, groups, rounds
 from .ink import Point
-from .measure import OUTER, THICKNESS, Level, Radius, Slope, Span, Spot, conventions, halfway, level, size
+from .keys import OUTER, THICKNESS, Spot
+from .measure import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View
 from .prism import FRONT, side_view
 from .sketch import ALIKE, Sketch, closed, view_box

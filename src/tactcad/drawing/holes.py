@@ -11,7 +11,8 @@ from math import isclose
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Hole, Part, Vector
 
-from .measure import Owner, Quantity, Values, axis_of, size
+from .keys import Owner, Quantity, Values
+from .measure import axis_of, size
 from .plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row

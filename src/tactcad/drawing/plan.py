@@ -9,7 +9,8 @@ from typing import Literal
 from tactcad.parts.description import Characteristic, Part, Vector
 
 from .ink import Point
-from .measure import Measure, Values, Variable
+from .keys import Values, Variable
+from .measure import Measure
 
 Side = Literal["top", "bottom", "left", "right"]
 Box = tuple[float, float, float, float]

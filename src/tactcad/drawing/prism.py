@@ -20,21 +20,8 @@ from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outl
 from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds
 from .ink import Point
-from .measure import (
-    OUTER,
-    PLACES,
-    THICKNESS,
-    Difference,
-    Level,
-    Owner,
-    Span,
-    Spot,
-    conventions,
-    halfway,
-    in_part,
-    level,
-    size,
-)
+from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
+from .measure import Difference, Level, Span, conventions, halfway, in_part, level, size
 from .plan import Datum, Dimension, Linear, Plan, View, seen
 from .running import depth_running, face_running, filled, running_along
 from .section import section_of, section_view

@@ -9,7 +9,8 @@ from tactcad.parts.description import Part
 
 from .holes import Group
 from .ink import Point
-from .measure import OUTER, THICKNESS, Span
+from .keys import OUTER, THICKNESS
+from .measure import Span
 from .plan import Dimension, Running, View, seen
 from .sketch import ALIKE, Coordinate, Sketch
 

@@ -8,7 +8,8 @@ from itertools import count
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
 
-from .measure import Determined, Level, Measure, Owner, Spot, Variable, level, variables
+from .keys import Owner, Spot, Variable
+from .measure import Determined, Level, Measure, level, variables
 from .plan import Dimension, View, seen
 
 ALIKE = 1e-6  # mm: coordinates nearer than this are one

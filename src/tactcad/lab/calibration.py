@@ -4,6 +4,10 @@ The stage's displacement X is shared by two springs, element K and load cell K_c
 K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, and the series spring is
 removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
 as the paper did, puts the force's noise on both axes; that estimate is given beside it.
+
+Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run to run
+(Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load cell is known
+within limits: the interval holds for every cell within them. Readings before contact are found and left out.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from math import inf, isinf
 import numpy as np
 
 from tactcad.design.messages import InputError
+from tactcad.lab.contact import first_in_contact
 from tactcad.lab.readings import CalibrationReadings, groups
 from tactcad.lab.regression import (
     Lines,
@@ -27,7 +32,54 @@ from tactcad.lab.regression import (
     variance_weights,
 )
 
-RUNS_DIFFER = 0.01  # probability below which runs are said to have different slopes
+FALSE_ALARM = 0.01  # chance of naming any outlier in a file without one
+# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing of it.
+# Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
+RUN_SCATTER = 0.01
+# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen, after one
+# measurement with weights and a micrometer.
+CELL_ACCURACY = 0.02
+KNOWN = 1e6  # degrees of freedom of what counts as known
+
+
+@dataclass(frozen=True)
+class LoadCell:
+    """The force sensor's own stiffness and the limits within which it lies, N/mm: stiffness +- half_width."""
+
+    stiffness: float
+    half_width: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.stiffness > 0:
+            raise InputError(
+                "load cell", "stiffness must be positive", value=self.stiffness, legal="above 0 N/mm, or inf"
+            )
+        if not 0 <= self.half_width < self.stiffness:
+            legal = f"from 0 to below {self.stiffness:g} N/mm"
+            raise InputError(
+                "load cell", "its limits must leave it a stiffness", value=self.half_width, legal=legal
+            )
+
+    @classmethod
+    def parse(cls, text: str) -> LoadCell:
+        """From "57.04", "57.04+-1", "57.04+-2%" or "inf". Without limits `CELL_ACCURACY` is assumed."""
+        value, _, limits = text.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
+        try:
+            stiffness = float(value)
+            if not limits:
+                return cls(stiffness, CELL_ACCURACY * stiffness if stiffness < inf else 0.0)
+            half = float(limits.removesuffix("%"))
+        except ValueError:
+            legal = "a stiffness in N/mm with its limits, as in 57.04+-1 or 57.04+-2%, or inf"
+            raise InputError("load cell", "not a stiffness", value=text, legal=legal) from None
+        return cls(stiffness, half * stiffness / 100 if limits.endswith("%") else half)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Softest and stiffest, N/mm."""
+        if isinf(self.stiffness):
+            return self.stiffness, self.stiffness
+        return self.stiffness - self.half_width, self.stiffness + self.half_width
 
 
 @dataclass(frozen=True)
@@ -77,28 +129,41 @@ class ElementCalibration:
 
 def calibrate(
     readings: CalibrationReadings,
-    load_cell: float,
+    load_cell: LoadCell,
     *,
     level: float = 0.95,
     drop_outliers: bool = False,
+    run_scatter: float | None = None,
     tell: Callable[[int, int, str], None] = lambda done, total, what: None,
 ) -> list[ElementCalibration]:
     """One row an element, in the order of the file.
 
-    load_cell: stiffness of the force sensor, N/mm (inf for a rigid one). level: of every interval. tell:
-    hears of every element before it is fitted. Raises InputError where an element's readings are those of no
-    spring.
+    Parameters
+    ----------
+    load_cell : LoadCell
+        Stiffness of the force sensor with its limits (N/mm); inf for a rigid one.
+    level : float
+        Of every interval.
+    run_scatter : float, optional
+        Relative standard deviation of an element's slope from run to run, where it is known. Without it the runs
+        of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
+    tell
+        Hears of every element before it is fitted.
+
+    Raises
+    ------
+    InputError
+        A level or a scatter out of range, an element whose readings are those of no spring.
     """
-    if not load_cell > 0:
-        raise InputError(
-            "load cell", "stiffness must be positive", value=load_cell, legal="above 0 N/mm, or inf"
-        )
     require_level(level)
-    found, parts = [], groups(readings.element)
+    if run_scatter is not None and not 0 <= run_scatter < 1:
+        raise InputError("run scatter", "out of range", value=run_scatter, legal="from 0 to below 1")
+    rows, parts = [], groups(readings.element)
+    alarm = FALSE_ALARM / (2 * len(parts))  # force and signal of every element have their chance
     for number, here in parts:
-        tell(len(found), len(parts), f"element {number}")
-        found.append(_element(readings, number, here, load_cell, level, drop_outliers))
-    return found
+        tell(len(rows), len(parts), f"element {number}")
+        rows.append(_element(readings, number, here, load_cell, level, drop_outliers, run_scatter, alarm))
+    return rows
 
 
 def series_removed(slope: float, load_cell: float) -> float:
@@ -109,30 +174,39 @@ def series_removed(slope: float, load_cell: float) -> float:
 
 
 def _element(
-    all_: CalibrationReadings, number: int, here: np.ndarray, load_cell: float, level: float, drop: bool
+    all_: CalibrationReadings,
+    number: int,
+    here: np.ndarray,
+    load_cell: LoadCell,
+    level: float,
+    drop: bool,
+    run_scatter: float | None,
+    alarm: float,
 ) -> ElementCalibration:
+    notes: list[str] = []
+    here = _touching(all_, here, notes)
     x, run = all_.displacement[here], all_.run[here]
     y = np.column_stack([all_.force[here], all_.signal[here]])
-    bad = [extreme_deviates(x, y[:, k], run) for k in (0, 1)]
+    bad = [extreme_deviates(x, y[:, k], run, alarm) for k in (0, 1)]
     outliers = tuple(
         Outlier(number, int(run[i]), float(x[i]), name, int(all_.line[here[i]]))
-        for name, found in zip(("force", "signal"), bad)
-        for i in found
+        for name, strange in zip(("force", "signal"), bad)
+        for i in strange
     )
-    notes = []
     if drop and outliers:
         keep = np.setdiff1d(np.arange(len(x)), np.union1d(*bad).astype(int))
         x, run, y = x[keep], run[keep], y[keep]
     lines = fit_lines(x, y, run)
     lines = fit_lines(x, y, run, variance_weights(lines, x, 0))
-    covariance, dof = _covariance(lines, notes)
+    covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
     _require_spring(f"{all_.path}: element {number}", x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
     stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
     per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
     averaged = _averaged(x, y, run)
-    paper = _as_paper(*averaged, load_cell, level, notes)
+    cell = load_cell.stiffness
+    paper = _as_paper(*averaged, cell, level, notes)
     return ElementCalibration(
         number,
         len(x),
@@ -142,31 +216,53 @@ def _element(
         per_deflection,
         paper[1],
         per_force,
-        _correlation(k, v, covariance, load_cell),
+        _correlation(k, v, covariance, cell),
         dof,
         float(lines.intercept[1] - v * lines.intercept[0] / k),
-        *_extremes(*averaged, load_cell),
+        *_extremes(*averaged, cell),
         *_linearity(*averaged),
         outliers,
         tuple(notes),
     )
 
 
-def _covariance(lines: Lines, notes: list[str]) -> tuple[np.ndarray, float]:
-    """Covariance of the two slopes; from the scatter between the runs where they differ beyond noise."""
-    if lines.run_p.min() >= RUNS_DIFFER:
-        return lines.covariance, lines.dof
-    slopes = lines.run_slope[np.isfinite(lines.run_slope).all(1)]
-    which = "force" if lines.run_p.argmin() == 0 else "signal"
-    notes.append(
-        f"the runs' {which} slopes differ beyond noise (p {lines.run_p.min():.1g}): interval from "
-        f"{len(slopes)} runs"
-    )
-    return np.cov(slopes.T) / len(slopes), len(slopes) - 1
+def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> np.ndarray:
+    """Which of an element's readings are surely in contact."""
+    x = all_.displacement[here]
+    first = first_in_contact(x, all_.force[here], all_.run[here])
+    kept = here[x >= first - 1e-9]
+    steps = len(np.unique(np.round(x[x < first - 1e-9], 9)))
+    if steps > 1:
+        notes.append(
+            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above the line "
+            "of the others; they are left out"
+        )
+    if not steps:
+        notes.append(
+            "three displacements only: the first is kept, and a gap before contact would bias the slope"
+        )
+    return kept
+
+
+def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tuple[np.ndarray, float]:
+    """Covariance of the two slopes and its degrees of freedom: noise, and what differs from run to run."""
+    if run_scatter is None and lines.runs > 1:
+        return lines.between, lines.runs - 1
+    assumed = RUN_SCATTER if run_scatter is None else run_scatter
+    if run_scatter is None:
+        notes.append(
+            f"one run: {assumed:.1%} of scatter from run to run is assumed, not measured (--run-scatter)"
+        )
+    known = np.diag((assumed * lines.slope) ** 2) * float((lines.run_share**2).sum())
+    noise = lines.covariance
+    total = noise + known
+    with np.errstate(divide="ignore"):  # Welch and Satterthwaite; what is assumed counts as known
+        dof = lines.dof * float((np.diag(total) / np.diag(noise)).min()) ** 2
+    return total, min(dof, KNOWN)
 
 
 def _require_spring(
-    where: str, x: np.ndarray, y: np.ndarray, k: float, half_width: float, load_cell: float
+    where: str, x: np.ndarray, y: np.ndarray, k: float, half_width: float, load_cell: LoadCell
 ) -> None:
     """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series.
 
@@ -184,49 +280,56 @@ def _require_spring(
             f"the force falls with displacement, by {-k:.4g} N/mm: the sign of one column is reversed",
             legal="force and displacement both grow as the element is pressed",
         )
-    if k - half_width >= load_cell:
+    if k - half_width >= load_cell.ends[1]:
         raise InputError(
             where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell:g} N/mm cannot: another "
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: another "
             "unit "
             "of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )
 
 
-def _stiffness(k: float, se: float, load_cell: float, t: float, notes: list[str]) -> Estimate:
-    """The transform of k is monotonic, so the interval's ends transform exactly."""
+def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
+    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that takes it
+    furthest.
+    """
     low, high = k - t * se, k + t * se
+    softest, stiffest = load_cell.ends
     if low <= 0:
         notes.append(
-            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
-            "from zero"
+            "the force does not rise with displacement beyond noise: the data do not tell the stiffness from zero"
         )
-    if high >= load_cell:
+    if high >= softest:
         notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")
-    slope = (1 - k / load_cell) ** -2 if k < load_cell else inf
+    cell = load_cell.stiffness
+    slope = (1 - k / cell) ** -2 if k < cell else inf
     return Estimate(
-        series_removed(k, load_cell),
-        max(series_removed(low, load_cell), 0.0),
-        series_removed(high, load_cell),
+        series_removed(k, cell),
+        max(series_removed(low, stiffest), 0.0),
+        series_removed(high, softest),
         se * slope,
     )
 
 
 def _sensitivities(
-    k: float, v: float, covariance: np.ndarray, load_cell: float, t: float
+    k: float, v: float, covariance: np.ndarray, load_cell: LoadCell, t: float
 ) -> tuple[Estimate, Estimate]:
-    """K_v = v/(1 - k/K_c) and K_v/K = v/k, both by Fieller."""
-    share = 1 - k / load_cell
-    to_share = np.array([[0.0, 1.0], [-1 / load_cell, 0.0]])  # (k, v) -> (v, share)
+    """K_v = v/(1 - k/K_c), for every load cell within its limits, and K_v/K = v/k, both by Fieller."""
     to_force = np.array([[0.0, 1.0], [1.0, 0.0]])
-    found = []
-    for matrix, bottom in ((to_share, share), (to_force, k)):
+
+    def ratio(matrix: np.ndarray, bottom: float) -> Estimate:
         c = matrix @ covariance @ matrix.T
-        ratio = v / bottom
-        se = np.sqrt(max(c[0, 0] - 2 * ratio * c[0, 1] + ratio * ratio * c[1, 1], 0.0)) / abs(bottom)
-        found.append(Estimate(ratio, *ratio_interval(v, bottom, c, t), float(se)))
-    return found[0], found[1]
+        value = v / bottom
+        se = np.sqrt(max(c[0, 0] - 2 * value * c[0, 1] + value * value * c[1, 1], 0.0)) / abs(bottom)
+        return Estimate(value, *ratio_interval(v, bottom, c, t), float(se))
+
+    def per_deflection(cell: float) -> Estimate:
+        return ratio(np.array([[0.0, 1.0], [-1 / cell, 0.0]]), 1 - k / cell)  # (k, v) -> (v, 1 - k/K_c)
+
+    best, *ends = (per_deflection(cell) for cell in (load_cell.stiffness, *load_cell.ends))
+    low, high = (min(e.low for e in ends), max(e.high for e in ends))
+    return Estimate(best.value, low, high, best.standard_error), ratio(to_force, k)
 
 
 def _correlation(k: float, v: float, covariance: np.ndarray, load_cell: float) -> float:

@@ -11,9 +11,9 @@ from tactcad.design.csv_table import LARGEST_FILE, Field, refuse_duplicates
 from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab.calibration import ElementCalibration, Estimate
-from tactcad.lab.grasp import Sensitivity
+from tactcad.lab.calibration import ElementCalibration, Estimate, LoadCell
 from tactcad.lab.plain import plain
+from tactcad.lab.sensitivity import Sensitivity
 
 SCHEMA = "tactcad-calibration-1"
 KNOWN_EXACTLY = 1e6  # degrees of freedom of a table that states no uncertainty
@@ -25,9 +25,12 @@ SENSITIVITY_SE = Field("signal_per_deflection_se", "V/mm", 0, 1e6)
 CORRELATION = Field("correlation", "1", -1, 1)
 DOF = Field("dof", "1", 1, 1e9)
 LEAST_SENSITIVITY = 1e-6  # V/mm: a microvolt at a millimetre
+RIGID = 1e9  # N/mm: what a file gives for a rigid load cell
+LOAD_CELL = Field("load_cell_N_per_mm", "N/mm", 1e-6, RIGID)
+LOAD_CELL_HALF_WIDTH = Field("load_cell_half_width", "N/mm", 0, 1e9)
 
 
-def to_text(rows: list[ElementCalibration], load_cell: float, level: float) -> str:
+def to_text(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -> str:
     """A table for the terminal, outliers and notes below."""
     head = (
         "element",
@@ -70,8 +73,10 @@ def to_text(rows: list[ElementCalibration], load_cell: float, level: float) -> s
     lines = ["  ".join(cell.rjust(w) for cell, w in zip(line, width)) for line in [head, *body]]
     lines += [
         "",
-        f"load cell in series: {load_cell:g} N/mm; K, K_v, K_v/K by weighted fit of all runs; 'as "
-        "paper': averaged runs, force against deflection",
+        f"load cell in series: {load_cell.stiffness:g} N/mm, and the intervals hold for every one from "
+        f"{load_cell.ends[0]:.4g} to {load_cell.ends[1]:.4g} N/mm (--load-cell)",
+        "K, K_v, K_v/K by weighted fit of all runs from the second displacement on (contact may begin within the first "
+        "step), intervals by the scatter from run to run; 'as paper': averaged runs, force against deflection",
     ]
     for r in rows:
         lines += [
@@ -87,11 +92,12 @@ def _range(e: Estimate, digits: int = 3) -> str:
     return f"{e.low:.{digits}f} to {e.high:.{digits}f}"
 
 
-def to_json(rows: list[ElementCalibration], load_cell: float, level: float) -> str:
+def to_json(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -> str:
     """Everything, infinities as text."""
     data = {
         "schema": SCHEMA,
-        "load_cell_stiffness_N_per_mm": load_cell,
+        "load_cell_stiffness_N_per_mm": load_cell.stiffness,
+        "load_cell_half_width_N_per_mm": load_cell.half_width,
         "level": level,
         "units": "mm, N, V",
         "elements": rows,
@@ -99,7 +105,7 @@ def to_json(rows: list[ElementCalibration], load_cell: float, level: float) -> s
     return json.dumps(plain(data), indent=1, allow_nan=False) + "\n"
 
 
-def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
+def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
     """Table 1's columns with standard errors: what `read` takes. Raises CheckFailure where a stiffness is
     not bounded.
     """
@@ -122,9 +128,12 @@ def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
         "dof",
         "signal_per_force_V_per_N",
         "zero_signal_V",
+        "load_cell_N_per_mm",
+        "load_cell_half_width",
     )
     lines = [
-        f"# calibration by tactcad calibrate; load cell {load_cell:g} N/mm in series removed",
+        f"# calibration by tactcad calibrate; load cell {load_cell.stiffness:g} +- {load_cell.half_width:.4g} N/mm in "
+        "series removed",
         ",".join(names),
     ]
     for r in rows:
@@ -144,6 +153,8 @@ def to_csv(rows: list[ElementCalibration], load_cell: float) -> str:
                     r.dof,
                     r.signal_per_force.value,
                     r.zero_signal,
+                    min(load_cell.stiffness, RIGID),
+                    load_cell.half_width,
                 )
             )
         )
@@ -159,7 +170,9 @@ def read(path: str) -> Sensitivity:
     if path.endswith(".json"):
         return _from_json(path)
     rows = read_table(
-        path, (ELEMENT, STIFFNESS, SENSITIVITY), (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF)
+        path,
+        (ELEMENT, STIFFNESS, SENSITIVITY),
+        (STIFFNESS_SE, SENSITIVITY_SE, CORRELATION, DOF, LOAD_CELL, LOAD_CELL_HALF_WIDTH),
     )
     refuse_duplicates(rows, ("element",))
     for i in np.flatnonzero(np.abs(rows.values(SENSITIVITY.name)) < LEAST_SENSITIVITY)[:1]:
@@ -177,6 +190,8 @@ def read(path: str) -> Sensitivity:
         pick("signal_per_deflection_se", 0.0),
         pick("correlation", 0.0),
         pick("dof", KNOWN_EXACTLY),
+        pick("load_cell_N_per_mm", RIGID),
+        pick("load_cell_half_width", 0.0),
         path,
     )
 
@@ -196,17 +211,29 @@ def _from_json(path: str) -> Sensitivity:
                 e["signal_per_deflection"]["standard_error"],
                 e["correlation"],
                 e["dof"],
+                min(float(data["load_cell_stiffness_N_per_mm"]), RIGID),
+                float(data.get("load_cell_half_width_N_per_mm", 0.0)),
             ]
             for e in elements
         ]
-        values = np.array(columns, dtype=float).reshape(-1, 7)
+        values = np.array(columns, dtype=float).reshape(-1, 9)
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise InputError(
             path, "not a calibration by tactcad calibrate --json", legal=f"schema {SCHEMA}"
         ) from None
     if not len(values):
         raise InputError(path, "a calibration of no element", legal="one element at least")
-    columns = (ELEMENT, STIFFNESS, STIFFNESS_SE, SENSITIVITY, SENSITIVITY_SE, CORRELATION, DOF)
+    columns = (
+        ELEMENT,
+        STIFFNESS,
+        STIFFNESS_SE,
+        SENSITIVITY,
+        SENSITIVITY_SE,
+        CORRELATION,
+        DOF,
+        LOAD_CELL,
+        LOAD_CELL_HALF_WIDTH,
+    )
     for field, column in zip(columns, values.T):
         for i in np.flatnonzero(~field.allowed(column))[:1]:
             raise InputError(path, f"{field.name} is not usable", value=float(column[i]), legal=field.legal)

@@ -7,67 +7,28 @@ and f = K s (force) per unit approach, equation (1) is f + x s = the same for al
 pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All elements together give
 the x that makes f + x s most equal; pairs that share a reference element are correlated, and this is their
 generalised least squares.
+
+Two things act on all elements at once and are known within limits only: the load cell of the calibration, and how far
+the pads feel each other through the object, from separate springs to an elastic half-space. Every interval
+holds for all of that: it is the hull of the intervals at the limits.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, isinf, pi, tan
+from math import inf, isinf
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc
+from scipy.special import fdtrc
 
 from tactcad.design.messages import InputError
+from tactcad.lab.combine import Interval, Slopes, combine, hull, scatter
 from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import require_level, t_quantile
+from tactcad.lab.sensitivity import Sensitivity
 
 STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
-DISAGREE = 0.01  # probability below which the elements are said to disagree
-ANGLES = 721  # scan of the projective line of K_obj
-
-
-@dataclass(frozen=True)
-class Sensitivity:
-    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of
-    freedom.
-    """
-
-    element: np.ndarray
-    stiffness: np.ndarray
-    stiffness_se: np.ndarray
-    signal_per_deflection: np.ndarray
-    signal_per_deflection_se: np.ndarray
-    correlation: np.ndarray
-    dof: np.ndarray
-    path: str = "calibration"
-
-
-@dataclass(frozen=True)
-class Interval:
-    """K_obj (N/mm) within [low, high]; high is inf and low 0 where the data do not bound it.
-
-    estimate may be negative or inf: then no soft object explains the readings. empty: no K_obj >= 0 lies
-    within it.
-    """
-
-    estimate: float
-    low: float
-    high: float
-    empty: bool = False
-
-    @property
-    def bounded(self) -> bool:
-        return not self.empty and self.low > 0 and not isinf(self.high)
-
-    @property
-    def verdict(self) -> str:
-        if self.empty:
-            return "no positive K_obj fits: calibration and grasp contradict each other"
-        if self.bounded:
-            return "bounded"
-        if isinf(self.high):
-            return "not bounded at all" if self.low <= 0 else "bounded from below only: at least this stiff"
-        return "bounded from above only: at most this stiff"
+COUPLED = (0.25, 0.5, 1.0)  # shares of the coupling that are tried: K_obj need not be extreme at the largest
 
 
 @dataclass(frozen=True)
@@ -80,6 +41,7 @@ class Pair:
     ratio_low: float
     ratio_high: float
     object: Interval
+    object_by_noise: Interval  # noise and calibration alone
     condition: float  # of K_obj in R, at the estimate
 
 
@@ -90,6 +52,8 @@ class Grasp:
     sample: int
     pairs: tuple[Pair, ...]
     combined: Interval
+    combined_by_noise: Interval  # noise and calibration alone
+    combined_by_limits: tuple[tuple[str, Interval], ...]  # what is known within limits, one after the other
     noise: float  # of one signal about the common approach, V
     dof: int
     disagreement_p: float  # of so much disagreement between the elements by noise alone
@@ -99,29 +63,29 @@ class Grasp:
     notes: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Slopes:
-    """Per unit approach: deflection s and force f by element, covariance of (f, s) by element, [n, 2, 2]."""
-
-    element: np.ndarray
-    s: np.ndarray
-    f: np.ndarray
-    from_signal: np.ndarray
-    from_calibration: np.ndarray
-    signal_dof: int
-    calibration_dof: np.ndarray
-
-    @property
-    def covariance(self) -> np.ndarray:
-        return self.from_signal + self.from_calibration
-
-
 def evaluate(
-    readings: GraspReadings, calibration: Sensitivity, *, reference: int | None = None, level: float = 0.95
+    readings: GraspReadings,
+    calibration: Sensitivity,
+    *,
+    reference: int | None = None,
+    level: float = 0.95,
+    coupling: np.ndarray | None = None,
 ) -> Grasp:
-    """K_obj of one sample. The reference is the stiffest element of those read, unless given.
+    """K_obj of one sample.
 
-    Raises InputError: an element without calibration, fewer than two elements or three loads in contact.
+    Parameters
+    ----------
+    reference : int, optional
+        Number of the reference element; by default the stiffest of those read.
+    coupling : array, [element, element], optional
+        Largest displacement of a pad by the force on another, over that by the same force on itself, in the order of
+        `readings.element`; the object's is taken to lie between nothing and this. Without it the pads are taken
+        to be on separate springs.
+
+    Raises
+    ------
+    InputError
+        An element without calibration, fewer than two elements or three loads in contact.
     """
     require_level(level)
     touching = readings.load > 0
@@ -138,14 +102,14 @@ def evaluate(
             f"element {stranger} of the grasp is not in {calibration.path}",
             legal=str(calibration.element.tolist()),
         )
-    slopes, noise = common_slopes(readings.element, readings.signal[:, touching], calibration)
+    signal = readings.signal[:, touching]
+    slopes, noise = common_slopes(readings.element, signal, calibration)
     for still in slopes.element[slopes.s == 0][:1]:
         raise InputError(
             f"{readings.path}: sample {readings.sample}",
             f"element {still}: its signal does not change with the load",
         )
-    stiffness = slopes.f / slopes.s
-    number = int(readings.element[np.argmax(stiffness)]) if reference is None else reference
+    number = int(readings.element[np.argmax(slopes.f / slopes.s)]) if reference is None else reference
     if number not in readings.element:
         raise InputError(
             f"{readings.path}: reference",
@@ -154,17 +118,21 @@ def evaluate(
             legal=str(readings.element.tolist()),
         )
     r = int(np.flatnonzero(readings.element == number)[0])
-    others = [i for i in np.argsort(-stiffness, kind="stable") if i != r]
-    pairs = tuple(_pair(slopes, int(m), r, level) for m in others)
+    others = [i for i in np.argsort(-slopes.f / slopes.s, kind="stable") if i != r]
+    limits = _limits(readings.element, signal, calibration, slopes, coupling)
+    everywhere = [at for group in limits.values() for at in group]
+    pairs = tuple(_pair(slopes, everywhere, int(m), r, level) for m in others)
     combined, p, widened = combine(slopes, level)
+    by_limits = tuple(
+        (name, hull(combined, [combine(at, level)[0] for at in group])) for name, group in limits.items()
+    )
     notes = []
     dropped = int((~touching).sum())
     if dropped:
         notes.append(
-            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
-            "enter"
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter"
         )
-    notes += _strays(readings.element, readings.signal[:, touching])
+    notes += _strays(readings.element, signal)
     if widened > 1:
         notes.append(
             f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened "
@@ -173,7 +141,9 @@ def evaluate(
     return Grasp(
         readings.sample,
         pairs,
+        hull(combined, [i for _, i in by_limits]),
         combined,
+        by_limits,
         noise,
         slopes.signal_dof,
         p,
@@ -182,6 +152,37 @@ def evaluate(
         dropped,
         tuple(notes),
     )
+
+
+def _limits(
+    element: np.ndarray,
+    signal: np.ndarray,
+    calibration: Sensitivity,
+    slopes: Slopes,
+    coupling: np.ndarray | None,
+) -> dict[str, list[Slopes]]:
+    """The slopes at the limits of what acts on all elements, by name; the later names on top of the earlier ones."""
+    at: dict[str, list[Slopes]] = {}
+    cells = [slopes]
+    if (calibration.load_cell_half_width > 0).any():
+        cells += [
+            common_slopes(element, signal, calibration.at_load_cell_limit(sign))[0] for sign in (-1.0, 1.0)
+        ]
+        at["with the load cell's limits"] = cells[1:]
+    if coupling is not None:
+        at["with coupling of the pads too"] = [
+            there.coupled(share * shape)
+            for shape in (coupling, _even(coupling))
+            for share in COUPLED
+            for there in cells
+        ]
+    return at
+
+
+def _even(coupling: np.ndarray) -> np.ndarray:
+    """The same coupling between any two pads, as strong as the given one is on average."""
+    n = len(coupling)
+    return np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))
 
 
 def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitivity) -> tuple[Slopes, float]:
@@ -233,43 +234,14 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
     return notes
 
 
-def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> tuple[Interval, float, float]:
-    """K_obj that makes f + x s most equal over the members (default all), its interval, p of their
-    disagreement, and the factor by which that widens the standard error.
-
-    Two members: the interval is Fieller's. The line of x is closed at infinity (x = scale tan(angle)), so
-    that an interval that runs through infinity is found like any other.
-    """
-    m = list(range(len(slopes.s))) if members is None else members
-    f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
-    scale = float(np.median(np.abs(f / s)))
-    # without noise in K and K_v, f + x s of an element has no variance at x = -K: hold it above zero there
-    smallest = np.maximum(1e-14 * c[:, 0, 0], np.finfo(float).tiny)
-    angle = np.linspace(-pi / 2, pi / 2, ANGLES)
-
-    def misfit(a: np.ndarray) -> np.ndarray:
-        cos, sin = np.cos(a)[:, None], scale * np.sin(a)[:, None]
-        z = cos * f + sin * s
-        w = 1 / np.maximum(cos**2 * c[:, 0, 0] + 2 * cos * sin * c[:, 0, 1] + sin**2 * c[:, 1, 1], smallest)
-        mean = (w * z).sum(1) / w.sum(1)
-        return (w * (z - mean[:, None]) ** 2).sum(1)
-
-    best = _minimum(misfit, angle)
-    least = float(misfit(np.array([best]))[0])
-    extra = len(m) - 2
-    p = float(chdtrc(extra, least)) if extra > 0 else 1.0
-    widened = (least / extra) ** 0.5 if p < DISAGREE else 1.0
-    dof = extra if widened > 1 else _satterthwaite(slopes, m, scale * tan(best))
-    limit = least + (t_quantile(level, dof) * widened) ** 2
-    return _interval(misfit, best, limit, scale), p, widened
-
-
-def _pair(slopes: Slopes, m: int, r: int, level: float) -> Pair:
+def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) -> Pair:
     object_, _, _ = combine(slopes, level, [m, r])
+    everywhere = hull(object_, [combine(at, level, [m, r])[0] for at in limits])
     ratio = slopes.s[m] / slopes.s[r]
     k_m, k_r = slopes.f[m] / slopes.s[m], slopes.f[r] / slopes.s[r]
     var = [slopes.covariance[i][1, 1] / slopes.s[i] ** 2 for i in (m, r)]
-    half = t_quantile(level, _satterthwaite(slopes, [m, r], 0.0)) * sum(var) ** 0.5 * abs(ratio)
+    _, dof = scatter(slopes, [m, r], slopes.covariance[[m, r]], 0.0)
+    half = t_quantile(level, dof) * sum(var) ** 0.5 * abs(ratio)
     x = object_.estimate
     condition = (
         inf
@@ -284,6 +256,7 @@ def _pair(slopes: Slopes, m: int, r: int, level: float) -> Pair:
         float(ratio),
         float(ratio - half),
         float(ratio + half),
+        everywhere,
         object_,
         float(condition),
     )
@@ -298,68 +271,3 @@ def _row(calibration: Sensitivity, number: int) -> int:
             legal=str(calibration.element.tolist()),
         )
     return int(found[0])
-
-
-def _satterthwaite(slopes: Slopes, m: list[int], x: float) -> float:
-    """Effective degrees of freedom of f + x s, signal and calibration together (Welch-Satterthwaite)."""
-    along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
-    signal = np.array([along @ slopes.from_signal[i] @ along for i in m])
-    parts = np.array([along @ slopes.from_calibration[i] @ along for i in m])
-    weight = 1 / np.maximum(signal + parts, np.finfo(float).tiny)
-    weight = weight * (
-        1 - weight / weight.sum()
-    )  # what each element's noise does to the contrast between them
-    bottom = (weight * signal).sum() ** 2 / slopes.signal_dof + (
-        (weight * parts) ** 2 / slopes.calibration_dof[m]
-    ).sum()
-    if bottom == 0:  # readings and calibration without any scatter
-        return float(slopes.signal_dof)
-    return float((weight * (signal + parts)).sum() ** 2 / bottom)
-
-
-def _minimum(misfit, angle: np.ndarray) -> float:
-    """Least point of a function on the closed line of angles, by ever finer scans."""
-    step = angle[1] - angle[0]
-    best = float(angle[np.argmin(misfit(angle))])
-    for _ in range(12):
-        fine = best + np.linspace(-step, step, 41)
-        best = float(fine[np.argmin(misfit(fine))])
-        step /= 15
-    return best
-
-
-def _interval(misfit, best: float, limit: float, scale: float) -> Interval:
-    """The connected set about `best` where the misfit keeps below the limit, cut to K_obj >= 0."""
-    edges = []
-    for direction in (-1.0, 1.0):
-        offset = np.linspace(0.0, pi, 2 * ANGLES)
-        outside = np.flatnonzero(misfit(best + direction * offset) > limit)
-        if not len(outside):
-            return Interval(_value(best, scale), 0.0, inf)
-        inner, outer = offset[max(outside[0] - 1, 0)], offset[outside[0]]
-        for _ in range(12):
-            fine = np.linspace(inner, outer, 33)
-            first = max(int(np.argmax(misfit(best + direction * fine) > limit)), 1)
-            inner, outer = fine[first - 1], fine[first]
-        edges.append(direction * inner)
-    estimate = _value(best, scale)
-    # On the line of angles K_obj >= 0 is [0, pi/2], repeated every pi.
-    start = best - pi * np.floor((best + pi / 2) / pi)
-    low, high = start + edges[0], start + edges[1]
-    for shift in (0.0, pi, -pi):
-        a, b = max(low, shift), min(high, shift + pi / 2)
-        if a <= b:
-            return Interval(
-                estimate,
-                _value(a - shift, scale) if a > shift else 0.0,
-                inf if b >= shift + pi / 2 else _value(b - shift, scale),
-            )
-    return Interval(estimate, inf, 0.0, empty=True)
-
-
-def _value(angle: float, scale: float) -> float:
-    """K_obj of an angle; inf at a right angle."""
-    reduced = angle - pi * np.floor((angle + pi / 2) / pi)
-    return (
-        inf if abs(reduced - pi / 2) < 1e-15 or abs(reduced + pi / 2) < 1e-15 else float(scale * tan(reduced))
-    )

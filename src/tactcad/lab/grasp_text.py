@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from math import isinf
 
-from tactcad.lab.grasp import Grasp, Interval
+from tactcad.lab.combine import Interval
+from tactcad.lab.grasp import Grasp
 from tactcad.lab.plain import plain
 
 SCHEMA = "tactcad-stiffness-1"
@@ -54,6 +55,8 @@ def to_text(found: list[Grasp], level: float) -> str:
             f"slopes over {g.loads} loads; noise of one signal {g.noise * 1e3:.3g} mV ({g.dof} degrees "
             "of freedom); the combined value uses all elements at once, with the covariance of pairs "
             "that share the reference",
+            f"K_obj of all elements by noise and calibration alone: {_interval(g.combined_by_noise)} N/mm",
+            *(f"  {name}: {_interval(i)} N/mm" for name, i in g.combined_by_limits),
         ]
         lines += [*g.notes, ""]
     return "\n".join(lines)

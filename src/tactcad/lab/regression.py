@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import inf, sqrt
 
 import numpy as np
-from scipy.special import fdtrc, stdtrit
+from scipy.special import stdtrit
 
 from tactcad.design.messages import InputError
 
@@ -19,8 +19,9 @@ from tactcad.design.messages import InputError
 class Lines:
     """Common slopes of the responses y[:, k] against x, with one intercept a run.
 
-    covariance: of the slopes, [k, k]; residual: [reading, k]; leverage: by reading; dof: degrees of freedom.
-    run_slope: [run, k]; run_p: probability of so much scatter between the runs' slopes by noise alone, by k.
+    covariance: of the slopes by the scatter about the lines, [k, k], with dof degrees of freedom; residual:
+    [reading, k]; leverage: by reading. run_slope: [run, k]; between: covariance of the common slopes by the
+    scatter of the runs' own slopes, [k, k], with one degree of freedom fewer than runs (nan with one run).
     """
 
     slope: np.ndarray
@@ -31,7 +32,13 @@ class Lines:
     weight: np.ndarray
     dof: int
     run_slope: np.ndarray
-    run_p: np.ndarray
+    run_share: np.ndarray  # of each run in the common slopes
+    between: np.ndarray
+
+    @property
+    def runs(self) -> int:
+        """Runs that have a slope of their own."""
+        return len(self.run_slope)
 
 
 def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
@@ -57,8 +64,10 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
     dof = len(x) - len(runs) - 1
     scatter = (residual * w[:, None]).T @ residual / dof
     has_slope = sxx > 0
-    run_slope = np.full_like(sxy, np.nan)
-    run_slope[has_slope] = sxy[has_slope] / sxx[has_slope, None]
+    run_slope = sxy[has_slope] / sxx[has_slope, None]
+    share = sxx[has_slope] / sxx.sum()
+    off = run_slope - slope
+    between = (off * share[:, None]).T @ off / max(len(share) - 1, 1) if len(share) > 1 else scatter * np.nan
     return Lines(
         slope,
         scatter / sxx.sum(),
@@ -68,31 +77,19 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
         w,
         dof,
         run_slope,
-        _homogeneity(run_slope[has_slope], sxx[has_slope], slope, scatter, dof, rounding(y)),
+        share,
+        between,
     )
-
-
-def _homogeneity(
-    run_slope: np.ndarray,
-    sxx: np.ndarray,
-    slope: np.ndarray,
-    scatter: np.ndarray,
-    dof: int,
-    smallest: np.ndarray,
-) -> np.ndarray:
-    """F test of one slope for all runs, by response; 1 with a single run."""
-    extra = len(sxx) - 1
-    rest = dof - extra
-    if extra < 1 or rest < 1:
-        return np.ones(len(slope))
-    between = (sxx[:, None] * (run_slope - slope) ** 2).sum(0)
-    within = np.maximum(np.diag(scatter) * dof - between, rest * smallest**2)
-    return fdtrc(extra, rest, between / extra / (within / rest))
 
 
 def rounding(y: np.ndarray) -> np.ndarray:
     """Scatter below which the readings of each response y[:, k] differ by rounding only."""
     return np.maximum(1e-13 * np.abs(y).max(0), np.finfo(float).tiny ** 0.5)
+
+
+# Squared residuals count up to so many times their median. Of noise that grows from nothing with the reading
+# (u^2, u even from 0 to 1) the largest expected square is some 8 times the median one.
+STRANGE = 10.0
 
 
 def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
@@ -104,6 +101,7 @@ def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
     """
     u = np.abs(x - x.min()) / max(np.ptp(x), np.finfo(float).tiny)
     square = lines.residual[:, k] ** 2 / np.maximum(1 - lines.leverage, 0.1)
+    square = np.minimum(square, STRANGE * np.median(square))  # one bad reading is no noise that grows
     design = np.column_stack([np.ones_like(u), u * u])
     (a, b), *_ = np.linalg.lstsq(design, square, rcond=None)
     if b <= 0 or a <= 0:
@@ -140,11 +138,13 @@ def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) 
 def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float = 0.01) -> list[int]:
     """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
 
-    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good. The
+    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good. Each
+    reading is held against the noise at its own displacement, which is fitted as for the line's weights. The
     search ends after PATIENCE readings in a row that the line does explain.
     """
     n = len(x)
-    left = _Left(x, y, run)
+    lines = fit_lines(x, y[:, None], run)
+    left = _Left(x, y, run, variance_weights(lines, x, 0))
     smallest = float(rounding(y[:, None])[0])
     removed: list[int] = []
     named = 0
@@ -177,36 +177,38 @@ class _Left:
     step costs a few sums and no fit.
     """
 
-    def __init__(self, x: np.ndarray, y: np.ndarray, run: np.ndarray) -> None:
-        _, self.run, count = np.unique(run, return_inverse=True, return_counts=True)
-        self.runs = len(count)
-        self.count = count[self.run].astype(float)  # readings in each one's run
-        self.x, yc = (v - np.bincount(self.run, v)[self.run] / self.count for v in (x, y))
-        self.sxx = float(self.x @ self.x)
-        self.residual = yc - (self.x @ yc / self.sxx if self.sxx else 0.0) * self.x
+    def __init__(self, x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> None:
+        runs, self.run = np.unique(run, return_inverse=True)
+        self.runs = len(runs)
+        self.w = weight / weight.mean()
+        self.total = np.bincount(self.run, self.w)[self.run]  # weight of each one's run
+        self.x, yc = (v - np.bincount(self.run, self.w * v)[self.run] / self.total for v in (x, y))
+        self.sxx = float(self.w @ self.x**2)
+        self.residual = yc - ((self.w * self.x) @ yc / self.sxx if self.sxx else 0.0) * self.x
 
     def sum_of_squares(self) -> float:
-        return float(self.residual @ self.residual)
+        return float(self.w @ self.residual**2)
 
     def worst(self) -> tuple[int, float]:
-        """The reading with the largest residual for its leverage, and that ratio."""
-        unexplained = np.maximum(1 - 1 / self.count - self.x**2 / self.sxx, 1e-12)
-        square = self.residual**2 / unexplained
+        """The reading with the largest weighted residual for its leverage, and that ratio."""
+        unexplained = np.maximum(1 - self.w * (1 / self.total + self.x**2 / self.sxx), 1e-12)
+        square = self.w * self.residual**2 / unexplained
         i = int(square.argmax())
         return i, sqrt(square[i])
 
     def remove(self, i: int) -> None:
         """Take reading i out; it stays in the arrays as a run of its own without residual."""
-        x, r, n = float(self.x[i]), float(self.residual[i]), float(self.count[i])
+        x, r, w, total = (float(v[i]) for v in (self.x, self.residual, self.w, self.total))
         here = self.run == self.run[i]
-        self.run[i], self.x[i], self.residual[i], self.count[i] = -1 - i, 0.0, 0.0, 1.0
-        if n == 1:
+        self.run[i], self.x[i], self.residual[i], self.total[i] = -1 - i, 0.0, 0.0, w
+        here[i] = False
+        if not here.any():
             self.runs -= 1
             return
-        here[i] = False
-        self.sxx -= x * x * n / (n - 1)
-        turned = -x * r * n / (n - 1) / self.sxx if self.sxx > 0 else 0.0  # what the slope gains
+        rest = total - w
+        self.sxx -= w * x * x * total / rest
+        turned = -w * x * r * total / rest / self.sxx if self.sxx > 0 else 0.0  # what the slope gains
         self.residual -= turned * self.x
-        self.residual[here] += (r - turned * x) / (n - 1)
-        self.x[here] += x / (n - 1)
-        self.count[here] = n - 1
+        self.residual[here] += w * (r - turned * x) / rest
+        self.x[here] += w * x / rest
+        self.total[here] = rest

@@ -8,6 +8,7 @@ import numpy as np
 
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
+from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
@@ -78,9 +79,6 @@ def from_design(design: Design) -> ArrayModel:
             raise InputError(f"design {design.name}", f"has no [{name}] table, which a validation needs")
     layout = Layout(design)
     places = layout.elements
-    side = np.array(
-        [1.0 if p.row == 1 else -1.0 for p in places]
-    )  # row two is row one's kind turned by 180 degrees
     gauge, readout, rig = design.gauge, design.readout, design.calibration
     return ArrayModel(
         design.name,
@@ -90,8 +88,7 @@ def from_design(design: Design) -> ArrayModel:
         hinge_section(layout, places).with_(pad_height=0.0, friction=0.0),
         design.element.pad_length,
         design.element.pad_height,
-        side * design.array.row_pitch / 2,
-        side * np.array([p.y for p in places]),
+        *pads.places(layout),
         _pick(Gauge, gauge),
         _pick(ReadOut, readout),
         Power(

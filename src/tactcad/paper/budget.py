@@ -12,15 +12,16 @@ from math import inf, log, log10, nan, radians, tan
 
 import numpy as np
 
+from tactcad.lab.calibration import CELL_ACCURACY
 from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout, self_heating
+from tactcad.mechanics.sample_coupling import coupling
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 from tactcad.paper.residuals import WIRE_TOLERANCE
-from tactcad.paper.sample_coupling import coupling
 
 MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
 ROOM_SWING = 5.0  # K; hardware's own figure
@@ -30,7 +31,6 @@ SAMPLE_TEST_TIME, GRASP_TIME = (
     300.0,
 )  # s, assumed: reading a step in the sample test, a grasp with its weights
 SLIPPERY = 0.02  # friction of a ball-bearing roller under the force sensor, chosen
-CELL_ACCURACY = 0.02  # to which a load cell's own stiffness is known after one measurement, chosen
 CLOSED_FORM_ERROR = 0.0035  # goal that the closed forms are held to against finite elements
 
 

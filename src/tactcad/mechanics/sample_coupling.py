@@ -69,6 +69,17 @@ def influence(
     return np.array([share(x, y) for x, y in zip(dx, dy)])
 
 
+def shares_between(
+    x: np.ndarray, y: np.ndarray, length: float, width: float, thickness: float, poisson: float
+) -> np.ndarray:
+    """`influence` of every pad at x, y (mm) on every other, [pad, pad]; 1 on the diagonal."""
+    dx, dy = np.abs(x[:, None] - x[None, :]), np.abs(y[:, None] - y[None, :])
+    places, index = np.unique(
+        np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True
+    )
+    return influence(places[:, 0], places[:, 1], length, width, thickness, poisson)[index].reshape(dx.shape)
+
+
 def coupling(
     K: np.ndarray,
     x: np.ndarray,
@@ -83,12 +94,7 @@ def coupling(
     """Elements K (N/mm) at x, y (mm) pressed together into a sample that is object_stiffness under one
     pad alone.
     """
-    dx, dy = np.abs(x[:, None] - x[None, :]), np.abs(y[:, None] - y[None, :])
-    places, index = np.unique(
-        np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True
-    )
-    shares = influence(places[:, 0], places[:, 1], length, width, thickness, poisson)
-    A = shares[index].reshape(dx.shape) / object_stiffness
+    A = shares_between(x, y, length, width, thickness, poisson) / object_stiffness
     force = np.linalg.solve(np.diag(1 / K) + A, np.ones(len(K)))
     alone = lumped.element_deflection(K, object_stiffness, 1.0)
     deflection = force / K

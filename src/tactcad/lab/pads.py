@@ -1,0 +1,65 @@
+"""Where the pads of an array stand, and how far they can feel each other through what they press on."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import inf
+
+import numpy as np
+
+from tactcad.design.messages import InputError
+from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+
+INCOMPRESSIBLE = 0.5  # of soft tissue and rubber; a half-space's shares do not depend on it
+
+
+def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of the pads' centres, mm, in the order of the elements; row two is row one turned by 180 degrees."""
+    side = np.array([1.0 if p.row == 1 else -1.0 for p in layout.elements])
+    y = np.array([p.y for p in layout.elements])
+    return side * layout.design.array.row_pitch / 2, side * y
+
+
+def coupling(source: str, element: np.ndarray, share: float) -> np.ndarray | None:
+    """Displacement of each pad by the force on another over that by the same force on itself, [element, element].
+
+    Parameters
+    ----------
+    source : str
+        The design, by name or path.
+    element : array of int
+        Numbers of the elements.
+    share : float
+        Of the coupling by an elastic half-space, 0 to 1; 0 gives None.
+
+    Raises
+    ------
+    InputError
+        A share out of range, an element that the design does not have.
+    """
+    if not 0 <= share <= 1:
+        raise InputError("coupling", "out of range", value=share, legal="from 0 to 1")
+    if share == 0:
+        return None
+    x, y, number, length, width = _pads(source)
+    place = {int(n): i for i, n in enumerate(number)}
+    for n in element:
+        if int(n) not in place:
+            raise InputError(
+                "element",
+                f"design {source} has no such element, so nobody knows where its pad stands",
+                value=int(n),
+                legal=f"{number.tolist()}, another --design, or --coupling 0",
+            )
+    rows = [place[int(n)] for n in element]
+    return share * shares_between(x[rows], y[rows], length, width, inf, INCOMPRESSIBLE)
+
+
+@lru_cache(maxsize=4)
+def _pads(source: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
+    design = load(source)
+    layout = Layout(design)
+    number = np.array([p.number for p in layout.elements])
+    return *places(layout), number, design.element.pad_length, design.sheet.thickness
