@@ -55,6 +55,12 @@ def calibration() -> list[Finding]:
     return check_calibration(variant({"calibration.travel": 0.2}))
 
 
+def rigidity() -> list[Finding]:
+    from tactcad.checks.rigidity import check_rigidity
+
+    return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
+
+
 def brep(shape: Callable, part=None) -> list[Finding]:
     from test_brep_and_mesh import BLOCK
 
@@ -296,6 +302,7 @@ BAD: dict[str, Bad] = {
         lambda: clearance(array__row_pitch=2.2, array__row_arms=[[4], [4]]),
         CLEARANCE,
     ),
+    "deflection": Bad("rigidity", "a holder's lid of 2 mm", rigidity, "tests/checks/test_rigidity.py"),
     "calibration": Bad(
         "calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"
     ),

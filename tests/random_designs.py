@@ -144,8 +144,8 @@ def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
     return "", names, [str(f) for f in report.failures if f not in shop]
 
 
-# Rules of the shop's file: a design may break them and be good for another shop.
-SHOP_RULES = frozenset({"inside corner", "slot width", "wall", "start hole"})
+# Rules of the shop's file: a design may break them and be good for another shop. And a part that bends too much says so itself.
+SHOP_RULES = frozenset({"inside corner", "slot width", "wall", "start hole", "deflection"})
 
 
 def _rule(error: InputError) -> str:

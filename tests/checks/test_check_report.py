@@ -96,7 +96,10 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     posed = [make_scene(macro, name, pose) for name in names for pose in poses(macro, name)]
     parts = {p.part_no: p for s in scenes for p in s.parts}
     assert len(scenes) == 4 and len(posed) > 10
-    expected = {(check, macro.name) for check in ("check_strength", "check_clearance", "check_calibration")}
+    expected = {
+        (check, macro.name)
+        for check in ("check_strength", "check_clearance", "check_calibration", "check_rigidity")
+    }
     for number, part in parts.items():
         expected |= {("check_brep", number), ("check_step", number), ("check_mesh", number)}
         expected |= {("check_wirecut", number)} if part.process == "wire-cut" else set()

@@ -94,8 +94,9 @@ def test_a_part_larger_than_the_sheet(place, capsys):
 
 def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
     """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
-    from tactcad.drawing import compose
+    from tactcad.drawing import compose, sheets
 
-    monkeypatch.setattr(compose, "SERIES", ((10, 1),))
+    for module in (compose, sheets):
+        monkeypatch.setattr(module, "SERIES", ((30, 1),))
     status, said = refused(place, capsys, "export", "--drawings")
-    assert status == 1 and "finds no place on A4, A3" in said and "no drawing was written" in said
+    assert status == 1 and "finds no place on A0 at 30:1" in said and "no drawing was written" in said

@@ -68,7 +68,7 @@ def tactcad_run(
         env=env,
         capture_output=True,
         check=False,
-        timeout=120,
+        timeout=600,
         stdin=subprocess.DEVNULL,
         **more,
     )

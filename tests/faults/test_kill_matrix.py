@@ -108,7 +108,7 @@ def ended(case: Case, name: str, sent: str, share: float) -> bool:
             said = process.communicate(timeout=max(0.0, began + share * case.seconds - time.monotonic()))[1]
         except subprocess.TimeoutExpired:
             process.send_signal(getattr(signal, sent))
-            said = process.communicate(timeout=120)[1]
+            said = process.communicate(timeout=600)[1]
     text = said.decode()
     assert process.returncode in (0, STATUS[sent]), text
     assert "Traceback" not in text and "Exception" not in text, text

@@ -10,8 +10,9 @@ from scipy.stats import binom
 
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings, simulate
-from tactcad.lab.grasp import Sensitivity
+from tactcad.lab.combine import combine, scatter
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
+from tactcad.lab.sensitivity import Sensitivity
 from tactcad.mechanics import fieller
 from tactcad.mechanics.sample_coupling import shares_between
 
@@ -97,12 +98,12 @@ def test_a_pair_has_fieller_s_interval():
         np.zeros(4),
     )
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, known)
-    found, _, _ = grasp.combine(slopes, 0.95, [3, 0])
+    found, _, _ = combine(slopes, 0.95, [3, 0])
     n, d = slopes.f[0] - slopes.f[3], slopes.s[3] - slopes.s[0]
     c = slopes.covariance[0] + slopes.covariance[3]
     from tactcad.lab.regression import t_quantile
 
-    _, dof = grasp._scatter(slopes, [3, 0], slopes.covariance[[3, 0]], found.estimate)
+    _, dof = scatter(slopes, [3, 0], slopes.covariance[[3, 0]], found.estimate)
     formula = fieller.ratio_interval(n, d, c[0, 0], c[1, 1], -c[0, 1], quantile=t_quantile(0.95, dof))
     assert formula.bounded
     assert found.estimate == pytest.approx(float(formula.estimate), rel=1e-6)
@@ -116,7 +117,7 @@ def test_all_elements_together_are_the_pairs_least_squares_with_their_full_covar
     """
     reading = grasped(8.0, 2e-3, seed=4)
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, exact())
-    found, _, _ = grasp.combine(slopes, 0.95)
+    found, _, _ = combine(slopes, 0.95)
 
     def square_sum(x):
         along = np.array([1.0, x])
@@ -276,7 +277,7 @@ def test_without_noise_the_coupled_readings_give_the_truth_at_their_coupling(of_
     share = half_space()
     reading = coupled_grasp(4.0, np.eye(4) + of_limit * (share - np.eye(4)), 1e-12, 0)
     slopes, _ = grasp.common_slopes(reading.element, reading.signal, exact())
-    assert grasp.combine(slopes.coupled(of_limit * share), 0.95)[0].estimate == pytest.approx(4.0, rel=1e-4)
+    assert combine(slopes.coupled(of_limit * share), 0.95)[0].estimate == pytest.approx(4.0, rel=1e-4)
 
 
 @pytest.mark.parametrize("x", [1.5, 4.0, 12.0])

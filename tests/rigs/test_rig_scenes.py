@@ -15,12 +15,13 @@ from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
 from tactcad.drawing import guide
+from tactcad.drawing.assembly_notes import notes_of
 from tactcad.export.pipeline import ExportOptions, export
 from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
-from tactcad.parts.library.screws import set_screw
+from tactcad.parts.library.screws import seating_torque
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.frame import pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
@@ -273,9 +274,9 @@ def test_a_guide_places_every_part_once_and_shows_its_torques(name):
         for p in scene.placements:
             assert re.search(rf"[> ]{p.designator}[< ]", page), p.designator
             if p.part.part_no.startswith("ISO4762-M3"):
-                assert guide.torque(p.part) == 0.55
+                assert guide.torque(p.part, design) == 0.55
             if p.part.part_no.startswith("ISO4026-"):
-                assert 0.3 * 0.55 < guide.torque(p.part) < 0.4 * 0.55
+                assert 0.3 * 0.55 < guide.torque(p.part, design) < 0.4 * 0.55
         assert "http" not in page  # opens offline
 
 
@@ -283,12 +284,19 @@ def test_set_screws_are_turned_in_by_their_size():
     """A third of what a cap screw of the size bears, in the step and in the part's row."""
     page = guide.page(design := load("macro-array"), make_scene(design, "array")).decode()
     assert "crosswise, to 0.2 N m, locked" in page and "<td>0.2 N m</td>" in page
-    assert [guide.torque(set_screw(*size)) for size in (("M2", 4), ("M3", 16), ("M4", 8), ("M5", 10))] == [
-        0.05,
-        0.2,
-        0.4,
-        0.8,
-    ]
+    assert [seating_torque(size) for size in ("M2", "M3", "M4", "M5")] == [0.05, 0.2, 0.4, 0.8]
+
+
+def test_set_screws_of_a_long_array_do_not_bow_it():
+    """Ten a row bear 0.1 N m; with 25 a row they only touch, in the step, its part's row and the drawing's note."""
+    ten, many = (variant({"array.row_arms": [[4, 7, 6, 8, 6] * n, [8, 5, 4, 5, 7] * n]}) for n in (2, 5))
+    assert "crosswise, to 0.1 N m, locked" in guide.page(ten, make_scene(ten, "array")).decode()
+    scene = make_scene(many, "array")
+    assert (
+        "crosswise, until they touch the stop plate and no further, locked"
+        in guide.page(many, scene).decode()
+    )
+    assert any(n.startswith("Turn set screws in until they touch") for n in notes_of(many, scene))
 
 
 def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.finding import Finding
+from tactcad.parts.stiffness_table import Deflection
 
 
 @dataclass(frozen=True)
@@ -25,11 +26,12 @@ class Case:
 
 @dataclass
 class Report:
-    """Every check that ran on a design, in order."""
+    """Every check that ran on a design, in order; what is taken as rigid, and by how much it bends."""
 
     design: str = ""
     revision: str = ""
     cases: list[Case] = field(default_factory=list)
+    deflections: list[Deflection] = field(default_factory=list)
 
     @property
     def findings(self) -> list[Finding]:
@@ -77,6 +79,7 @@ def as_record(report: Report) -> dict[str, Any]:
         "revision": report.revision,
         "passed": not report.failures,
         "findings": [asdict(f) for f in report.findings],
+        "deflections": [asdict(line) for line in report.deflections],
         "runs": report.runs,
         "seconds": {name: round(s, 4) for name, s in report.seconds.items()},
     }

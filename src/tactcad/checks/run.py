@@ -25,6 +25,7 @@ from .mesh import check_mesh
 from .motion import check_motions
 from .moving_weight import check_moving_weight
 from .report import Report
+from .rigidity import check_rigidity
 from .shop import DEFAULT, load_shop
 from .strength import check_strength
 from .tools import check_tools
@@ -46,6 +47,7 @@ def run_checks(
     report = Report(design.name, design.design.revision)
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
+    report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
     if "calibration" in scene_names:
         report.run("calibration travel", check_calibration, design)
     scenes = [make_scene(design, name) for name in scene_names]

@@ -6,10 +6,11 @@ import argparse
 import json
 import os
 import sys
-from datetime import date
+from datetime import UTC, date, datetime
 from pathlib import Path
 
 from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_whole
 
 EXAMPLES = """\
   tactcad fit --out fit                      # samples, constants and report, about half an hour on one core
@@ -129,6 +130,11 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
 
 
 def _today() -> date:
-    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it."""
+    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no time."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
-    return date.fromtimestamp(int(epoch)) if epoch else date.today()
+    try:
+        return datetime.fromtimestamp(as_whole(epoch), UTC).date() if epoch else date.today()
+    except (ValueError, OverflowError, OSError):
+        raise InputError(
+            "SOURCE_DATE_EPOCH", "no time", value=epoch, legal="seconds since 1970, digits only"
+        ) from None

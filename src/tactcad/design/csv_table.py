@@ -21,6 +21,7 @@ import numpy as np
 
 from tactcad.design.files import read_text
 from tactcad.design.messages import InputError
+from tactcad.design.plain_numbers import as_number
 
 LARGEST_FILE = 100_000_000  # bytes; a million lines of readings are 35 MB
 # a comma before three digits may divide thousands, unless a nought stands before it
@@ -244,7 +245,7 @@ def decimal_commas(texts: Iterable[str]) -> bool:
 def number(text: str) -> float:
     """The number that ASCII digits stand for; NaN for any other text."""
     try:
-        return float(text) if text.isascii() and "_" not in text else nan
+        return as_number(text)
     except ValueError:
         return nan
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from tactcad.design.tree import Design
+from tactcad.parts import seating
 from tactcad.parts.layout import Layout
 from tactcad.scenes.scene import Scene
 
@@ -21,10 +22,12 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
             "(tactcad export --guide)"
         )
     lines += _rows(design, scene)
-    if torques := _torques(scene, "ISO4762-"):
+    if torques := _torques(design, scene, "ISO4762-"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
-    if torques := _torques(scene, "ISO4026-"):
-        lines.append(f"Turn set screws in to {torques}, locked with thread lacquer")
+    if any(part.part_no.startswith("ISO4026-") for part in scene.parts):
+        torques = _torques(design, scene, "ISO4026-")
+        how = f"to {torques}" if torques else seating.words(Layout(design))
+        lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
         if step.title == COPLANAR:
             within = f"{design.tolerance.pad_height:g} mm"
@@ -52,11 +55,11 @@ def _rows(design: Design, scene: Scene) -> list[str]:
     return lines
 
 
-def _torques(scene: Scene, standard: str) -> str:
+def _torques(design: Design, scene: Scene, standard: str) -> str:
     """ "M3 0.55 N·m, M4 1.2 N·m" of the screws of that standard placed."""
     torques = {}
     for part in scene.parts:
-        if part.part_no.startswith(standard) and (tight := torque(part)):
+        if part.part_no.startswith(standard) and (tight := torque(part, design)):
             torques[part.part_no.split("-")[1].split("x")[0]] = tight
     return ", ".join(
         f"{thread} {value:g} N·m" for thread, value in sorted(torques.items(), key=lambda pair: pair[1])

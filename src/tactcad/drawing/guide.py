@@ -8,8 +8,10 @@ from dataclasses import replace
 from html import escape
 
 from tactcad.design.tree import Design
+from tactcad.parts import seating
 from tactcad.parts.description import Part, Vector
-from tactcad.parts.library.screws import METRIC, seating_torque
+from tactcad.parts.layout import Layout
+from tactcad.parts.library.screws import METRIC
 from tactcad.scenes.scene import Placement, Scene, Step
 
 _SCREW = re.compile(r"ISO(4762|4026)-(M[\d.]+)x")
@@ -60,12 +62,12 @@ def _moved(p: Placement, way: Vector, share: float) -> Placement:
     return replace(p, origin=tuple(round(o + share * w, 9) for o, w in zip(p.origin, way)))
 
 
-def torque(part: Part) -> float | None:
-    """Tightening torque of a cap or set screw, N m; None for other parts."""
+def torque(part: Part, design: Design) -> float | None:
+    """Tightening torque of a cap or set screw, N m; None for other parts, 0 for a set screw that only touches."""
     match = _SCREW.match(part.part_no)
     if not match:
         return None
-    return METRIC[match[2]].torque if match[1] == "4762" else seating_torque(match[2])
+    return METRIC[match[2]].torque if match[1] == "4762" else seating.torque(Layout(design))
 
 
 def page(design: Design, scene: Scene) -> bytes:
@@ -79,7 +81,7 @@ def page(design: Design, scene: Scene) -> bytes:
         "Made from the scene; parts as in its bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
     ]
-    body += [_section(scene, n, step) for n, step in enumerate(scene.steps, start=1)]
+    body += [_section(design, scene, n, step) for n, step in enumerate(scene.steps, start=1)]
     if scene.supplies:
         lines = "".join(
             f"<tr><td>{escape(s.description)}</td><td class=n>{s.qty:g} {escape(s.unit)}</td></tr>"
@@ -95,24 +97,24 @@ def page(design: Design, scene: Scene) -> bytes:
     ).encode()
 
 
-def _section(scene: Scene, number: int, step: Step) -> str:
+def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
     lines = [f"<section><h2>{number}. {escape(step.title)}</h2>", f"<p>{escape(step.text)}</p>"]
     if step.designators:
         lines += [
-            _table(scene, step),
+            _table(design, scene, step),
             f'<img src="{_name(scene, f"{number:02d}")}" alt="step {number}; blue: the parts of this step">',
         ]
     return "\n".join([*lines, "</section>"])
 
 
-def _table(scene: Scene, step: Step) -> str:
+def _table(design: Design, scene: Scene, step: Step) -> str:
     rows: dict[str, tuple[Part, list[str]]] = {}
     for p in scene.placements:
         if p.designator in step.designators:
             rows.setdefault(p.part.part_no, (p.part, []))[1].append(p.designator)
     lines = ["<table><tr><th>qty</th><th>part</th><th>name</th><th>designators</th><th>torque</th></tr>"]
     for number, (part, names) in rows.items():
-        tight = torque(part)
+        tight = torque(part, design)
         lines.append(
             f"<tr><td class=n>{len(names)}</td><td>{escape(number)}</td><td>{escape(part.name)}</td>"
             f"<td>{escape(' '.join(names))}</td><td>{f'{tight:g} N m' if tight else ''}</td></tr>"

@@ -12,8 +12,8 @@ from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab.calibration import ElementCalibration, Estimate, LoadCell
-from tactcad.lab.grasp import Sensitivity
 from tactcad.lab.plain import plain
+from tactcad.lab.sensitivity import Sensitivity
 
 SCHEMA = "tactcad-calibration-1"
 KNOWN_EXACTLY = 1e6  # degrees of freedom of a table that states no uncertainty

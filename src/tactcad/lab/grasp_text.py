@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from math import isinf
 
-from tactcad.lab.grasp import Grasp, Interval
+from tactcad.lab.combine import Interval
+from tactcad.lab.grasp import Grasp
 from tactcad.lab.plain import plain
 
 SCHEMA = "tactcad-stiffness-1"

@@ -5,7 +5,8 @@ wide as a slab lends to one load (2.4 a (1 - a/span), in the middle 0.6 of the s
 arm; along, the whole plate spans from one pair of set screws to the next. To that comes the set screw's own length.
 Ledges, further spans, and the screws' seating, which presses the plate on its ledges, only take from it.
 
-The carrier is not in it: held at its threads in the middle it bends so that gaps close (docs/rigs.md).
+The carrier is not in it: held at its threads in the middle it opens no gap by a hundredth of a micrometre
+(`carrier_opens`; stiffness_table.py holds that, and what it is for an array held by its end plates alone).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 from math import ceil, pi
 from typing import TYPE_CHECKING
 
+from tactcad.design.materials import ALLOYS
 from tactcad.mechanics.bending import Beam
 
 from .library.screws import METRIC
@@ -31,29 +33,19 @@ SHARE = 0.1
 
 @dataclass(frozen=True)
 class StopPlate:
-    """Its beams between set screws, the compliance of one set screw (mm/N), and what bears on a span when all arms do.
+    """Its beams between set screws, and the compliance of one set screw (mm/N).
 
-    strip     across, under one of the arms that press in each place of the row
-    per_span  arms on the plate from one pair of set screws to the next
+    One arm under the whole overload force is the worst: there is no more force, and shared it bends the plate less.
     """
 
     across: Beam
     along: Beam
     screw: float
-    strip: Beam
-    rows: int
-    per_span: float
 
     @property
     def one(self) -> float:
         """mm/N of one arm alone, wherever it stands."""
         return self.across.supported() + self.along.supported() + self.screw
-
-    @property
-    def every(self) -> float:
-        """mm for each newton on every arm of the array at once."""
-        along = self.along.supported_evenly() + self.screw / 2
-        return self.rows * self.strip.supported() + self.per_span * along
 
 
 def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
@@ -62,7 +54,6 @@ def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
     t = d.clamp.stop_plate_thickness
     span = unheld(layout) if pitch is None else pitch
     across = 2 * layout.hold_down_x
-    rows = len(d.array.row_arms)
     m = METRIC[d.clamp.screw]
     core = pi / 4 * (m.d - 0.9382 * m.pitch) ** 2  # stress area, ISO 898-1
 
@@ -73,10 +64,31 @@ def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
         steel(across, min(SLAB * across, layout.stop_plate_width)),
         steel(span, 2 * layout.stop_plate_half),
         (layout.hold_down.length or 0.0) / (STEEL_MODULUS * core),
-        steel(across, min(d.array.pitch, layout.stop_plate_width)),
-        rows,
-        rows * max(1.0, span / d.array.pitch),
     )
+
+
+def carrier_beam(layout: Layout, length: float) -> Beam:
+    """That much of the carrier along the row, mm; its holes are not taken off."""
+    alloy = ALLOYS[layout.design.clamp.plate_alloy]
+    width, t = layout.carrier_size[0], layout.design.clamp.carrier_thickness
+    return Beam(length, width, t, alloy.youngs_modulus, alloy.poisson)
+
+
+def carrier_opens(layout: Layout, y: float) -> float:
+    """By how much the carrier, held in its middle, opens the gap of an arm at `y`: mm/N of stop force, < 0 closes it.
+
+    The stop pushes the carrier up at y, u of the half length h; the load, which is more, goes through the end plate
+    to the carrier's end. The carrier rises at u by bending h^3 u^3/3EI, its end by h^3 u^2 (3 - u)/6EI, the ledges
+    between the ends by (1 + u)/2 of that. Shear and twist (the stop x off the middle line) raise the carrier and its
+    end by the same k h u, k = 1/(5/6 G A) + x^2/(G J). The difference is what opens:
+
+        h u (1 - u) (k/2 - h^2 u (u + 3)/12EI)
+    """
+    h = layout.end_plate_y
+    u, x = abs(y) / h, layout.pad_inner + layout.design.stop.land_length
+    beam = carrier_beam(layout, h)
+    k = 1.0 / beam.shear + x**2 / beam.torsion
+    return h * u * (1.0 - u) * (k / 2.0 - h**2 * u * (u + 3.0) / (12.0 * beam.bending))
 
 
 def unheld(layout: Layout) -> float:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from tactcad.design.tree import Design
+from tactcad.parts import seating
 from tactcad.parts.blank import blank
 from tactcad.parts.carrier import carrier
 from tactcad.parts.consumables import array_supplies
@@ -16,7 +17,6 @@ from tactcad.parts.end_plate import end_plate
 from tactcad.parts.fasteners import carrier_screw, clamping
 from tactcad.parts.layout import Layout
 from tactcad.parts.library import dowels, screws
-from tactcad.parts.library.screws import seating_torque
 from tactcad.parts.spacer import spacer
 from tactcad.parts.stop_plate import stop_plate
 
@@ -244,7 +244,7 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             HOLD_DOWN,
             (),
             (0, 0, 2.1 * width),
-            f"Turn the set screws in, crosswise, to {seating_torque(d.clamp.screw):g} N m, locked with a "
+            f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a "
             "drop of thread lacquer. Check each stop: push every pad with a "
             "plastic rod; it must give way and come to a stop, with "
             + ", ".join(

@@ -14,6 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from tactcad.design.plain_numbers import as_number, as_whole
 from tactcad.parts.consumables import Supply
 from tactcad.parts.description import Part, Purchase
 from tactcad.scenes.scene import Scene
@@ -166,11 +167,11 @@ def _parsed(column: Any, cell: str) -> object:
         case "bool":
             return {"true": True, "false": False}[cell]
         case "int":
-            return int(cell)
+            return as_whole(cell)
         case "float":
-            return float(cell)
+            return as_number(cell)
         case "float | None":
-            return float(cell) if cell else None
+            return as_number(cell) if cell else None
     return cell
 
 

@@ -75,6 +75,14 @@ def seating_torque(thread: str) -> float:
     return float(f"{METRIC[thread].torque / 3:.1g}")
 
 
+def seating_force(thread: str) -> float:
+    """N of a set screw at its seating torque, after VDI 2230 with the friction of data/screws.csv's torques, 0.12: thread's
+    lead, thread's friction at d2 = d - 0.6495 P, and that of its flat point."""
+    m, friction = METRIC[thread], 0.12
+    lever = m.pitch / (2 * pi) + friction * ((m.d - 0.6495 * m.pitch) / 2 / cos(pi / 6) + m.set_point / 3)
+    return 1e3 * seating_torque(thread) / lever
+
+
 def tapped_depth(thread: str) -> float:
     """Drilled depth below the face, cone included, of a blind hole with 1.5 d + 1 mm of full thread.
 

@@ -1,0 +1,173 @@
+"""The rigs' lines of the stiffness table (parts/stiffness_table.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi, radians
+
+from tactcad.design.materials import ALLOYS
+from tactcad.design.tree import Design
+from tactcad.mechanics.bending import Beam, rod, round_plate
+
+from ..layout import Layout
+from ..library.dowels import dowel_diameter
+from ..materials import plate_material
+from ..seating import FLAT
+from ..stiffness_table import TENTH, Deflection, pads_plane
+from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
+from .bar import BAR_MIDDLE
+from .cart_layout import CartLayout
+from .force_gauge import GAUGE_THREADS
+from .frame import (
+    BAR,
+    BAR_WIDTH,
+    BASE,
+    CARRIAGE_ON_BAR,
+    FOOT,
+    GAUGE_SIZE,
+    PIN,
+    PLATE,
+    PLATFORM,
+    POST,
+    POST_Y,
+    STAGE_HOLE,
+)
+from .gauge_plate import GAUGE_SCREW_X
+from .guide_layout import guide_layout
+from .pin import pin
+from .stand_layout import StandLayout
+
+ATMOSPHERE = 0.1  # MPa: no vacuum presses more
+LEVER = POST_Y + POST[1] / 2  # from the force gauge's axis to the post's middle, mm
+THREAD_COLUMN = 4.0  # mm of the post's width that a column of M4 threads takes
+BACK = 35.0  # mm, half the height of gauge plate and axis plate
+SEAT = 10.0  # mm, the roller's seat (roller_tip.py)
+
+
+def calibration_lines(design: Design) -> Iterator[Deflection]:
+    """In series with the gauge: what gives way there is read as the element's own deflection."""
+    rig, c = StandLayout(design), design.calibration
+    load = (
+        "calibration",
+        min(c.load_cell_range, c.travel * c.load_cell_stiffness),
+        "the gauge's range, or its stiffness times the travel",
+        TENTH * c.step * 1e3,
+        "a tenth of calibration.step",
+    )
+    yield from _stand_lines(rig, rig.pads_up, load)
+    d = dowel_diameter(c.roller)
+    yield _line(
+        load, "roller", "on the ends of its seat", rod(SEAT, d, STEEL_MODULUS, STEEL_POISSON).supported()
+    )
+    mount = _plate(design, 2 * STAGE_HOLE, 2 * STAGE_HOLE, PLATE)
+    yield _line(load, "array mount", "between its screws, load in the middle", mount.supported())
+    end = carrier_beam(rig.array, rig.array.end_plate_y).cantilever()
+    yield _line(load, "carrier", "from its middle to an end plate", end)
+
+
+def sample_lines(design: Design) -> Iterator[Deflection]:
+    rig, s = StandLayout(design), design.sample
+    load = (
+        "sample-stiffness",
+        min(design.calibration.load_cell_range, s.stiffness * s.travel),
+        "sample.stiffness times sample.travel",
+        TENTH * s.step * 1e3,
+        "a tenth of sample.step",
+    )
+    yield from _stand_lines(rig, rig.cart.sample_top, load)
+    yield from _cart_lines(rig.cart, load)
+
+
+def grasping_lines(design: Design) -> Iterator[Deflection]:
+    """Array and weights on their guide, and the cart under them; the guide itself is bought."""
+    rig, stand, layout = guide_layout(design), StandLayout(design), Layout(design)
+    g = rig.grasping
+    weight, origin = g.moving_weight + g.weights * g.weight, "moving weight and all added weights"
+    down = ("grasping", weight, origin, *pads_plane(design))
+    yield from _cart_lines(rig.cart, down)
+    flat = TENTH * FLAT * 1e3, "a tenth of the 0.02 mm within which it is made flat"
+    base = _plate(design, stand.base_length, stand.base_back - stand.base_front, BASE[1])
+    base_load = ("grasping", weight, origin, *flat)
+    yield _line(base_load, "base plate", "bridging its whole length, load in the middle", base.supported())
+    radius = rig.cart.plenum_reach
+    vacuum = ("grasping", ATMOSPHERE * pi * radius**2, "0.1 MPa, more than any vacuum, on the plenum", *flat)
+    pressed = _lid(rig.cart)[1] / (pi * radius**2)
+    yield _line(vacuum, "holder's lid", "round plate on its rim, pierced, evenly pressed", pressed)
+
+    # What turns foot or bar tilts the array: told where it shows, between the ends of a row.
+    row = max(layout.positions - 1, 1) * design.array.pitch
+    tilt = (
+        "grasping",
+        weight,
+        origin,
+        1e3 * TENTH * radians(design.tolerance.tilt) * row,
+        "a tenth of tolerance.tilt over a row",
+    )
+    bar = _plate(design, CARRIAGE_ON_BAR, BAR_WIDTH, BAR)
+    yield _line(
+        tilt, "bar", "turned at its foot, held at the carriage", BAR_MIDDLE * bar.turned_by_moment() * row
+    )
+    foot = _plate(design, BAR_MIDDLE, 2 * rig.array.mount_x, FOOT)
+    yield _line(tilt, "foot", "turned at the array's middle, held at the bar", foot.cantilever_tilt() * row)
+    platform = _plate(design, BAR_MIDDLE, 2 * BAR_WIDTH, PLATFORM)
+    model = "turned at the weights' pin, held at the bar"
+    yield _line(tilt, "platform", model, platform.cantilever_tilt() * row)
+    alloy = ALLOYS[design.clamp.plate_alloy]
+    slender = rod(pin(rig).body.thickness, PIN, alloy.youngs_modulus, alloy.poisson)
+    play = (
+        "grasping",
+        g.weight,
+        "one weight, leant on its end",
+        TENTH * 0.5 * 1e3,
+        "a tenth of the discs' play on it",
+    )
+    yield _line(play, "weight pin", "held in the platform", slender.cantilever())
+
+
+def _stand_lines(rig: StandLayout, touch: float, load: tuple) -> Iterator[Deflection]:
+    """Base plate, post and the gauge's plates: a frame that the force at the gauge's axis opens."""
+    design = rig.design
+    base = _plate(design, LEVER, POST[0], BASE[1])
+    yield _line(load, "base plate", "held under the post, as wide as it", base.cantilever())
+    post = _plate(design, rig.stage_middle(touch), POST[0] - 2 * THREAD_COLUMN, POST[1])
+    model = "held in the base plate, turned by the force's lever"
+    yield _line(load, "post", model, LEVER**2 * post.turned_by_moment())
+    # The gauge's two screws push and pull on the plate's upper and lower half, which its sides hold.
+    half = _plate(design, 2 * GAUGE_SCREW_X, BACK, PLATE)
+    apart, out = GAUGE_THREADS[1] - GAUGE_THREADS[0], GAUGE_SIZE[1] / 2 + PLATE / 2
+    turned = 2 * half.supported() * (out / apart) ** 2
+    yield _line(load, "gauge plate", "halves between its sides, a pair of screws in the middle", turned)
+    out += PLATE
+    turned = 2 * _plate(design, 2 * STAGE_HOLE, BACK, PLATE).supported() * (out / apart) ** 2
+    yield _line(load, "axis plate", "halves between the stage's screws, as the gauge plate", turned)
+
+
+def _cart_lines(cart: CartLayout, load: tuple) -> Iterator[Deflection]:
+    c = cart.cart
+    plate = _plate(cart.design, c.wheel_base, c.width, c.thickness)
+    yield _line(load, "cart plate", "between its axles, load in the middle", plate.supported())
+    axle = rod(c.shim + cart.bearing.B / 2, cart.bearing.d, STEEL_MODULUS, STEEL_POISSON)
+    yield _line(load, "cart's axles", "held in the plate, two of four carry", axle.cantilever() / 2)
+    yield _line(load, "holder's lid", "round plate on its rim, pierced, load in the middle", _lid(cart)[0])
+
+
+def _lid(cart: CartLayout) -> tuple[float, float]:
+    """Holder's lid on the plenum's rim: mm for each newton in its middle, and for each MPa under it.
+
+    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch - d)/pitch.
+    """
+    h, alloy = cart.holder, ALLOYS[plate_material(cart.design).name]
+    pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings
+    E = alloy.youngs_modulus * (1 - h.hole_diameter / pitch)
+    return round_plate(cart.plenum_reach, h.lid_thickness, E, alloy.poisson)
+
+
+def _plate(design: Design, length: float, width: float, thickness: float) -> Beam:
+    alloy = ALLOYS[design.clamp.plate_alloy]
+    return Beam(length, width, thickness, alloy.youngs_modulus, alloy.poisson)
+
+
+def _line(load: tuple[str, float, str, float, str], part: str, model: str, give: float) -> Deflection:
+    """`load` is scene, N, origin, um allowed and why; `give` mm/N."""
+    scene, force, origin, allowed, why = load
+    return Deflection(scene, part, model, force, origin, 1e3 * force * give, allowed, why)

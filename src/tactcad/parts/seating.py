@@ -1,0 +1,68 @@
+"""How hard the set screws seat the stop plate: they bow stack and carrier apart between the end plates.
+
+A stop plate that only lies on its ledges, its set screws touching it, is held as well: seating takes their play.
+"""
+
+from __future__ import annotations
+
+from math import floor, log10
+
+from tactcad.mechanics.bending import Beam
+
+from .layout import Layout
+from .library.screws import seating_force, seating_torque
+from .stop_give import carrier_beam
+
+# Of the pads' tolerance, what the stack may bow: it makes the pads' error, in root sum of squares, an eighth larger.
+BOW = 0.5
+# mm within which the rigs' plates and the lid are made flat (`finish`); the carrier under one may bow by as much.
+FLAT = 0.02
+# N m; chosen: the smallest torque drivers for screws begin there.
+LEAST_TORQUE = 0.02
+
+
+def stack_beam(layout: Layout) -> Beam:
+    """Both rows' rear bodies and spacers, as high as the spacers, between the end plates."""
+    z0, z1 = layout.spacer_z
+    m = layout.design.material
+    return Beam(layout.stack, 2 * layout.design.element.rear_length, z1 - z0, m.youngs_modulus, m.poisson)
+
+
+def stack_bow(layout: Layout) -> float:
+    """mm that the stack bows for each newton of every set screw."""
+    return _bow(layout, stack_beam(layout))
+
+
+def carrier_bow(layout: Layout) -> float:
+    """mm that the carrier bows, likewise."""
+    return _bow(layout, carrier_beam(layout, 2 * layout.end_plate_y))
+
+
+def _bow(layout: Layout, beam: Beam) -> float:
+    return sum(2 * beam.supported_beside(beam.length / 2 - abs(y)) for y in layout.hold_down_y)
+
+
+def torque(layout: Layout) -> float:
+    """N m of the set screws, to one digit: the thread's, or less, so that stack and carrier bow no more than they may;
+    0 where that is too little to be set: then they only touch the plate."""
+    thread = layout.design.clamp.screw
+    full, force = seating_torque(thread), seating_force(thread)
+    bows = force * stack_bow(layout) / (BOW * layout.design.tolerance.pad_height)
+    share = max(1.0, bows, force * carrier_bow(layout) / FLAT)
+    if share <= 1.0:
+        return full
+    digit = 10.0 ** floor(log10(full / share))
+    down = round(floor(full / share / digit) * digit, 6)
+    return down if down >= LEAST_TORQUE else 0.0
+
+
+def words(layout: Layout) -> str:
+    """How far the set screws are turned in, for guides."""
+    tight = torque(layout)
+    return f"to {tight:g} N m" if tight else "until they touch the stop plate and no further"
+
+
+def force(layout: Layout) -> float:
+    """N of each set screw at that torque."""
+    thread = layout.design.clamp.screw
+    return seating_force(thread) * torque(layout) / seating_torque(thread)

@@ -1,0 +1,149 @@
+"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its rigs.
+
+Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most bend less.
+Bought parts are not in it: their makers state how stiff they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from tactcad.design.tree import Design
+from tactcad.mechanics.bending import Beam
+
+from . import seating
+from .layout import Layout
+from .stop_gap import stop_gap
+from .stop_give import SHARE, carrier_beam, carrier_opens
+
+# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
+# of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
+TENTH = 0.1
+
+
+@dataclass(frozen=True)
+class Deflection:
+    """One part under one load.
+
+    scene       where it stands so
+    part, model what bends, and as what
+    load        N, and `origin`, why so much
+    gives       um; below 0 where that closes a gap
+    allowed     um, and `why`
+    severity    `flag`: where the array is well, and whoever builds or holds it has to know
+    """
+
+    scene: str
+    part: str
+    model: str
+    load: float
+    origin: str
+    gives: float
+    allowed: float
+    why: str
+    severity: Literal["fail", "flag"] = "fail"
+
+
+def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
+    """The table of a design that keeps its rules, for those of its scenes.
+
+    Raises CheckFailure where the estimator, which the stop's gaps are from, does not reach the design.
+    """
+    from .rigs.stiffness import calibration_lines, grasping_lines, sample_lines
+
+    lines = {
+        "array": array_lines,
+        "calibration": calibration_lines,
+        "sample-stiffness": sample_lines,
+        "grasping": grasping_lines,
+    }
+    return tuple(line for scene, of in lines.items() if scene in scenes for line in of(design))
+
+
+def pads_plane(design: Design) -> tuple[float, str]:
+    """um by which a load may move pads against each other, and why."""
+    return 1e3 * TENTH * design.tolerance.pad_height, "a tenth of tolerance.pad_height"
+
+
+def array_lines(design: Design) -> Iterator[Deflection]:
+    layout = Layout(design)
+    yield from _stop_lines(layout)
+    force = design.rating.overload_force
+    origin = "rating.overload_force"
+    alloy = carrier_beam(layout, 1.0)
+    z0, z1 = layout.end_plate_z
+    plate = Beam(
+        2 * layout.carrier_screw_x,
+        design.clamp.end_plate_thickness,
+        z1 - z0,
+        alloy.youngs_modulus,
+        alloy.poisson,
+    )
+    yield Deflection(
+        "array",
+        "end plate",
+        "between the carrier's screws, load in the middle",
+        force,
+        f"{origin}, all on one end",
+        1e3 * force * plate.supported(),
+        *pads_plane(design),
+    )
+    stack = seating.stack_beam(layout)
+    yield Deflection(
+        "array",
+        "stack of elements",
+        "between the end plates, load spread; clamped as one",
+        force,
+        f"{origin}, on all pads",
+        1e3 * force * stack.supported_evenly(),
+        *pads_plane(design),
+        "flag",
+    )
+    screw = seating.force(layout)
+    load = 2 * screw * len(layout.hold_down_y)
+    turned = f"{screw:.0f} N of each set screw at {seating.torque(layout):g} N m"
+    yield Deflection(
+        "array",
+        "stack of elements",
+        "between the end plates, pressed under each set screw",
+        load,
+        turned,
+        1e3 * screw * seating.stack_bow(layout),
+        1e3 * seating.BOW * design.tolerance.pad_height,
+        "half of tolerance.pad_height: the pads' error an eighth larger",
+    )
+    yield Deflection(
+        "array",
+        "carrier",
+        "between the end plates, pressed at each set screw",
+        load,
+        turned,
+        1e3 * screw * seating.carrier_bow(layout),
+        1e3 * seating.FLAT,
+        "as flat as the plate that it is screwed on",
+    )
+
+
+def _stop_lines(layout: Layout) -> Iterator[Deflection]:
+    """What bends between arm and stop, under the arm that has least room for it."""
+    held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
+    for part, model, give, severity in (
+        ("stop plate", "strip between rows of set screws, plate between pairs", _plate, "fail"),
+        ("carrier", "held by its threads in the middle", carrier_opens, "fail"),
+        ("carrier", "the array held by its end plates alone", lambda layout, y: held, "flag"),
+    ):
+        states = []
+        for p in layout.elements:
+            force = layout.design.rating.overload_force * p.load_arm / p.arm
+            allowed = 1e3 * SHARE * stop_gap(layout, p)
+            states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
+        share, force, allowed = max(states)
+        origin = "rating.overload_force on one arm, at its tip"
+        why = "a tenth of the stop's gap"
+        yield Deflection("array", part, model, force, origin, share * allowed, allowed, why, severity)
+
+
+def _plate(layout: Layout, y: float) -> float:
+    return layout.stop_give

@@ -1,0 +1,180 @@
+"""What is taken as rigid: the table's loads and lines by hand, what fails where something is thin, and docs/rigs.md."""
+
+from __future__ import annotations
+
+import re
+from math import isclose, pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+from variants import variant
+
+from tactcad.checks.report import Report, as_record
+from tactcad.checks.rigidity import check_rigidity
+from tactcad.design.load import names
+from tactcad.parts import seating
+from tactcad.parts.designs import load
+from tactcad.parts.layout import Layout
+from tactcad.parts.library.screws import seating_force
+from tactcad.parts.stiffness_table import deflections
+from tactcad.parts.stop_give import carrier_beam, carrier_opens
+from tactcad.scenes import scene_names
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "rigs.md"
+RIGS = ("array", "calibration", "sample-stiffness", "grasping")
+LONG = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
+
+
+def found(changes, scenes=RIGS):
+    return {(f.part, f.severity) for f in check_rigidity(variant(changes), scenes, [])}
+
+
+@pytest.mark.parametrize("name", names())
+def test_nothing_that_ships_bends_more_than_it_may(name):
+    design, table = load(name), []
+    assert check_rigidity(design, scene_names(design), table) == []
+    assert {line.scene for line in table} == set(scene_names(design))
+    record = as_record(Report(name, "A", [], table))
+    assert [line["part"] for line in record["deflections"]] == [line.part for line in table]
+
+
+@pytest.mark.parametrize(
+    "changes, wrong",
+    [
+        ({"holder.lid_thickness": 2.0}, {("holder's lid", "fail")}),
+        ({"cart.thickness": 3.0}, {("cart plate", "fail")}),
+        ({"clamp.end_plate_thickness": 2.0, "tolerance.pad_height": 0.002}, {("end plate", "fail")}),
+        ({"grasping.weights": 40}, {("bar", "fail"), ("base plate", "fail")}),
+        ({"calibration.step": 0.01}, {("post", "fail")}),
+        (
+            {"calibration.load_cell_range": 50.0, "calibration.travel": 0.6},
+            {("base plate", "fail"), ("post", "fail")},
+        ),
+        ({"clamp.stop_plate_thickness": 0.5}, {("stop plate", "fail")}),
+        (LONG, {("stack of elements", "flag"), ("carrier", "flag")}),
+    ],
+)
+def test_what_is_thin_or_loaded_is_found(changes, wrong):
+    scenes = ("array",) if changes is LONG else RIGS
+    assert wrong <= found(changes, scenes)
+    assert not {part for part, _ in wrong} & {part for part, _ in found({})}
+
+
+def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
+    parts = {line.part for line in deflections(load("macro-array"), RIGS)}
+    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
+    named += ", cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
+    assert parts == set(named.split(", "))
+
+
+def line_of(scene, part, model="", changes=None):
+    lines = deflections(variant(changes), RIGS)
+    return next(s for s in lines if (s.scene, s.part) == (scene, part) and model in s.model)
+
+
+def test_loads_are_what_the_design_says():
+    assert line_of("grasping", "bar").load == pytest.approx(3.235 + 10 * 0.980665)
+    assert line_of("calibration", "post").load == 5.0
+    soft = {"calibration.load_cell_stiffness": 10.0}
+    assert line_of("calibration", "post", changes=soft).load == pytest.approx(1.5)
+    assert line_of("sample-stiffness", "post").load == pytest.approx(3.85 * 0.3)
+    vacuum = line_of("grasping", "holder's lid", "evenly")
+    assert vacuum.load > 0.1 * pi * 13.0**2
+    assert line_of("array", "end plate").load == 13.04
+
+
+@pytest.mark.parametrize(
+    "scene, part, by_hand",
+    [
+        # the bar, 23 x 8, held 30 mm over its foot: 13.04 N at 20 mm turn it; over 16 mm of a row
+        ("grasping", "bar", 13.04 * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 16e3),
+        # the platform, 46 x 8: 13.04 N at 20 mm
+        ("grasping", "platform", 13.04 * 20**2 / (2 * 69e3 * 46 * 8**3 / 12) * 16e3),
+        # the pin, 8 round, 80 high under one disc's weight
+        ("grasping", "weight pin", 0.980665 * 80**3 / (3 * 69e3 * pi / 64 * 8**4) * 1e3),
+        # cart plate 50 x 10 on axles 50 mm apart
+        ("grasping", "cart plate", 13.04 * 50**3 / (48 * 69e3 * 50 * 10**3 / 12) * 1e3),
+        # base plate under the 60 mm of the post: 5 N at 68 mm
+        ("calibration", "base plate", 5 * 68**3 / (3 * 69e3 * 60 * 12**3 / 12) * 1e3),
+    ],
+)
+def test_lines_are_their_formulas_by_hand(scene, part, by_hand):
+    """Without shear, which takes 15 % at most of these."""
+    gives = line_of(scene, part).gives
+    assert by_hand * 0.999 <= gives <= 1.15 * by_hand
+
+
+def test_twice_as_thick_is_an_eighth():
+    """Of bending; shear, in which a cart plate of 20 mm gives way by a third as much as by bending, is a half."""
+    for scene, part, model, field in (
+        ("grasping", "cart plate", "", "cart.thickness"),
+        ("grasping", "holder's lid", "evenly", "holder.lid_thickness"),
+    ):
+        thick = load("macro-array").cart.thickness if "cart" in field else 6.0
+        ratio = line_of(scene, part, model).gives / line_of(scene, part, model, {field: 2 * thick}).gives
+        assert 5.9 < ratio < 8.001
+
+
+@pytest.mark.parametrize("thickness", [3.0, 6.0, 20.0])
+@pytest.mark.parametrize("rows", [1, 10])
+def test_a_carrier_held_in_its_middle_opens_no_gap(thickness, rows):
+    """By integration of the bent and sheared carrier, ledges straight between its two ends; at most 0.01 um at 13.04 N."""
+    arms = [[4, 7, 6, 8, 6] * rows, [8, 5, 4, 5, 7] * rows]
+    layout = Layout(variant({"array.row_arms": arms, "clamp.carrier_thickness": thickness}))
+    h = layout.end_plate_y
+    beam = carrier_beam(layout, h)
+    x = layout.pad_inner + layout.design.stop.land_length
+    for p in layout.elements[:: 1 + 4 * (rows > 1)]:
+        at = np.linspace(0, h, 4001)
+        moment = np.maximum(abs(p.y) - at, 0)
+        step = at[1] - at[0]
+        integral = lambda v: np.concatenate([[0], np.cumsum((v[1:] + v[:-1]) / 2 * step)])  # noqa: B023, E731
+        raised = integral(
+            integral(moment / beam.bending) + (at < abs(p.y)) * (1 / beam.shear + x * x / beam.torsion)
+        )
+        ledges = (1 + abs(p.y) / h) / 2 * raised[-1]
+        opening = np.interp(abs(p.y), at, raised) - ledges
+        assert isclose(carrier_opens(layout, p.y), opening, rel_tol=0.01, abs_tol=2e-9)
+        assert 13.04e3 * carrier_opens(layout, p.y) < 0.01
+
+
+def test_the_set_screws_seating_force_is_that_of_their_lead_and_friction():
+    """0.2 N m on M3: work of a turn is lift times force and friction times way, on the flanks and on the point."""
+    force = seating_force("M3")
+    flank, point = 2.675 * pi * 0.12 / np.cos(np.pi / 6), 2 / 3 * 2.0 * pi * 0.12
+    assert force * (0.5 + flank + point) == pytest.approx(2 * pi * 200, rel=1e-3)
+    assert force == pytest.approx(579, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "rows, thickness, torque", [(1, 6.0, 0.2), (2, 6.0, 0.1), (1, 3.0, 0.05), (10, 6.0, 0.0)]
+)
+def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
+    arms = [[4, 7, 6, 8, 6] * rows, [8, 5, 4, 5, 7] * rows]
+    design = variant({"array.row_arms": arms, "clamp.carrier_thickness": thickness})
+    assert seating.torque(Layout(design)) == torque
+    pressed = [s for s in deflections(design, ["array"]) if "pressed" in s.model]
+    assert len(pressed) == 2
+    for line in pressed:
+        assert line.gives <= line.allowed
+        assert line.load == pytest.approx(
+            torque / 0.2 * seating_force("M3") * 2 * len(Layout(design).hold_down_y)
+        )
+
+
+def rows_of(design) -> list[str]:
+    return [
+        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} | {s.why} |"
+        for s in deflections(design, RIGS)
+    ]
+
+
+def test_the_document_has_the_table():
+    """Where this fails, put the lines that it prints there."""
+    text = re.search(
+        r"<!-- deflections: .*?-->\n\|.*?\n\|.*?\n(.*?)<!-- end -->", DOCUMENT.read_text("utf-8"), re.DOTALL
+    )
+    rows = rows_of(load("macro-array"))
+    print("\n".join(rows))
+    assert text and text[1].splitlines() == rows
