@@ -252,8 +252,8 @@ NEAR = {
     "check A.toml --shop limit.toml": "did you mean spark_gap?",
 }
 FAR = {
-    "zzz": "one of export, check",
-    "": "one of export, check",
+    "zzz": "one of new, export, check",
+    "": "one of new, export, check",
     "estimate --model zzz": "one of short, beam",
     "estimate zzz": "or one of ",
     "export A.toml --scene zzz": "one of array",
