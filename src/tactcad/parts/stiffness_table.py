@@ -15,7 +15,7 @@ from tactcad.mechanics.bending import Beam
 
 from . import seating
 from .layout import Layout
-from .stop_gap import stop_gap
+from .stop_gap import stop_limit
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
 # Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
@@ -137,7 +137,7 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm
-            allowed = 1e3 * SHARE * stop_gap(layout, p)
+            allowed = 1e3 * SHARE * stop_limit(layout, p, give=0.0).gap
             states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
         share, force, allowed = max(states)
         origin = "rating.overload_force on one arm, at its tip"
