@@ -325,3 +325,12 @@ def test_the_load_cell_s_limits_reach_the_object():
     found = grasp.evaluate(grasped(3.85, 1e-5), known)
     assert found.combined.low <= 3.85 <= found.combined.high
     assert not found.combined_by_noise.low <= 3.85 <= found.combined_by_noise.high
+
+
+def test_signals_without_size_are_refused():
+    """About 1e-300 V: a change whose square is nought to a computer is none."""
+    reading = grasped(3.85, 1e-4)
+    with pytest.raises(InputError, match="its signal does not change with the load"):
+        grasp.evaluate(
+            GraspReadings(1, TRUTH.element, LOAD, np.zeros(len(LOAD), int), reading.signal * 1e-300), exact()
+        )

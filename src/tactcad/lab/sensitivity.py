@@ -37,7 +37,7 @@ class Sensitivity:
         new = 1 - k / cell
         if not (new > 0).all():
             raise InputError(
-                "calibration",
+                self.path,
                 "the softest load cell within its limits is no stiffer than cell and element together",
                 value=float(cell[new <= 0][0]),
                 legal=f"above {float(k[new <= 0].max()):.4g} N/mm",
