@@ -77,7 +77,12 @@ def source_digest(room: str) -> str:
     return hashlib.sha256(_framed(part for pair in named for part in pair)).hexdigest()
 
 
+NAMED_DESIGNS = PACKAGE / "design" / "named"  # what a wheel ships of hardware/: values, not code
+
+
 def _is_source(path: Path) -> bool:
+    if NAMED_DESIGNS in path.parents:
+        return False
     return path.is_file() and path.suffix != ".pyc" and not path.name.startswith(".")
 
 
