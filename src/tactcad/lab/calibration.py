@@ -68,13 +68,13 @@ class LoadCell:
         value, _, limits = text.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
             stiffness = float(value)
-            if not limits:
-                return cls(stiffness, CELL_ACCURACY * stiffness if stiffness < inf else 0.0)
-            half = float(limits.removesuffix("%"))
+            half = float(limits.removesuffix("%")) if limits else 100 * CELL_ACCURACY
         except ValueError:
             legal = "a stiffness in N/mm with its limits, as in 57.04+-1 or 57.04+-2%, or inf"
             raise InputError("load cell", "not a stiffness", value=text, legal=legal) from None
-        return cls(stiffness, half * stiffness / 100 if limits.endswith("%") else half)
+        if isinf(stiffness):
+            return cls(stiffness)
+        return cls(stiffness, half if limits and not limits.endswith("%") else half * stiffness / 100)
 
     @property
     def ends(self) -> tuple[float, float]:
