@@ -202,6 +202,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
     whatever name or link, lies in a folder that is one, or is a folder with one in it. What is not there is
     no matter.
     """
+    absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)
     for source in inputs:
         if source is None or (own := _identity(source)) is None:
