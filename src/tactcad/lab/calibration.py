@@ -22,6 +22,7 @@ from tactcad.design.messages import InputError
 from tactcad.lab.contact import first_in_contact
 from tactcad.lab.readings import CalibrationReadings, groups
 from tactcad.lab.regression import (
+    KNOWN,
     Lines,
     extreme_deviates,
     fit_lines,
@@ -41,7 +42,6 @@ RUN_SCATTER = 0.01
 # Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen, after one
 # measurement with weights and a micrometer.
 CELL_ACCURACY = 0.02
-KNOWN = 1e6  # degrees of freedom of what counts as known
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,10 @@ from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab.calibration import ElementCalibration, Estimate, LoadCell
 from tactcad.lab.plain import plain
+from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity
 
 SCHEMA = "tactcad-calibration-1"
-KNOWN_EXACTLY = 1e6  # degrees of freedom of a table that states no uncertainty
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)
 STIFFNESS = Field("stiffness_N_per_mm", "N/mm", 1e-6, 1e6)
 STIFFNESS_SE = Field("stiffness_se", "N/mm", 0, 1e6)
@@ -189,7 +189,7 @@ def read(path: str) -> Sensitivity:
         rows.values("signal_per_deflection_V_per_mm"),
         pick("signal_per_deflection_se", 0.0),
         pick("correlation", 0.0),
-        pick("dof", KNOWN_EXACTLY),
+        pick("dof", KNOWN),
         pick("load_cell_N_per_mm", RIGID),
         pick("load_cell_half_width", 0.0),
         path,

@@ -13,14 +13,13 @@ from math import inf, isinf, pi, tan
 import numpy as np
 from scipy.special import fdtrc
 
-from tactcad.lab.regression import t_quantile
+from tactcad.lab.regression import KNOWN, t_quantile
 
 DISAGREE = 0.01  # probability below which the elements are said to disagree
 ANGLES = 721  # scan of the projective line of K_obj
 # Weight of what the elements have in common against an element's own degrees of freedom. Chosen: ten times the two
 # degrees that three runs leave, since weights that follow such variances make the interval too narrow.
 PRIOR_DOF = 20.0
-KNOWN = 1e6  # degrees of freedom of what counts as known
 NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 and V2/N2
 
 

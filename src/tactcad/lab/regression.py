@@ -14,6 +14,8 @@ from scipy.special import stdtrit
 
 from tactcad.design.messages import InputError
 
+KNOWN = 1e6  # degrees of freedom of what counts as known
+
 
 @dataclass(frozen=True)
 class Lines:
