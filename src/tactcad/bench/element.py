@@ -35,19 +35,12 @@ def measure(plan: Plan) -> dict:
     bare = next(row for row in rows if row["program"] == "bare kernel")
     for row in rows:
         row["time ratio"] = (row["build"] + row["write"]) / (bare["build"] + bare["write"])
-    columns = [
-        ("program", "program", tables.PLAIN),
-        ("build", "build", tables.MILLI),
-        ("write", "write STEP", tables.MILLI),
-        ("median", "both, median", tables.MILLI),
-        ("time ratio", "over the bare kernel", tables.PLAIN),
-        ("process", "whole process", tables.SECONDS),
-        ("peak_bytes", "peak memory", tables.MEGA),
-        ("bytes", "STEP", tables.KILO),
-        ("volume", "volume, mm3", tables.PLAIN),
-        ("off", "off the closed form", ("ppm", 1e6)),
-        ("read off", "STEP read back, off", ("ppm", 1e6)),
-    ]
+    columns = (
+        "program; build [ms]; write: write STEP [ms]; median: both, median [ms]; "
+        "time ratio: over the bare kernel; process: whole process [s]; peak_bytes: peak memory [MB]; "
+        "bytes: STEP [kB]; volume: volume, mm3; off: off the closed form [ppm]; "
+        "read off: STEP read back, off [ppm]"
+    )
     note = (
         f"{part.part_no}, {part.volume:.6f} mm3 in closed form. tactcad's build compares solid and closed "
         "form, and its file is "

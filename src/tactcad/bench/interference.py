@@ -32,34 +32,21 @@ def measure(plan: Plan) -> dict:
     rows = _compared(plan, "known pairs", known, angular)
     rows += _compared(plan, "the array's near pairs", [(pair, None) for pair in own], angular)
     situations = _situations(plan)
-    columns = [
-        ("pairs", "pairs", tables.PLAIN),
-        ("by", "by", tables.PLAIN),
-        ("count", "number", tables.PLAIN),
-        ("wrong", "wrong verdicts", tables.PLAIN),
-        ("missed", "missed overlaps", tables.PLAIN),
-        ("false", "false overlaps", tables.PLAIN),
-        ("others", "touch and clear mistaken", tables.PLAIN),
-        ("seconds", "time a pair", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("time ratio", "over the kernel's", tables.PLAIN),
-        ("meshing", "meshing a part", tables.MILLI),
-    ]
+    columns = (
+        "pairs; by; count: number; wrong: wrong verdicts; missed: missed overlaps; false: false overlaps; "
+        "others: touch and clear mistaken; seconds: time a pair [ms]; median [ms]; "
+        "time ratio: over the kernel's; meshing: meshing a part [ms]"
+    )
     note = (
         "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, "
         "verdicts in closed form. "
         "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median "
         "time; meshes are made once a part."
     )
-    others = [
-        ("elements", "elements", tables.PLAIN),
-        ("placed", "placed parts", tables.PLAIN),
-        ("findings", "contacts judged", tables.PLAIN),
-        ("seconds", "tactcad check", tables.SECONDS),
-        ("kernel seconds", "every near pair", tables.SECONDS),
-        ("time ratio", "times as long", tables.PLAIN),
-        ("same verdicts", "same verdicts", tables.PLAIN),
-    ]
+    others = (
+        "elements; placed: placed parts; findings: contacts judged; seconds: tactcad check [s]; "
+        "kernel seconds: every near pair [s]; time ratio: times as long; same verdicts"
+    )
     return {
         "tables": {
             "interference": tables.table(TITLE, columns, rows, note),
@@ -71,7 +58,6 @@ def measure(plan: Plan) -> dict:
             ),
         },
         "findings": findings(rows, situations),
-        "missing": [],
     }
 
 

@@ -80,7 +80,7 @@ def measure(plan: Plan) -> dict:
         plan.of(1, 2, 5),
     )
     for i, row in enumerate(rows):
-        row |= {"seconds": timed[i].least, "median": timed[i].median, "runs": timed[i].runs}
+        row |= vars(timed[i])
     for against in ("plane", "solid"):
         group = [row for row in rows if row["against"] == against]
         best = efficient([(row["seconds"], row["worst"]) for row in group])
@@ -89,18 +89,10 @@ def measure(plan: Plan) -> dict:
     if calculix.executable():
         for row, own in zip(rows, [_own_clock(case, designs[0], plan.folder) for case in cases(plan)]):
             row["own clock"] = own
-    columns = [
-        ("code", "code", tables.PLAIN),
-        ("elements", "elements", tables.PLAIN),
-        ("density", "density", tables.PLAIN),
-        ("unknowns", "unknowns", tables.PLAIN),
-        ("mean", "mean error", tables.PER_CENT),
-        ("worst", "worst error", tables.PER_CENT),
-        ("seconds", "time", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("own clock", "its own clock", tables.MILLI),
-        ("front", "on the front", tables.PLAIN),
-    ]
+    columns = (
+        "code; elements; density; unknowns; mean: mean error [%]; worst: worst error [%]; "
+        "seconds: time [ms]; median [ms]; own clock: its own clock [ms]; front: on the front"
+    )
     note = (
         f"Errors over {len(designs)} designs against converged elements of their own kind; unknowns and "
         "times of the two-sided reference "
