@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from tactcad.parts.detail import DETAILS
 from tactcad.scenes import scene_names
@@ -27,7 +28,7 @@ def measure(plan: Plan) -> dict:
     plan.say("the kernel alone")
     floor = measured(child("kernel")).peak_bytes if plan.mode != "smoke" else 0
     runs = in_turns(commands, plan.of(1, 1, 3), plan.say)
-    rows = [_row(*name.split(", "), made, floor) for name, made in runs.items()]
+    rows = [_row(name, made, floor) for name, made in runs.items()]
     if plan.mode == "full":
         for row in rows:
             row |= _exported(row["scene"], row["detail"], plan)
@@ -47,9 +48,15 @@ def measure(plan: Plan) -> dict:
     return {"tables": {"detail": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
-def _row(scene: str, detail: str, runs: list[Run], floor: int) -> dict:
+def _row(name: str, runs: list[Run], floor: int) -> dict:
+    scene, detail = name.split(", ")
     told = [last_line(run) for run in runs]
-    row = {"scene": scene, "detail": detail, "parts": told[0]["parts"], "solids": told[0]["solids"]}
+    row: dict[str, Any] = {
+        "scene": scene,
+        "detail": detail,
+        "parts": told[0]["parts"],
+        "solids": told[0]["solids"],
+    }
     row |= cost(runs, [sum(t["seconds"].values()) for t in told])
     return row | {"above": row["peak_bytes"] - floor, "bytes": told[0]["bytes"]}
 

@@ -18,6 +18,8 @@ TITLE = "One element: tactcad, the bare kernel, FreeCAD"
 QUESTION = "What do the description, its checks and repeatable files cost over a script?"
 BARE = Path(__file__).with_name("peers") / "kernel_element.py"
 
+Program = tuple[str, list[str], dict[str, str] | None]
+
 
 def measure(plan: Plan) -> dict:
     part = next(p.part for p in make_scene(arrays.published(), "array").placements if p.designator == "E1")
@@ -57,9 +59,9 @@ def measure(plan: Plan) -> dict:
 def as_job(part: Part, repeats: int, step: Path) -> dict:
     """The part's contour for a peer's script."""
     return {
-        "outer": _chain(part.body.outer),
-        "openings": [_chain(c) for c in part.body.openings],
-        "thickness": part.body.thickness,
+        "outer": _chain(part.extrusion.outer),
+        "openings": [_chain(c) for c in part.extrusion.openings],
+        "thickness": part.extrusion.thickness,
         "repeats": repeats,
         "step": str(step),
     }
@@ -75,12 +77,12 @@ def _chain(contour: Contour) -> list:
     ]
 
 
-def _programs(part: Part, repeats: int, folder: Path) -> list[tuple]:
+def _programs(part: Part, repeats: int, folder: Path) -> list[Program]:
     """(name, command, environment) of each; tactcad comes last and reads back what all have written."""
     job = {name: as_job(part, repeats, folder / f"{name}.step") for name in ("FreeCAD", "bare kernel")}
-    programs = (
-        [("FreeCAD", freecad.command(), freecad.environment(job["FreeCAD"]))] if freecad.version() else []
-    )
+    programs: list[Program] = []
+    if freecad.version():
+        programs.append(("FreeCAD", freecad.command(), freecad.environment(job["FreeCAD"])))
     programs.append(("bare kernel", python(str(BARE), json.dumps(job["bare kernel"])), None))
     files = {name: str(folder / f"{name}.step") for name in ("tactcad", *(name for name, *_ in programs))}
     return [*programs, ("tactcad", child("element", designator="E1", repeats=repeats, files=files), None)]

@@ -16,6 +16,7 @@ from .front import efficient
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MplFigure
 
 SIZE, SMALL = (12.4, 5.0), (7.6, 4.8)  # inches, of two panels and of one
 FRONT = "#c8d3dc"
@@ -271,7 +272,7 @@ def _scaling(rows: list[dict]) -> Figure:
         return drawn(figure, "bench-scaling", "Cost against the number of elements, with fitted exponents")
 
 
-def _drawn(figure, shown: dict[Axes, Panel], name: str, caption: str) -> Figure:
+def _drawn(figure: MplFigure, shown: dict[Axes, Panel], name: str, caption: str) -> Figure:
     for ax, panel in shown.items():
         error_against_time(ax, panel)
     for ax, panel in shown.items():
@@ -323,8 +324,15 @@ def error_against_time(ax: Axes, panel: Panel) -> None:
         )
     if panel.none is not None:
         ax.axhline(panel.none, color=GREY, linewidth=0.8, linestyle=":")
-        at = {"xycoords": ("axes fraction", "data"), "xytext": (0, 4), "textcoords": "offset points"}
-        ax.annotate("none wrong", (0.01, panel.none), **at, color=GREY, fontsize=10)
+        ax.annotate(
+            "none wrong",
+            (0.01, panel.none),
+            (0, 4),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            color=GREY,
+            fontsize=10,
+        )
 
 
 def _decades(values: Sequence[float]) -> tuple[float, float]:
@@ -332,7 +340,7 @@ def _decades(values: Sequence[float]) -> tuple[float, float]:
     return 10 ** (floor(log10(min(values))) - 0.1), 10 ** (ceil(log10(max(values))) + 0.1)
 
 
-def _scale(ax, axis: str, names: dict[float, str]) -> None:
+def _scale(ax: Axes, axis: str, names: dict[float, str]) -> None:
     """A logarithmic axis with a name at every power of ten."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 

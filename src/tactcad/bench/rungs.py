@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable, Hashable
 
 import numpy as np
 
@@ -91,11 +92,15 @@ def _times(plan: Plan) -> dict[str, dict]:
     count = many.shape[0]
     few = [many.rows(i) for i in range(plan.of(1, 3, 10))]
     plan.say("times, in turns")
-    batch = {r: lambda r=r: ladder.stiffness(many, r) for r in ladder.CLOSED_FORMS}
-    alone = {("alone", r): lambda r=r: ladder.stiffness(few[0], r) for r in ladder.CLOSED_FORMS}
-    elements = {r: lambda r=r: [stiffness(one, r) for one in few] for r in ladder.FINITE_ELEMENTS}
-    per = dict.fromkeys(batch, count) | dict.fromkeys(elements, len(few))
-    timed = interleaved(batch | alone, plan.of(1, 5, 9)) | interleaved(elements, plan.of(1, 2, 3))
+    batch: dict[Hashable, Callable] = {r: lambda r=r: ladder.stiffness(many, r) for r in ladder.CLOSED_FORMS}
+    alone: dict[Hashable, Callable] = {
+        ("alone", r): lambda r=r: ladder.stiffness(few[0], r) for r in ladder.CLOSED_FORMS
+    }
+    elements: dict[Hashable, Callable] = {
+        r: lambda r=r: [stiffness(one, r) for one in few] for r in ladder.FINITE_ELEMENTS
+    }
+    per = dict.fromkeys(ladder.CLOSED_FORMS, count) | dict.fromkeys(ladder.FINITE_ELEMENTS, len(few))
+    timed = interleaved({**batch, **alone}, plan.of(1, 5, 9)) | interleaved(elements, plan.of(1, 2, 3))
     return {
         r: {
             "seconds": timed[r].seconds / n,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 
 import numpy as np
 
@@ -61,7 +62,8 @@ def _estimates(plan: Plan) -> list[dict]:
     sizes = plan.of((10, 100), (10, 100, 1000, 10_000), (10, 30, 100, 300, 1000, 3000, 10_000))
     plan.say("estimates by the default rung")
     many = {n: section(draw_box(n, plan.seed)) for n in sizes}
-    timed = interleaved({n: lambda s=s: ladder.evaluate(s) for n, s in many.items()}, plan.of(1, 5, 15))
+    actions = {n: partial(ladder.evaluate, s) for n, s in many.items()}
+    timed = interleaved(actions, plan.of(1, 5, 15))
     return [_row("estimate, rung solid", n, t.seconds, t.median) for n, t in timed.items()]
 
 

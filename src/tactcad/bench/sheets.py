@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from typing import Any
 
 from . import arrays, tables
 from .plan import Plan
@@ -37,7 +38,7 @@ def measure(plan: Plan) -> dict:
     without = min((run.seconds for run in runs.get("without sheets", ())), default=None)
     rows = []
     for kind, made in runs.items():
-        row = {"what": kind} | cost(made)
+        row: dict[str, Any] = {"what": kind} | cost(made)
         drawn = kind != "without sheets"
         row["sheets"] = count if drawn else 0
         row["added"] = row["seconds"] - without if kind in kinds and drawn and without else None
