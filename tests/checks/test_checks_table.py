@@ -11,7 +11,7 @@ import pytest
 from bad_parts import BAD
 
 ROOT = Path(__file__).parents[2]
-sys.path += [str(ROOT / "benchmarks"), str(ROOT / "tests" / "mutation")]
+sys.path.append(str(ROOT / "tests" / "mutation"))
 
 
 def names_in_code() -> set[str]:
@@ -40,7 +40,7 @@ OF_THE_SHIPPED = {
 
 @pytest.mark.cad
 def test_the_table_says_what_the_checks_say():
-    """Where this fails, run `python benchmarks/checks_table.py` and read what it changes."""
+    """Where this fails, run `python tests/checks_table.py` and read what it changes."""
     import checks_table
 
     text = checks_table.DOCUMENT.read_text(encoding="utf-8")

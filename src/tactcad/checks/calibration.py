@@ -21,9 +21,8 @@ def check_calibration(design: Design) -> list[Finding]:
         severity = "fail" if design.calibration.travel > load.travel_at_yield else "flag"
         who = f"{load.place.designator} ({element_number(design, load.place)})"
         message = (
-            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is "
-            f"rated for {load.rated_deflection:.4g}: "
-            f"calibrate it to {load.travel_at_rated:.4g} mm of travel"
+            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated "
+            f"for {load.rated_deflection:.4g}: calibrate it to {load.travel_at_rated:.4g} mm of travel"
         )
         found.append(
             Finding(

@@ -155,8 +155,7 @@ def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS
 def _finding(motion: Motion, pair: _Pair, t: float, what: str) -> Finding:
     a, b = pair.first, pair.second
     message = (
-        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at "
-        f"{100 * t:.0f} % of the "
-        f"motion '{motion.name}'"
+        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at {100 * t:.0f} % "
+        f"of the motion '{motion.name}'"
     )
     return Finding("motion", "fail", a.designator, pair.offset(t), t, 0.0, message)

@@ -63,8 +63,7 @@ def _reached(fastener: Placement, tool: Placement, others: list[Placement], know
         if free < TOUCH_MM:
             message = (
                 f"{other.designator} ({other.part.part_no}) is in the way of the {tool.part.name} of "
-                f"{REACH:g} mm for "
-                f"{fastener.designator} ({fastener.part.part_no})"
+                f"{REACH:g} mm for {fastener.designator} ({fastener.part.part_no})"
             )
             yield Finding("tool-room", "fail", fastener.designator, place, free, OFF, message)
 

@@ -57,8 +57,7 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
         "margin": {"usual": MARGIN, f"of fewer than {FEW} designs": MARGIN_OF_FEW},
         "date": today.isoformat(),
         "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}, numpy "
-        f"{np.__version__}, "
-        f"{os.cpu_count()} cores, one used",
+        f"{np.__version__}, {os.cpu_count()} cores, one used",
         "samples": {name: len(c["poisson"]) for name, c in samples.items()} | {"seed of range": SEED},
         "seconds a call": {c.name: clock.get(c.name, (0.0, 0.0))[0] for c in CANDIDATES},
         "zones": zones,

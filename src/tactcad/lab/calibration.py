@@ -298,9 +298,8 @@ def _require_spring(
     if k - half_width >= load_cell.ends[1]:
         raise InputError(
             where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: another "
-            "unit "
-            "of displacement or force, or another load cell",
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: "
+            "another unit of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )
 

@@ -183,9 +183,8 @@ def to_html(report: Report) -> str:
         f"<style>{STYLE}</style></head>\n<body>"
     )
     top = (
-        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
-        f"<h3>What stands out</h3>{_list(report.summary)}"
-        f"<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
+        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p><h3>What stands "
+        f"out</h3>{_list(report.summary)}<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
     )
     return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
 

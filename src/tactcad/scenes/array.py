@@ -178,11 +178,10 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             GAUGES,
             (),
             (0, 0, 0),
-            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, "
-            "its grid centred on the "
-            "hinge within 0.1 mm, carrier trimmed to "
-            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, "
-            "solder three leads, and lay them in the wire recess towards the rear end.",
+            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, its "
+            "grid centred on the hinge within 0.1 mm, carrier trimmed to "
+            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
+            "and lay them in the wire recess towards the rear end.",
         ),
         Step(
             FIRST_PLATE,
@@ -209,17 +208,14 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             COPLANAR,
             (),
             (0, -1.5 * stack - 40.0 - 1.6 * width, 0),
-            "Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of "
-            f"{gap:g} mm between the rows' "
-            "pads. Press the elements' rear bodies down with a bar of rubber so that every pad stands on "
-            "the plate, then tighten the "
-            "clamping screws crosswise, in three rounds: a third, two thirds, the whole torque. "
-            f"Measure: no pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on "
-            "its back and read each pad "
-            f"with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in "
-            "the calibration set-up the "
-            "heights at which the force gauge first reads 0.01 N show the same to a micrometre. Record "
-            "them; loosen and repeat if one is off.",
+            f"Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of {gap:g} "
+            "mm between the rows' pads. Press the elements' rear bodies down with a bar of rubber so that "
+            "every pad stands on the plate, then tighten the clamping screws crosswise, in three rounds: a "
+            f"third, two thirds, the whole torque. Measure: no pad may let a {2 * tolerance * 1e3:g} um "
+            "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
+            f"the surface plate: all within {tolerance * 1e3:g} um; in the calibration set-up the heights at "
+            "which the force gauge first reads 0.01 N show the same to a micrometre. Record them; loosen and "
+            "repeat if one is off.",
         ),
         Step(
             STOP_PLATE,

@@ -47,19 +47,17 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Roller tip",
         (0, -130, AXIS_LIFT - 40),
-        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's "
-        "shaft, roller along y: "
-        "lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, "
-        "set x by the edge of "
-        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
+        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, "
+        "roller along y: lower it on a flat plate, which must show an even line of light; lock the thread. "
+        f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
+        f"{c.travel * 1e3:g} um.",
     )
     b.step(
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
         _limits(design)
-        + " Afterwards take the array off its mount and the carrier off the array, and go on with the "
-        "step Stop "
-        "plate of the array's own guide. Zero every signal anew.",
+        + " Afterwards take the array off its mount and the carrier off the array, and go on with the step "
+        "Stop plate of the array's own guide. Zero every signal anew.",
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")
@@ -97,9 +95,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         b.step(
             f"Stage along {axis}",
             (0, 0, 30 + 25 * level),
-            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the "
-            "other end and fix the "
-            "other two. Then drive it to the middle of its travel."
+            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other "
+            "end and fix the other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
             aside=(high,),
         )
@@ -130,10 +127,9 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     b.step(
         "Array on its mount",
         (0, 0, 120),
-        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
-        "would close before the end "
-        "of the travel) on the mount with its carrier down, and fix it by four screws from below. Leads "
-        "leave along x, loose.",
+        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would "
+        "close before the end of the travel) on the mount with its carrier down, and fix it by four screws "
+        "from below. Leads leave along x, loose.",
         bench=True,
     )
     for sx, sy in CORNERS:
@@ -142,9 +138,8 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     b.step(
         "Mount on the stages",
         (0, 0, 145),
-        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller "
-        "within 0.02 mm over the "
-        "whole y travel.",
+        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller within "
+        "0.02 mm over the whole y travel.",
     )
     b.group(None)
 

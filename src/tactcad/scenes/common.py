@@ -45,9 +45,8 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     b.step(
         "Stand",
         (0, 0, 0) if stages else (0, 0, -60),
-        "Screw the post on the base plate from below. Before the last turn, check with a square on the "
-        "upper face "
-        "that the post's front stands square within 0.02 mm on 100 mm, both ways."
+        "Screw the post on the base plate from below. Before the last turn, check with a square on the upper "
+        "face that the post's front stands square within 0.02 mm on 100 mm, both ways."
         + (
             ""
             if stages
@@ -89,12 +88,9 @@ def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float 
             "Put shim, bearing, shim on each axle and start its thread."
             + (
                 " Then stand the cart on a surface plate, press lightly on its middle so that all four "
-                "wheels touch, and "
-                "tighten the axles in that state, crosswise: the axles' play in the bores takes up the "
-                "threads' error. No "
-                "wheel may be loose over a 0.02 mm feeler gauge. Every outer ring must turn at a breath: "
-                "it has "
-                f"{c.shim:g} mm of air to plate and head."
+                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the bores "
+                "takes up the threads' error. No wheel may be loose over a 0.02 mm feeler gauge. Every outer "
+                f"ring must turn at a breath: it has {c.shim:g} mm of air to plate and head."
                 if sy > 0
                 else ""
             ),
@@ -130,10 +126,9 @@ def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float 
     b.step(
         "Holder's lid",
         (0, 0, 95),
-        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: "
-        "with the pump shut off, the "
-        "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may "
-        "not pull the cart.",
+        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with "
+        "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
+        "in a loop: it may not pull the cart.",
         fan=True,
     )
     object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
@@ -187,10 +182,8 @@ def place_force_axis(
         "Vertical stage",
         (0, -40, AXIS_LIFT),
         "Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the "
-        "post's rows at "
-        f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to "
-        "the base plate: "
-        "0.01 mm on the whole travel against a square.",
+        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run "
+        "square to the base plate: 0.01 mm on the whole travel against a square.",
         aside=(moving,),
     )
     b.group("axis")

@@ -41,8 +41,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
             "Weights",
             (0, 0, 330),
             "One disc a loading step, laid on without a knock; each is weighed before. Without any, the "
-            "grasping force is "
-            f"the moving weight: {g.moving_weight:g} N.",
+            f"grasping force is the moving weight: {g.moving_weight:g} N.",
         )
     if pose.height == 0:
         for place in rig.array.elements:

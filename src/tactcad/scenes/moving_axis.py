@@ -82,8 +82,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         "Ballast",
         (0, 0, 305),
         f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the "
-        "ballast "
-        "thinner until it is.",
+        "ballast thinner until it is.",
     )
     return name, z + disc.body.thickness
 
@@ -182,10 +181,9 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show "
-        "under any pad; the "
-        f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, "
-        "shim under the foot.",
+        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under "
+        f"any pad; the signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is "
+        "allowed, shim under the foot.",
     )
     b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD

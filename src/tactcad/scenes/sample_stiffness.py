@@ -24,11 +24,10 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),
-        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a "
-        "trace of thread lacquer. "
-        f"Lower it until the gauge reads 0.01 N: that is zero. Then {design.sample.step * 1e3:g} um steps to "
-        f"{design.sample.travel * 1e3:g} um, three times; subtract the gauge's own "
-        f"{design.calibration.load_cell_stiffness:g} N/mm.",
+        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a trace of "
+        "thread lacquer. Lower it until the gauge reads 0.01 N: that is zero. Then "
+        f"{design.sample.step * 1e3:g} um steps to {design.sample.travel * 1e3:g} um, three times; subtract "
+        f"the gauge's own {design.calibration.load_cell_stiffness:g} N/mm.",
     )
     if pose.height == 0:
         b.meet(contact, sample)

@@ -156,9 +156,8 @@ def _figure6(six: Figure6) -> Figure:
         return Figure(
             "figure-6",
             d.svg(figure, "figure-6"),
-            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, "
-            "bars of two standard deviations over many. Open symbols at the right edge: Table 2's "
-            "measured R.",
+            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, bars of "
+            "two standard deviations over many. Open symbols at the right edge: Table 2's measured R.",
         )
 
 

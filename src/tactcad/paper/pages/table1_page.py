@@ -122,10 +122,8 @@ def _products(c: Table1Check) -> Table:
         (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")),
         rows,
         "Marked: more than the rounding of the printed figures allows. The paper's text gives K_v as the "
-        "sensitivity "
-        "to force and K_v/K as the one to deflection, and calls K_v and once K the slope of Figure 4(b): by "
-        "their "
-        "units and these ratios K_v is per deflection, and K is the slope of 4(a).",
+        "sensitivity to force and K_v/K as the one to deflection, and calls K_v and once K the slope of "
+        "Figure 4(b): by their units and these ratios K_v is per deflection, and K is the slope of 4(a).",
     )
 
 
