@@ -17,7 +17,7 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
-from tactcad.parts.description import Vector
+from tactcad.parts.description import Vector, vector
 from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Motion, Placement, Scene
 from tactcad.solids.measure import bounding_box, volume
@@ -41,7 +41,7 @@ class _Pair:
     end: Vector
 
     def offset(self, t: float) -> Vector:
-        return tuple(a + t * (b - a) for a, b in zip(self.start, self.end))
+        return vector(a + t * (b - a) for a, b in zip(self.start, self.end))
 
     @property
     def way(self) -> float:
@@ -73,24 +73,25 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
             )
             if key not in known:
                 known[key] = _slides(pair, full) if kind else _meets(pair, span, full, envelope)
-            if known[key]:
-                found.append(_finding(motion, pair, *known[key]))
+            hit = known[key]
+            if hit:
+                found.append(_finding(motion, pair, *hit))
     return found
 
 
 def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Pair]:
     """Pairs of different groups that are not at rest, as placed, over the whole motion."""
     group = {d: name for name, members in scene.groups for d in members}
-    ways = {name: (start, end) for name, start, end in motion.ways}
     still = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    ways: dict[str | None, tuple[Vector, Vector]] = {name: (start, end) for name, start, end in motion.ways}
     for i, a in enumerate(scene.placements):
         for b in scene.placements[i + 1 :]:
             ga, gb = group.get(a.designator), group.get(b.designator)
             if ga == gb:
                 continue
             (a0, a1), (b0, b1) = ways.get(ga, still), ways.get(gb, still)
-            start = tuple(q - p for p, q in zip(a0, b0))
-            end = tuple(q - p for p, q in zip(a1, b1))
+            start = vector(q - p for p, q in zip(a0, b0))
+            end = vector(q - p for p, q in zip(a1, b1))
             if any(start) or any(end):
                 yield _Pair(a, b, start, end)
 
@@ -145,7 +146,7 @@ def _distance(pair: _Pair, t: float, shapes: Shapes) -> float:
 
 def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS_Shape]:
     a, b = pair.first, pair.second
-    moved = tuple(o + d for o, d in zip(b.origin, pair.offset(t)))
+    moved = vector(o + d for o, d in zip(b.origin, pair.offset(t)))
     return (
         shapes[a.part.part_no].Located(location(a.origin, a.rotation)),
         shapes[b.part.part_no].Located(location(moved, b.rotation)),

@@ -147,8 +147,7 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 
 
 def _size(where: str, value: object) -> float:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and 0 < value <= 100):
+    if not isinstance(value, int | float) or isinstance(value, bool) or not 0 < value <= 100:
         raise InputError(
             where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
         )

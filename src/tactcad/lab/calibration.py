@@ -160,7 +160,8 @@ def calibrate(
     require_level(level)
     if run_scatter is not None and not 0 <= run_scatter < 1:
         raise InputError("run scatter", "out of range", value=run_scatter, legal="from 0 to below 1")
-    rows, parts = [], groups(readings.element)
+    rows: list[ElementCalibration] = []
+    parts = groups(readings.element)
     alarm = FALSE_ALARM / (2 * len(parts))  # force and signal of every element have their chance
     for number, here in parts:
         tell(len(rows), len(parts), f"element {number}")

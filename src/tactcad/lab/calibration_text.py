@@ -223,7 +223,7 @@ def _from_json(path: str) -> Sensitivity:
         ) from None
     if not len(values):
         raise InputError(path, "a calibration of no element", legal="one element at least")
-    columns = (
+    fields = (
         ELEMENT,
         STIFFNESS,
         STIFFNESS_SE,
@@ -234,7 +234,7 @@ def _from_json(path: str) -> Sensitivity:
         LOAD_CELL,
         LOAD_CELL_HALF_WIDTH,
     )
-    for field, column in zip(columns, values.T):
+    for field, column in zip(fields, values.T):
         for i in np.flatnonzero(~field.allowed(column))[:1]:
             raise InputError(path, f"{field.name} is not usable", value=float(column[i]), legal=field.legal)
     if (np.abs(values[:, 3]) < LEAST_SENSITIVITY).any():
@@ -242,7 +242,8 @@ def _from_json(path: str) -> Sensitivity:
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
         raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")
-    return Sensitivity(number, *values[:, 1:].T, path)
+    K, K_se, k_v, k_v_se, correlation, dof, cell, cell_half = values[:, 1:].T
+    return Sensitivity(number, K, K_se, k_v, k_v_se, correlation, dof, cell, cell_half, path)
 
 
 def _no_sensitivity(where: str) -> InputError:

@@ -6,7 +6,7 @@ the pairs that share a reference.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isinf, pi, tan
 
@@ -14,6 +14,8 @@ import numpy as np
 from scipy.special import fdtrc
 
 from tactcad.lab.regression import KNOWN, t_quantile
+
+Misfit = Callable[[np.ndarray], np.ndarray]
 
 DISAGREE = 0.01  # probability below which the elements are said to disagree
 ANGLES = 721  # scan of the projective line of K_obj
@@ -148,7 +150,7 @@ def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[floa
     return total / model, float(min(total**2 / bottom, KNOWN))
 
 
-def _minimum(misfit, angle: np.ndarray) -> float:
+def _minimum(misfit: Misfit, angle: np.ndarray) -> float:
     """Least point of a function on the closed line of angles, by ever finer scans."""
     step = angle[1] - angle[0]
     best = float(angle[np.argmin(misfit(angle))])
@@ -159,7 +161,7 @@ def _minimum(misfit, angle: np.ndarray) -> float:
     return best
 
 
-def _interval(misfit, best: float, limit: float, scale: float) -> Interval:
+def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interval:
     """The connected set about `best` where the misfit keeps below the limit, cut to K_obj >= 0."""
     edges = []
     for direction in (-1.0, 1.0):

@@ -39,13 +39,13 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
         )
     # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
     angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
-    outer = _bent(part.body.outer, (place.hinge_x, z), angle)
+    outer = _bent(part.extrusion.outer, (place.hinge_x, z), angle)
     return replace(
         part,
         part_no=f"{part.part_no}-at-{deflection:g}mm",
         name=f"{part.name}, deflected {deflection:g}",
         process="reference",
-        body=Extrusion(outer, part.body.thickness, part.body.openings),
+        body=Extrusion(outer, part.extrusion.thickness, part.extrusion.openings),
         notes=("deflected state, for collision checks only",),
         characteristics=(),
         finish="",

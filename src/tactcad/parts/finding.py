@@ -9,6 +9,8 @@ from typing import Literal
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
 
+Severity = Literal["fail", "flag"]
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -24,7 +26,7 @@ class Finding:
     """
 
     check: str
-    severity: Literal["fail", "flag"]
+    severity: Severity
     part: str
     place: tuple[float, ...]
     value: object

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from math import floor, log10
 
+from tactcad.design.present import present
 from tactcad.mechanics.bending import Beam
 
 from .layout import Layout
@@ -24,8 +25,8 @@ LEAST_TORQUE = 0.02
 def stack_beam(layout: Layout) -> Beam:
     """Both rows' rear bodies and spacers, as high as the spacers, between the end plates."""
     z0, z1 = layout.spacer_z
-    m = layout.design.material
-    return Beam(layout.stack, 2 * layout.design.element.rear_length, z1 - z0, m.youngs_modulus, m.poisson)
+    m, width = layout.design.material, 2 * layout.design.element.rear_length
+    return Beam(layout.stack, width, z1 - z0, present(m.youngs_modulus), present(m.poisson))
 
 
 def stack_bow(layout: Layout) -> float:

@@ -33,12 +33,12 @@ def cut_section(part: Part) -> Extrusion | None:
     """
     if part.process == "wire-cut":
         outer, openings = section(part)
-        return Extrusion(outer, part.body.thickness, openings)
+        return Extrusion(outer, part.extrusion.thickness, openings)
     if part.process not in ("milled", "ground") or not _is_plate(part):
         return None
     reamed = {f.at[:2] for f in part.features if isinstance(f, Hole) and f.tolerance}
     outer, openings = section(part)
-    return Extrusion(outer, part.body.thickness, tuple(c for c in openings if c.centroid not in reamed))
+    return Extrusion(outer, part.extrusion.thickness, tuple(c for c in openings if c.centroid not in reamed))
 
 
 def _is_plate(part: Part) -> bool:

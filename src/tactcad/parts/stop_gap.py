@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, sqrt
 
+import numpy as np
+
+from tactcad.design.present import present
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload
@@ -59,7 +62,7 @@ def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -
     return _limit(
         tuple(parameters.items()),
         place.arm,
-        design.material.yield_strength / design.rating.deflection_factor,
+        present(design.material.yield_strength) / design.rating.deflection_factor,
         design.rating.overload_force,
         design.stop.tolerance,
         layout.stop_give if give is None else give,
@@ -88,9 +91,11 @@ def _limit(
     """`stop_limit` of the section with these parameters, whose fillet may bear `stress` (MPa)."""
     section = HingeSection.of(**dict(parameters))
     fitted = ladder.evaluate(section, "solid")
-    K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
+    K = fitted.stiffness if fitted.valid else ladder.stiffness(section, "section")
+    length = np.array(arm)
     rated = stress / strain.stress_beyond_the_fit(section, 1.0)
-    closing = float(largest_closing_force(section, K, arm, give, overload, rated))
+    closing = largest_closing_force(section, K, length, give, overload, rated)
     lever = arm / float(section.load_arm)  # of the tip over that of the load line
     narrow = K * (2.0 * tolerance + STEP_MM) / lever
-    return StopLimit(closing / K * lever, float(largest_overload(section, K, arm, give, narrow, rated)))
+    most = largest_overload(section, K, length, give, narrow, rated)
+    return StopLimit(float(closing / K * lever), float(most))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import seating
 from tactcad.parts.blank import blank
@@ -143,7 +144,7 @@ def _tie_rod(b: Builder, layout: Layout, x: float, length: float) -> None:
 
 def _carrier_screws(b: Builder, layout: Layout) -> None:
     """Carrier screws into the end"""
-    fixing = carrier_screw(layout)
+    fixing = present(carrier_screw(layout))
     screw = screws.cap_screw(layout.design.clamp.screw, fixing.length)
     z = layout.carrier_bottom + fixing.under_head
     for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
@@ -158,7 +159,7 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
     plate = b.place("ST", stop_plate(layout), (0, 0, layout.ledge), UPRIGHT, STOP_PLATE)
     for designator in on_ledge:
         b.meet(designator, plate)
-    length = layout.hold_down.length
+    length = present(layout.hold_down.length)
     screw = screws.set_screw(layout.design.clamp.screw, length)
     for x, y in ((side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y):
         name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import floor
 
 from tactcad.design.messages import InputError
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.deflected import deflected_element
@@ -42,7 +44,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     under = _stages(b, rig, dx, dy)
     _mounted_array(b, rig, under, dx, dy, pose)
     contact = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
-    c = design.calibration
+    c = present(design.calibration)
     b.meet(contact, "TI1", "press")
     b.step(
         "Roller tip",
@@ -67,7 +69,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
     b.unit("stages")
-    c = rig.design.calibration
+    c = present(rig.design.calibration)
     fixed, moving = rigs.stage_fixed(c.stage_travel), rigs.stage_moving(c.stage_travel)
     head = rigs.micrometer(c.stage_travel, 0.01)
     t, half = STAGE_PLATE, STAGE / 2
@@ -112,7 +114,7 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     mount = b.place("AM", rigs.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
-    roller = dowel_diameter(rig.design.calibration.roller) / 2
+    roller = dowel_diameter(present(rig.design.calibration).roller) / 2
     pressed = rig.array.elements[pose.element - 1]
     deflected = (
         {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)}
@@ -146,7 +148,7 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
 
 def _limits(design: Design) -> str:
     """What the calibration asks of each arm, and where it would do harm."""
-    c = design.calibration
+    c = present(design.calibration)
     lines, seen = [], set()
     for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):
         if not load.refused and load.place.arm not in seen:
@@ -161,9 +163,9 @@ def _limits(design: Design) -> str:
     )
 
 
-def _motions(design: Design, pads, px: float, py: float) -> tuple[Motion, ...]:
+def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py: float) -> tuple[Motion, ...]:
     """Roller down, and with the roller lifted once around all pads, edges and corners of their rectangle."""
-    lifted = (0.0, 0.0, design.calibration.retract)
+    lifted = (0.0, 0.0, present(design.calibration).retract)
     xs, ys = sorted(-(x - px) for x, _ in pads), sorted(y - py for _, y in pads)
     corners = [(xs[0], ys[0]), (xs[-1], ys[0]), (xs[-1], ys[-1]), (xs[0], ys[-1])]
     ways = [Motion("roller down to the pad", (("axis", lifted, (0.0, 0.0, 0.0)),))]

@@ -34,7 +34,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     for _ in range(weights):
         name = b.place("WT", disc, (0, 0, z))
         b.meet(below, name)
-        below, z = name, z + disc.body.thickness
+        below, z = name, z + disc.extrusion.thickness
     b.group(None)
     if weights:
         b.step(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
+from tactcad.parts.description import ModelFile
 
 from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution, drill_point_height
 from .tables import number, rows
@@ -163,10 +164,11 @@ def for_pictures(part: Part) -> Part:
     ticks on the faces that it pierces.
     """
     match = _THREADED.match(part.part_no)
-    if not match:
+    if not match or isinstance(part.body, ModelFile):
         return part
     m = METRIC[match[1]]
     thin = m.tap_drill / 2 - 0.02
+    body: Extrusion | Revolution
     if isinstance(part.body, Extrusion):
         body = replace(part.body, outer=circle((0, 0), 2 * thin))
     else:
