@@ -1,10 +1,11 @@
 """The table of docs/checks.md: each check, its bad part, what is then said, and what it takes.
 
     python tests/checks_table.py            messages anew, times as they stand
-    python tests/checks_table.py --times    times too: the shipped array and its rigs, then 2 x 500 elements (minutes)
+    python tests/checks_table.py --times    times too: the shipped array and its rigs, then 2 x 500 elements
+    (minutes)
 
-Messages are what the checks say of the bad parts in bad_parts.py. Times are processor time of one process, which
-other work on the machine changes little.
+Messages are what the checks say of the bad parts in bad_parts.py. Times are processor time of one process,
+which other work on the machine changes little.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ Times = dict[str, tuple[str, str, str]]
 
 
 def rows(times: Times) -> list[str]:
-    """A line a check, in the order of BAD; the times stand in the first line of those that are timed together."""
+    """A line a check, in the order of BAD; the times stand in the first line of those that are timed
+    together."""
     from bad_parts import BAD
 
     lines, before = [], ""

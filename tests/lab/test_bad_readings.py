@@ -137,7 +137,8 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
 
 
 def test_outliers_cost_no_fit_each(monkeypatch):
-    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random cases."""
+    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random
+    cases."""
     rng, compared = np.random.default_rng(11), 0
     for _ in range(60):
         run = np.repeat(np.arange(rng.integers(1, 6)), rng.integers(6, 20))

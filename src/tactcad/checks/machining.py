@@ -199,8 +199,8 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
     """Axis and radius of the hole, and of its counterbore; a thread counts with its outside diameter.
 
-    Walls are measured from the axis, with round ends: a blind hole's axis ends so that its round end reaches as
-    deep as the drill's point.
+    Walls are measured from the axis, with round ends: a blind hole's axis ends so that its round end reaches
+    as deep as the drill's point.
     """
 
     def at(depth: float) -> Vector:

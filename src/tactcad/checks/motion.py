@@ -1,9 +1,9 @@
 """Does anything collide while a scene moves: every stated motion, over its whole way and not only in poses.
 
-A pair that moves against each other is passed over while its boxes stay apart. For the rest the kernel gives the
-distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
-prove the whole way, however thin the parts are. Distances are first taken between envelopes (parts without their
-holes and pockets), which only come out smaller.
+A pair that moves against each other is passed over while its boxes stay apart. For the rest the kernel gives
+the distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
+prove the whole way, however thin the parts are. Distances are first taken between envelopes (parts without
+their holes and pockets), which only come out smaller.
 """
 
 from __future__ import annotations

@@ -89,7 +89,8 @@ class Shop:
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
     """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them,
-    [machining] and [machining_source]: all of them, or those in which it differs from what comes with tactcad.
+    [machining] and [machining_source]: all of them, or those in which it differs from what comes with
+    tactcad.
 
     Raises InputError where it cannot be read or a field is missing, unknown or not legal.
     """

@@ -1,7 +1,7 @@
 """Can a key or a socket get at every screw and nut at the moment when the assembly's steps put them in?
 
-A tool is a cylinder out of the screw's socket, or over the nut, as long as what a hand holds. In its way may be what
-stands after the screw's own step: not what the step says is on the bench or driven aside.
+A tool is a cylinder out of the screw's socket, or over the nut, as long as what a hand holds. In its way may
+be what stands after the screw's own step: not what the step says is on the bench or driven aside.
 """
 
 from __future__ import annotations

@@ -5,9 +5,10 @@ K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, a
 removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
 as the paper did, puts the force's noise on both axes; that estimate is given beside it.
 
-Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run to run
-(Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load cell is known
-within limits: the interval holds for every cell within them. Readings before contact are found and left out.
+Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run
+to run (Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load
+cell is known within limits: the interval holds for every cell within them. Readings before contact are found
+and left out.
 """
 
 from __future__ import annotations
@@ -36,11 +37,11 @@ from tactcad.lab.regression import (
 )
 
 FALSE_ALARM = 0.01  # chance of naming any outlier in a file without one
-# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing of it.
-# Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
+# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing
+# of it. Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
-# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen, after one
-# measurement with weights and a micrometer.
+# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen,
+# after one measurement with weights and a micrometer.
 CELL_ACCURACY = 0.02
 
 
@@ -147,8 +148,8 @@ def calibrate(
     level : float
         Of every interval.
     run_scatter : float, optional
-        Relative standard deviation of an element's slope from run to run, where it is known. Without it the runs
-        of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
+        Relative standard deviation of an element's slope from run to run, where it is known. Without it the
+        runs of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
     tell
         Hears of every element before it is fitted.
 
@@ -306,8 +307,8 @@ def _require_spring(
 
 
 def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
-    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that takes it
-    furthest.
+    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that
+    takes it furthest.
     """
     low, high = k - t * se, k + t * se
     softest, stiffest = load_cell.ends

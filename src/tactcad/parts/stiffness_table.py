@@ -1,7 +1,8 @@
-"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its rigs.
+"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its
+rigs.
 
-Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most bend less.
-Bought parts are not in it: their makers state how stiff they are.
+Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most
+bend less. Bought parts are not in it: their makers state how stiff they are.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ from .layout import Layout
 from .stop_gap import stop_limit
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
-# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
-# of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
+# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 %
+# in root sum of squares, so that a dozen of them together are still less than the tenth part of what they are
+# a share of.
 TENTH = 0.1
 
 

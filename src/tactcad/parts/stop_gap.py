@@ -27,7 +27,8 @@ class StopLimit:
     """What an element's stop must do.
 
     gap       mm, the widest at the tip that keeps the hinge within its rated deflection, tolerance and all
-    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the hinge
+    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the
+              hinge
     """
 
     gap: float
@@ -37,8 +38,9 @@ class StopLimit:
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
-    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its rated
-    deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded down.
+    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its
+    rated deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded
+    down.
     """
     stop = layout.design.stop
     if stop.gaps and place.arm in stop.gaps:
@@ -49,12 +51,13 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
-    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield of the
-    fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives way as its
-    beams say, or by `give` mm/N.
+    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield
+    of the fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives
+    way as its beams say, or by `give` mm/N.
 
-    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and errs to
-    a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
+    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and
+    errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000
+    random designs).
     """
     design = layout.design
     own = own_parameters(place.hinge, place.load_arm, place.body_length)

@@ -41,8 +41,8 @@ HOLD_DOWN = "Hold the stop plate down"
 def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the stop plate
-    and its set screws are not in place yet, as in the calibration.
+    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the
+    stop plate and its set screws are not in place yet, as in the calibration.
     """
     layout = Layout(design)
     b = _placed(layout, instead, stops)

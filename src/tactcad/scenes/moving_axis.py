@@ -1,8 +1,8 @@
 """What moves with the array in the grasping set-up: its parts, what they weigh, and the ballast that trims
 them.
 
-The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no stop gap:
-which scenes a design has must be known without the estimator.
+The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no
+stop gap: which scenes a design has must be known without the estimator.
 """
 
 from __future__ import annotations

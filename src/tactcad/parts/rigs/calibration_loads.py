@@ -14,7 +14,8 @@ from ..layout import ElementPlace, Layout
 class CalibrationLoad:
     """One element at the end of calibration.travel.
 
-    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g + K).
+    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g +
+    K).
 
     deflection        mm at the pad
     force             N

@@ -156,7 +156,8 @@ def _cart_lines(cart: CartLayout, load: tuple) -> Iterator[Deflection]:
 def _lid(cart: CartLayout) -> tuple[float, float]:
     """Holder's lid on the plenum's rim: mm for each newton in its middle, and for each MPa under it.
 
-    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch - d)/pitch.
+    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch -
+    d)/pitch.
     """
     h, alloy = cart.holder, ALLOYS[plate_material(cart.design).name]
     pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings
