@@ -19,7 +19,8 @@ from types import SimpleNamespace
 ROOT = Path(__file__).parents[1]
 DOCUMENT = ROOT / "docs" / "checks.md"
 BEGIN, END = "<!-- checks: written by tests/checks_table.py -->\n", "<!-- end of checks -->\n"
-HEAD = "| `tactcad check` times | check | its bad part | what it says | array | its rigs | largest |\n|---|---|---|---|---|---|---|\n"
+HEAD = "| `tactcad check` times | check | its bad part | what it says | array | its rigs | largest |\n"
+HEAD += "|---|---|---|---|---|---|---|\n"
 
 Times = dict[str, tuple[str, str, str]]
 

@@ -64,7 +64,10 @@ def test_what_is_thin_or_loaded_is_found(changes, wrong):
 
 def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
-    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
+    named = (
+        "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, "
+        "array mount, roller"
+    )
     named += ", cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
     assert parts == set(named.split(", "))
 
@@ -169,7 +172,8 @@ def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
 
 def rows_of(design) -> list[str]:
     return [
-        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} | {s.why} |"
+        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} "
+        f"| {s.why} |"
         for s in deflections(design, RIGS)
     ]
 

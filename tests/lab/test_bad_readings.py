@@ -51,7 +51,8 @@ BAD = {
             HEADER + ",force_mN",
             "{:g},{:g},{:g},{:g},{:g},{:g}",
         ),
-        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, force_mN",
+        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, "
+        r"force_mN",
     ),
     "thousands": (
         text(rows() * [1, 1, 1, 1, 1], HEADER.replace(",", "\t"), "{:g}\t{:g}\t1,250\t{:g}\t1,000"),

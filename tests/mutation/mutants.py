@@ -391,7 +391,8 @@ def tests_of(mutant: Mutant) -> list[str]:
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
     imports = re.compile(
-        rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b|from {re.escape(package)} import .*\b{last}\b)",
+        rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b"
+        rf"|from {re.escape(package)} import .*\b{last}\b)",
         re.M,
     )
     chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
@@ -436,7 +437,8 @@ for line in sys.stdin:
         os.dup2(1, 2)
         os.environ |= {"PYTHONPATH": folder + "/src", "TMPDIR": folder + "/tmp"}
         sys.path.insert(0, folder + "/src")
-        status = pytest.main(["-x", "-q", "-m", "not nightly", "-p", "no:cacheprovider", "--no-header", *files])
+        options = ["-x", "-q", "-m", "not nightly", "-p", "no:cacheprovider", "--no-header"]
+        status = pytest.main([*options, *files])
         sys.stdout.flush()
         os._exit(status)
     status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])

@@ -240,8 +240,8 @@ def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> 
     kept = here[steps(x) >= first]
     if left_out > 1:
         notes.append(
-            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above the line "
-            "of the others; they are left out"
+            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above "
+            "the line of the others; they are left out"
         )
     if not left_out:
         notes.append(
@@ -314,7 +314,8 @@ def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[s
     softest, stiffest = load_cell.ends
     if low <= 0:
         notes.append(
-            "the force does not rise with displacement beyond noise: the data do not tell the stiffness from zero"
+            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
+            "from zero"
         )
     if high >= softest:
         notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")

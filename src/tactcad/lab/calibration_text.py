@@ -75,8 +75,9 @@ def to_text(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -
         "",
         f"load cell in series: {load_cell.stiffness:g} N/mm, and the intervals hold for every one from "
         f"{load_cell.ends[0]:.4g} to {load_cell.ends[1]:.4g} N/mm (--load-cell)",
-        "K, K_v, K_v/K by weighted fit of all runs from the second displacement on (contact may begin within the first "
-        "step), intervals by the scatter from run to run; 'as paper': averaged runs, force against deflection",
+        "K, K_v, K_v/K by weighted fit of all runs from the second displacement on (contact may begin within "
+        "the first step), intervals by the scatter from run to run; 'as paper': averaged runs, force against "
+        "deflection",
     ]
     for r in rows:
         lines += [
@@ -132,8 +133,8 @@ def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
         "load_cell_half_width",
     )
     lines = [
-        f"# calibration by tactcad calibrate; load cell {load_cell.stiffness:g} +- {load_cell.half_width:.4g} N/mm in "
-        "series removed",
+        f"# calibration by tactcad calibrate; load cell {load_cell.stiffness:g} +- "
+        f"{load_cell.half_width:.4g} N/mm in series removed",
         ",".join(names),
     ]
     for r in rows:

@@ -131,7 +131,8 @@ def evaluate(
     dropped = int((~touching).sum())
     if dropped:
         notes.append(
-            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter"
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
+            "enter"
         )
     notes += _strays(readings.element, signal)
     if widened > 1:
