@@ -23,7 +23,7 @@ ALONG_X = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0))  # local z runs a
 
 
 @dataclass(frozen=True)
-class Pair:
+class KnownPair:
     """Two placed parts: their kind, the gap between them (mm), and the volume that they share (mm3)."""
 
     kind: str
@@ -40,14 +40,14 @@ class Pair:
         return Scene(self.kind, self.placements)
 
 
-def known_pairs(rounds: int, seed: int) -> Iterator[Pair]:
+def known_pairs(rounds: int, seed: int) -> Iterator[KnownPair]:
     """Every kind at every gap, `rounds` times, each time placed and sized anew."""
     rng = np.random.default_rng(seed)
     for _ in range(rounds):
         for kind, make in KINDS.items():
             for gap in GAPS:
                 overlap, first, second = make(gap, rng)
-                yield Pair(kind, gap, overlap, _thrown((first, second), rng))
+                yield KnownPair(kind, gap, overlap, _thrown((first, second), rng))
 
 
 def box_on_box(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
