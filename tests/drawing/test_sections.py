@@ -20,10 +20,10 @@ import tactcad
 from tactcad.contour import Arc as ArcSegment
 from tactcad.contour import circle, rectangle
 from tactcad.drawing import compose
+from tactcad.drawing.contours import in_part
 from tactcad.drawing.gate import pdf_runs
 from tactcad.drawing.ink import Fill, Hatch, Stroke, Text
 from tactcad.drawing.layout import layout_faults
-from tactcad.drawing.measure import in_part
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan

@@ -20,7 +20,7 @@ from tactcad.drawing.layout import layout_faults
 from tactcad.drawing.paper import A3, A4, frame
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.svg import svg_bytes
-from tactcad.drawing.title import TitleBlock, notes, table, title_block, wrapped
+from tactcad.drawing.title import TitleBlock, notes, title_block, wrapped
 
 SIGNS = "0.25 ±0.005 ⌀3.4 ↧8 R0.3 Ra 0.8 µm 45° 4×"
 
@@ -198,9 +198,3 @@ def test_wrapped_lines_fit_and_lose_nothing():
     lines = wrapped(text, 2.5, 60)
     assert all(fonts.width(line, 2.5) <= 60 for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
-
-
-def test_a_table_keeps_its_texts_off_its_lines():
-    items, w, h = table((30, 200), ["item", "qty"], [["1", "M3×10"], ["22", "g µ Q"]])
-    assert layout_faults(Sheet("n", "t", A4.size, (*frame(A4), *items))) == []
-    assert h == pytest.approx(15.0)

@@ -13,6 +13,7 @@ from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
+    from tactcad.design.tree import Design
     from tactcad.mechanics.accuracy import Choice
 
 EXAMPLES = """\
@@ -106,7 +107,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
     else:
         print(_report(design, model, rows, uncut))
-        if choice:
+        if choice and accuracy:
             print(_why(choice, accuracy))
     return 0
 
@@ -201,7 +202,7 @@ def _as_made(args: argparse.Namespace) -> int:
     return 0
 
 
-def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+def _document(design: Design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     document = {
         "design": design.name,
         "revision": design.design.revision,
@@ -214,7 +215,7 @@ def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     return document | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
+def _report(design: Design, model: str, rows: list[dict], uncut: dict | None) -> str:
     first = rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
@@ -262,7 +263,7 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(design, row: dict) -> str:
+def _spread(design: Design, row: dict) -> str:
     """What the hinge's tolerance does to these numbers: K goes with t^3."""
     tolerance = design.tolerance.hinge_thickness
     share = 3.0 * tolerance / design.element.hinge_thickness

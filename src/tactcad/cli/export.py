@@ -7,7 +7,7 @@ import json
 import sys
 from dataclasses import asdict
 
-from .parser import add_others
+from .parser import add_design, add_json, add_others
 
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
@@ -24,15 +24,7 @@ inspection.csv (in inspections/, say), not the export's own."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="?",
-        default=DEFAULT_DESIGN,
-        metavar="DESIGN",
-        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
-    )
+    add_design(parser)
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
@@ -59,7 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -76,7 +76,7 @@ def _own_process() -> int:
     try:
         status = main(sys.argv[1:])
     except SystemExit as ended:  # the parser's help and refusals
-        status = ended.code
+        status = ended.code if isinstance(ended.code, int) else DONE
     sys.stdout.flush()
     past_ending()
     if output.failed and status == DONE:
@@ -128,7 +128,7 @@ def parser_of(command: str) -> Parser:
 
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
-        args = parser_of(argv[0]).parse_args(argv[1:])
+        args = parser_of(argv[0]).parse(argv[1:])
         if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
             raise CheckFailure(_no_kernel())
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
@@ -145,5 +145,5 @@ def _dispatch(argv: list[str]) -> int:
     parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
     if not argv:
         parser.error(str(InputError("COMMAND", "missing", legal=one_of("", COMMANDS))))
-    parser.parse_args(argv[:1])
+    parser.parse(argv[:1])
     return BAD_INPUT

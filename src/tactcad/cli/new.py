@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import json
 
+from .parser import add_json
+
 EXAMPLES = """\
   tactcad new my-sensor.toml                      the published array under a name of your own
   tactcad new my-sensor.toml --from soft-tissue   from another named design, or from a file
@@ -24,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DESIGN",
         help=f"what to start from: a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

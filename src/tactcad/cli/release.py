@@ -8,6 +8,8 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from .parser import add_design, add_json, add_shop
+
 EXAMPLES = """\
   tactcad release                     exports/releases/macro-array-<revision>.zip
   tactcad release soft-tissue --out to-the-shop
@@ -20,28 +22,18 @@ nothing is written and an earlier zip stays as it is."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="*",
-        default=[DEFAULT_DESIGN],
-        metavar="DESIGN",
-        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
-    )
+    add_design(parser, several=True)
     parser.add_argument(
         "--out",
         metavar="DIR",
         default="exports/releases",
         help="folder of the zip (default exports/releases)",
     )
-    parser.add_argument(
-        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
-    )
+    add_shop(parser)
     parser.add_argument(
         "--draft", action="store_true", help="write a PRELIMINARY zip whatever the checks say"
     )
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -57,17 +57,17 @@ def run(args: argparse.Namespace) -> int:
     from .progress import slow_work
 
     known = calibration_text.read(args.calibration)
-    found = []
+    results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = readings.grasps(args.file)
         for g in samples:
-            tell(len(found), len(samples), f"sample {g.sample}")
+            tell(len(results), len(samples), f"sample {g.sample}")
             coupling = pads.coupling(args.design or DEFAULT_DESIGN, g, args.coupling)
-            found.append(
+            results.append(
                 grasp.evaluate(g, known, reference=args.reference, level=args.level, coupling=coupling)
             )
     sys.stdout.write(
-        grasp_text.to_json(found, args.level) if args.json else grasp_text.to_text(found, args.level)
+        grasp_text.to_json(results, args.level) if args.json else grasp_text.to_text(results, args.level)
     )
     return 0

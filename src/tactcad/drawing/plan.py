@@ -8,12 +8,11 @@ from typing import Literal
 
 from tactcad.parts.description import Characteristic, Part, Vector
 
-from .ink import Point
+from .boxes import Box, Point
 from .keys import Values, Variable
 from .measure import Measure
 
 Side = Literal["top", "bottom", "left", "right"]
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -132,6 +131,11 @@ class Datum:
     end: Point
     away: Point
 
+    def at(self, share: float) -> Point:
+        """The point of the edge at a share of its length from the start."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        return (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
+
 
 @dataclass(frozen=True)
 class Bore:
@@ -200,6 +204,10 @@ class View:
 def seen(view: View, p: Vector) -> Point:
     """A point of the part in the view's plane."""
     return (sum(a * b for a, b in zip(view.right, p)) + 0.0, sum(a * b for a, b in zip(view.up, p)) + 0.0)
+
+
+def opposite(v: Vector, share: float = 1.0) -> Vector:
+    return (-share * v[0], -share * v[1], -share * v[2])
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ class Cache:
         self, root: Path, say: Callable[[str], None] = lambda text: print(text, file=sys.stderr)
     ) -> None:
         self.root, self.say = root, say
-        self._secret: bytes | None = None  # None: nothing is read or kept
+        self._secret = b""  # empty: nothing is read or kept
         self._trouble: OSError | None = None  # why, to be said at the first use
         self._complained = False
         try:
@@ -61,7 +61,7 @@ class Cache:
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
-        if self._secret is None:
+        if self._trouble:
             self._complain(self._trouble)
             return None
         path = self._path(key)
@@ -81,7 +81,7 @@ class Cache:
 
     def put(self, key: str, data: bytes) -> None:
         """Keep the bytes under the key, whole or not at all."""
-        if self._secret is None:
+        if self._trouble:
             return
         path = self._path(key)
         try:
@@ -115,7 +115,7 @@ class Cache:
 
         Returns how many entries went. Another process may read or write meanwhile: what is gone for it is built again.
         """
-        if self._secret is None:
+        if self._trouble:
             return 0
         entries = []
         for path in _own_files(self.root):

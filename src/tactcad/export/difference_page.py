@@ -13,10 +13,8 @@ from .difference import Change, shown
 from .geometry import contour_of
 from .sides import Side, not_compared
 
-OLD, NEW = (
-    "#D55E00",
-    "#0072B2",
-)  # Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+# Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+OLD, NEW = "#D55E00", "#0072B2"
 STYLE = f"""
 :root{{color-scheme:light}}
 body{{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}}
@@ -114,7 +112,7 @@ def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
         before, after = _contours(c.old or ()), _contours(c.new or ())
         box = _box([*before, *after])
         yield f'<div class="pair"><figure>{_drawing(before, after, box)}<figcaption>the whole part</figcaption></figure>'
-        if c.at is not None:
+        if c.at is not None and c.moved is not None:
             half = max(BEYOND * c.moved, LEAST_WINDOW * max(box[2] - box[0], box[3] - box[1]))
             window = (c.at[0] - half, c.at[1] - half * 0.6, c.at[0] + half, c.at[1] + half * 0.6)
             caption = (
@@ -123,7 +121,7 @@ def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
             yield f"<figure>{_drawing(before, after, window)}<figcaption>{caption}</figcaption></figure>"
         yield "</div>"
     for c in alone:
-        before, after = (_contours(part["contours"]) if part else () for part in (c.old, c.new))
+        before, after = (_contours(part["contours"] if part else ()) for part in (c.old, c.new))
         yield f"<h3>{escape(c.path[1])}: {c.kind}</h3>"
         yield f'<div class="pair"><figure>{_drawing(before, after, _box([*before, *after]))}</figure></div>'
 

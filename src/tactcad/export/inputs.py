@@ -137,7 +137,7 @@ def inputs_of(design: object, rooms: Iterable[str], libraries: Iterable[str]) ->
     )
 
 
-def inputs_from_json(record: object) -> Inputs | None:
+def inputs_from_json(record: Any) -> Inputs | None:
     """The inputs that an earlier export recorded (`Inputs.as_json`), None where they cannot be understood."""
     try:
         groups = [record["values"], record["sources"], record["libraries"]]

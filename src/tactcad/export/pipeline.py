@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -71,11 +70,7 @@ class ExportOptions:
 
 
 def export(
-    design: Design,
-    options: ExportOptions,
-    out: str | os.PathLike[str],
-    progress: Progress,
-    others: str = REFUSE,
+    design: Design, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
 ) -> Exported:
     """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files there that
     tactcad did not write so (publish.py).
@@ -106,7 +101,8 @@ def export(
         return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
 
 
-def _unchanged(out: str | os.PathLike[str], there: Contents, progress: Progress) -> Exported:
+def _unchanged(out: str | Path, there: Contents, progress: Progress) -> Exported:
+    assert there.record  # or there would have been reasons
     count = len(there.record["files"]) + 1
     progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
     return Exported(Path(out), count, (), (), ())
@@ -129,12 +125,12 @@ def _refuse_unprintable(design: Design) -> None:
 
 def _reasons(there: Contents, now: Inputs) -> list[str]:
     """Why the export has to be made anew; empty: it need not."""
-    if not there.states or there.record is None and not there.foreign:
-        return ["there is no earlier export"]
     wrong = [f"{path}: {why}" for path, why in there.foreign.items()]
     wrong += [f"{path}: missing" for path in there.missing]
     if wrong:
         return [f"the earlier export was altered: {wrong[0]}"]
+    if there.record is None:
+        return ["there is no earlier export"]
     return reasons(inputs_from_json(there.record.get("inputs")), now)
 
 

@@ -17,13 +17,14 @@ from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
+from .contents import sha256_of
 from .formats import PART_FORMATS, PartFormat
 from .inputs import digest
 from .shapes import Shapes, picture_bytes
 from .step_text import Header
 
 if TYPE_CHECKING:
-    from tactcad.drawing.workers import Written
+    from tactcad.drawing.workers import Named, Written
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,16 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     return products
 
 
+@dataclass(frozen=True)
+class _Wanted:
+    """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its order."""
+
+    stem: str
+    part_no: str
+    key: str
+    order: Callable[[], Named]
+
+
 def drawing_products(
     design: Design,
     parts: Sequence[Part],
@@ -126,86 +137,30 @@ def drawing_products(
     say: Callable[[int, int, str], None],
     draft: bool = False,
 ) -> list[Product]:
-    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name.
-
-    The first one that is asked for makes all that the cache has not, side by side.
-    """
+    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
     from tactcad.drawing.fonts import font_file
-
-    font_file()  # a missing font is said before anything is made
-    made_here = [part for part in parts if part.process not in ("bought", "reference")]
-    sources = {(p.part_no, p.kind): p for p in products}
-    keys = {
-        part.part_no: digest(
-            (
-                "drawing",
-                shapes.made_by,
-                part,
-                [s.key for s in _made_from(part, sources)],
-                design.design,
-                design.tolerance,
-                design.holes,
-                draft,
-            )
-        )
-        for part in made_here
-    }
-    drawn: dict[str, Written] = {}
-
-    def drawing(part_no: str) -> Written:
-        if not drawn:
-            missing = [
-                part
-                for part in made_here
-                if any(shapes.cache.get(f"{keys[part.part_no]} {e}") is None for e in ("pdf", "svg"))
-            ]
-            drawn.update(_drawings(design, missing, shapes, sources, say, draft))
-        return drawn[part_no]
-
-    revision = design.design.revision
-    return [
-        Product(
-            f"drawings/{part.part_no}_{revision}.{ending}",
-            "drawing",
-            part.part_no,
-            f"{keys[part.part_no]} {ending}",
-            lambda part_no=part.part_no, ending=ending: getattr(drawing(part_no), ending),
-        )
-        for part in made_here
-        for ending in ("pdf", "svg")
-    ]
-
-
-def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
-    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
-    from the DXF where there is one."""
-    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
-    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
-
-
-def _drawings(
-    design: Design,
-    parts: Sequence[Part],
-    shapes: Shapes,
-    sources: Mapping[tuple[str, str], Product],
-    say: Callable[[int, int, str], None],
-    draft: bool,
-) -> dict[str, Written]:
     from tactcad.drawing.notes import MadeFrom
     from tactcad.drawing.sheets import Order, written
-    from tactcad.drawing.workers import all_written
-    from tactcad.solids.bytes import to_bytes
 
-    from .manifest import sha256_of
+    font_file()  # a missing font is said before anything is made
+    sources = {(p.part_no, p.kind): p for p in products}
+    revision, common = design.design.revision, (design.design, design.tolerance, design.holes, draft)
 
-    orders = []
+    def order(part: Part, files: Sequence[Product]) -> Order:
+        from tactcad.solids.bytes import to_bytes
+
+        made_from = [MadeFrom(f.path, sha256_of(shapes.cache.get_or_make(f.key, f.make))) for f in files]
+        return Order(design, part, to_bytes(shapes.of(part)), tuple(made_from), draft)
+
+    wanted = []
     for part in parts:
-        files = [
-            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make)))
-            for s in _made_from(part, sources)
-        ]
-        orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
-    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, written, say))}
+        if part.process not in ("bought", "reference"):
+            files = _made_from(part, sources)
+            key = digest(("drawing", shapes.made_by, part, [f.key for f in files], *common))
+            wanted.append(
+                _Wanted(f"{part.part_no}_{revision}", part.part_no, key, partial(order, part, files))
+            )
+    return _drawn(wanted, written, shapes, say)
 
 
 def assembly_products(
@@ -215,55 +170,55 @@ def assembly_products(
     say: Callable[[int, int, str], None],
     draft: bool = False,
 ) -> list[Product]:
-    """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
-    keys = {
-        s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft))
-        for s in scenes
-    }
+    """An assembly drawing of every scene, as PDF and SVG."""
+    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
+    from tactcad.scenes.bom import bom_rows
+
+    revision, common = design.design.revision, (design.design, design.tolerance, draft)
+
+    def order(scene: Scene) -> AssemblyOrder:
+        from tactcad.solids.bytes import to_bytes
+
+        solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
+        return AssemblyOrder(design, scene, bom_rows(scene, revision, {}), solids, draft)
+
+    wanted = []
+    for scene in scenes:
+        key = digest(("assembly drawing", shapes.made_by, scene, *common))
+        wanted.append(_Wanted(f"{design.name}-{scene.name}_{revision}", "", key, partial(order, scene)))
+    return _drawn(wanted, assembly_written, shapes, say)
+
+
+def _drawn(
+    wanted: Sequence[_Wanted],
+    make: Callable[..., Written],
+    shapes: Shapes,
+    say: Callable[[int, int, str], None],
+) -> list[Product]:
+    """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by side."""
+    from tactcad.drawing.workers import all_written
+
+    endings = ("pdf", "svg")
     drawn: dict[str, Written] = {}
 
-    def drawing(name: str) -> Written:
+    def made(key: str, ending: str) -> bytes:
         if not drawn:
-            missing = [
-                s
-                for s in scenes
-                if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))
-            ]
-            drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
-        return drawn[name]
+            missing = [w for w in wanted if any(shapes.cache.get(f"{w.key} {e}") is None for e in endings)]
+            drawn.update(zip((w.key for w in missing), all_written([w.order() for w in missing], make, say)))
+        return getattr(drawn[key], ending)
 
     return [
-        Product(
-            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}",
-            "drawing",
-            "",
-            f"{keys[scene.name]} {ending}",
-            lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
-        )
-        for scene in scenes
-        for ending in ("pdf", "svg")
+        Product(f"drawings/{w.stem}.{e}", "drawing", w.part_no, f"{w.key} {e}", partial(made, w.key, e))
+        for w in wanted
+        for e in endings
     ]
 
 
-def _assembly_drawings(
-    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
-) -> dict[str, Written]:
-    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
-    from tactcad.drawing.workers import all_written
-    from tactcad.scenes.bom import bom_rows
-    from tactcad.solids.bytes import to_bytes
-
-    orders = [
-        AssemblyOrder(
-            design,
-            scene,
-            bom_rows(scene, design.design.revision, {}),
-            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts},
-            draft,
-        )
-        for scene in scenes
-    ]
-    return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
+def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
+    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
+    from the DXF where there is one."""
+    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
 
 
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:

@@ -48,7 +48,7 @@ def _print(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def looked_at(directory: str | os.PathLike[str], schema: str, others: str = REFUSE) -> Contents:
+def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
     """What lies in DIR now; touches nothing.
 
     Raises InputError where DIR is no place for a folder, or holds what tactcad did not write there and
@@ -98,7 +98,7 @@ def _named(foreign: Mapping[str, str]) -> str:
     return ", ".join(names[:SHOWN]) + more
 
 
-def left_unfinished(directory: str | os.PathLike[str]) -> bool:
+def left_unfinished(directory: str | Path) -> bool:
     """Whether another run writes DIR, or was killed when it did."""
     out = absolute(directory)
     return any(name.startswith(f".{out.name}{OWN}") for name in os.listdir(out.parent))
@@ -160,11 +160,7 @@ class Work:
 
 @contextmanager
 def turn(
-    directory: str | os.PathLike[str],
-    schema: str,
-    others: str = REFUSE,
-    say: Say = _print,
-    wait: float = WAIT_SECONDS,
+    directory: str | Path, schema: str, others: str = REFUSE, say: Say = _print, wait: float = WAIT_SECONDS
 ) -> Iterator[Work]:
     """Be the only one who writes DIR, a folder of that schema; what killed runs left is settled first.
 
@@ -208,6 +204,7 @@ def turn(
 def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say: Say, until: float) -> Path:
     """Our unfinished folder beside DIR, once no other process has one."""
     said = False
+    holders: tuple[str, ...] | None
     while True:
         parent = os.open(out.parent, os.O_RDONLY | os.O_DIRECTORY)
         try:  # one at a time looks around; closing gives the lock back

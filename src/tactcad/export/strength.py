@@ -50,9 +50,7 @@ def strength_bytes(layout: Layout) -> bytes:
     yields = strength.yield_force_where_known(section, alloy)
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
-    goodman = strength.goodman(
-        alloy, rated * alloy.yield_strength / yields
-    )  # the fillet's stress at that force
+    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)  # fillet's stress at that force
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,7 +39,7 @@ class Released:
 def release(
     design: Design,
     design_file: Path,
-    out: str | os.PathLike[str],
+    out: str | Path,
     shop_file: Path,
     progress: Progress,
     draft: bool = False,

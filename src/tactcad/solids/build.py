@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
@@ -55,10 +57,9 @@ def _built(part: Part) -> Solid:
     return solid
 
 
-def _only_solid(shape: object, part: Part) -> Solid:
-    solids = (
-        list(shape.solids()) if hasattr(shape, "solids") else [s for piece in shape for s in piece.solids()]
-    )
+def _only_solid(shape: Any, part: Part) -> Solid:
+    pieces = [shape] if hasattr(shape, "solids") else shape
+    solids = [solid for piece in pieces for solid in piece.solids()]
     if len(solids) != 1:
         raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
     return solids[0]

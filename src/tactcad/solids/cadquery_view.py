@@ -44,7 +44,8 @@ def assembly(scene: Scene) -> cq.Assembly:
 
 
 def _colour(colour: str) -> cq.Color:
-    return cq.Color(*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)), 1.0)
+    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return cq.Color(r, g, b, 1.0)
 
 
 def bought_from_step(
@@ -69,7 +70,7 @@ def bought_from_cadquery(
     Raises InputError where the model is not one solid.
     """
     shape = model.val() if isinstance(model, cq.Workplane) else model
-    solids = shape.Solids()
+    solids = shape.Solids() if isinstance(shape, cq.Shape) else []
     if len(solids) != 1:
         raise InputError(
             part_no, "a CadQuery model that is not one solid", value=len(solids), legal="one solid"
