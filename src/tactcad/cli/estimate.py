@@ -15,6 +15,7 @@ from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNG
 if TYPE_CHECKING:
     from tactcad.design.tree import Design
     from tactcad.mechanics.accuracy import Choice
+    from tactcad.parts.layout import Layout
 
 EXAMPLES = """\
   tactcad estimate
@@ -106,7 +107,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
     else:
-        print(_report(design, model, rows, uncut))
+        print(_report(layout, model, rows, uncut))
         if choice and accuracy:
             print(_why(choice, accuracy))
     return 0
@@ -215,8 +216,8 @@ def _document(design: Design, model: str, rows: list[dict], uncut: dict | None) 
     return document | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design: Design, model: str, rows: list[dict], uncut: dict | None) -> str:
-    first = rows[0]
+def _report(layout: Layout, model: str, rows: list[dict], uncut: dict | None) -> str:
+    design, first = layout.design, rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
         f"{first['force']:g} N on each pad",
@@ -234,7 +235,7 @@ def _report(design: Design, model: str, rows: list[dict], uncut: dict | None) ->
             "cut at load line and clamp edge"
         )
     if model in FITTED:
-        lines.append(_spread(design, first))
+        lines.append(_spread(layout, model))
     return "\n".join(lines)
 
 
@@ -263,8 +264,13 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(design: Design, row: dict) -> str:
-    """What the hinge's tolerance does to these numbers: K goes with t^3."""
-    tolerance = design.tolerance.hinge_thickness
-    share = 3.0 * tolerance / design.element.hinge_thickness
-    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share:.0%}; measure it"
+def _spread(layout: Layout, model: str) -> str:
+    """What the hinge's tolerance does to these numbers, by the rung's own derivative."""
+    from tactcad.mechanics.derivative import elasticity
+    from tactcad.parts.hinge_section import hinge_section
+
+    section, tolerance = hinge_section(layout, layout.elements), layout.design.tolerance.hinge_thickness
+    shares = elasticity(section, "hinge_thickness", model) * tolerance / section.hinge_thickness
+    least, most = float(shares.min()), float(shares.max())
+    share = f"{shares.mean():.1%}" if most < 1.1 * least else f"{least:.1%} to {most:.1%}"
+    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share}; measure it"

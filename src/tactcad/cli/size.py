@@ -55,7 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--tolerance",
         type=float,
         metavar="MM",
-        help="plus and minus of the length sized (default: the design's)",
+        help="plus and minus of the length found (default: the design's)",
     )
     parser.add_argument(
         "--model",
@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     parameter = f"hinge_{args.solve}"
     if getattr(args, parameter) is not None:
         raise InputError(
-            f"--hinge-{args.solve}", "is what is to be sized; leave it out", value=getattr(args, parameter)
+            f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
         )
     answer = _answer(args, parameter)
     if args.json:

@@ -14,7 +14,7 @@ from tactcad.contour import Line
 from tactcad.parts.description import Part, drill_point_height
 
 from .boxes import Box, Chord, Point
-from .contours import contours, extrusion
+from .contours import contours
 from .holes import Round, widest
 from .ink import THIN, Arc, Curve, Hatch, Stroke
 from .keys import Owner
@@ -45,7 +45,7 @@ def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) ->
     Breaks | None
         None where too little could be left out.
     """
-    box = extrusion(part).outer.box
+    box = part.extrusion.outer.box
     sides = (box[2] - box[0], box[3] - box[1])
     axis = 0 if sides[0] > sides[1] else 1
     length, width = sides[axis], sides[1 - axis]

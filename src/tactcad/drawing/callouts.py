@@ -9,7 +9,7 @@ from math import atan2, degrees
 from tactcad.contour import Arc, Contour, Line
 from tactcad.parts.description import Part, Pocket
 
-from .contours import contours, extrusion, in_part
+from .contours import contours, in_part
 from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
@@ -89,7 +89,7 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
         return None
     pocket, n = Owner("pocket", k), len(contour)
     x, y = (
-        halfway(*(edge_level(sketch, OUTER, i, v) for v in extrusion(part).outer.box[i::2])) for i in (0, 1)
+        halfway(*(edge_level(sketch, OUTER, i, v) for v in part.extrusion.outer.box[i::2])) for i in (0, 1)
     )
     offsets = [Offset(Spot(pocket, i), Spot(pocket, (i + 1) % n), x, y) for i in sides]
     measured = [abs(o.of(sketch.values)) for o in offsets]
@@ -105,7 +105,7 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
 
 
 def _is_outline(part: Part, f: Pocket) -> bool:
-    return in_part(f, f.contour).as_circle() == extrusion(part).outer.as_circle()
+    return in_part(f, f.contour).as_circle() == part.extrusion.outer.as_circle()
 
 
 def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:

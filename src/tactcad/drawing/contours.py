@@ -3,21 +3,14 @@
 from __future__ import annotations
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.parts.description import Extrusion, Hole, Part, Pocket
+from tactcad.parts.description import Hole, Part, Pocket
 
 from .keys import OUTER, Owner
 
 
-def extrusion(part: Part) -> Extrusion:
-    """The body of a part that is drawn by its contours. Raises TypeError where it is turned, or from a file."""
-    if not isinstance(part.body, Extrusion):
-        raise TypeError(f"{part.part_no} is not an extrusion: its sheet is not written yet")
-    return part.body
-
-
 def contours(part: Part) -> list[tuple[Owner, Contour]]:
     """Every contour of the part by what its variables belong to."""
-    body = extrusion(part)
+    body = part.extrusion
     named = [(OUTER, body.outer), *((Owner("opening", i), c) for i, c in enumerate(body.openings))]
     for k, f in enumerate(part.features):
         if isinstance(f, Pocket):

@@ -18,7 +18,6 @@ from tactcad.parts.description import Part
 
 from .boxes import Box, Point
 from .callouts import equal_radii, hole_callout
-from .contours import extrusion
 from .holes import Group, Round, groups, rounds
 from .keys import OUTER, THICKNESS, Spot
 from .measure import Level, Radius, Slope, Span, conventions, halfway, level, size
@@ -89,7 +88,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
 
     Raises CheckFailure where a dimension is missing or given twice.
     """
-    o = Outline(extrusion(part).outer)
+    o = Outline(part.extrusion.outer)
     sketch = Sketch(part)
     for row in conventions(OUTER, o.contour):
         sketch.convention(row)

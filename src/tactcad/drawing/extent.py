@@ -8,7 +8,7 @@ from itertools import product
 from math import cos, pi, sin
 
 from tactcad.contour import Arc, Contour, Point
-from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector
+from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
 from tactcad.scenes.scene import Placement
 
 from .boxes import Box, bounds
@@ -37,14 +37,12 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
 
 def placed(p: Placement, point: Vector) -> Vector:
     """A point of the part's own frame, in the scene (mm)."""
-    x, y, z = (_dot(row, point) + o for row, o in zip(p.rotation, p.origin))
-    return (x, y, z)
+    return vector(_dot(row, point) + o for row, o in zip(p.rotation, p.origin))
 
 
 def moved_by(p: Placement, way: Sequence[float], digits: int = 9) -> Placement:
     """The placement elsewhere (mm), its place rounded."""
-    x, y, z = (round(o + float(w), digits) for o, w in zip(p.origin, way))
-    return replace(p, origin=(x, y, z))
+    return replace(p, origin=vector(round(o + float(w), digits) for o, w in zip(p.origin, way)))
 
 
 def _surface_points(part: Part) -> Iterator[Vector]:

@@ -11,7 +11,7 @@ from math import isclose
 from tactcad.design.tree import Design
 from tactcad.parts.description import Hole, Part, Vector
 
-from .contours import axis_of, extrusion
+from .contours import axis_of
 from .keys import Owner, Quantity, Values
 from .measure import size
 from .plan import Dimension
@@ -33,7 +33,7 @@ class Round:
 
 def rounds(part: Part, design: Design) -> list[Round]:
     """Round openings and holes of an extruded part."""
-    body = extrusion(part)
+    body = part.extrusion
     holes = []
     for i, opening in enumerate(body.openings):
         if circle := opening.as_circle():

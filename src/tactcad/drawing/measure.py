@@ -20,7 +20,7 @@ import numpy as np
 from tactcad.contour import Arc, Contour, Line
 from tactcad.parts.description import Hole, Part
 
-from .contours import axis_of, contours, extrusion
+from .contours import axis_of, contours
 from .keys import THICKNESS, Owner, Quantity, Spot, Values, Variable
 
 STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth at this size
@@ -193,7 +193,7 @@ def _xy(point: Spot) -> tuple[Variable, Variable]:
 
 def variables(part: Part) -> dict[Variable, float]:
     """Every variable of an extruded part with its value (mm)."""
-    values = {THICKNESS: extrusion(part).thickness}
+    values = {THICKNESS: part.extrusion.thickness}
     for owner, contour in contours(part):
         _add_contour(values, owner, contour)
     for k, feature in enumerate(part.features):

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.parts.description import Characteristic, Part, Vector
+from tactcad.parts.description import Characteristic, Part, Vector, vector
 
 from .boxes import Box, Point
 from .keys import Values, Variable
@@ -207,7 +207,7 @@ def seen(view: View, p: Vector) -> Point:
 
 
 def opposite(v: Vector, share: float = 1.0) -> Vector:
-    return (-share * v[0], -share * v[1], -share * v[2])
+    return vector(-share * a for a in v)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from tactcad.parts.description import Part, Pocket, Vector
 from .boxes import Point
 from .broken import breaks_of
 from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline
-from .contours import contours, extrusion
+from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
 from .measure import Difference, Level, Span, conventions, halfway, level, size
@@ -49,7 +49,7 @@ def prism_plan(
     CheckFailure
         Where a characteristic or a variable of the part stays without dimension.
     """
-    body = extrusion(part)
+    body = part.extrusion
     sketch = Sketch(part)
     for name, contour in contours(part):
         for row in conventions(name, contour):
@@ -126,7 +126,7 @@ def _front_view(
         for r in g.holes
         for k in (0, 1)
     ]
-    outer = extrusion(part).outer
+    outer = part.extrusion.outer
     disc = outer.as_circle()
     linears: list[Linear] = []
     if disc:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from tactcad.parts.description import Part
 
 from .boxes import Point
-from .contours import extrusion
 from .holes import Group
 from .keys import OUTER, THICKNESS
 from .measure import Span
@@ -71,7 +70,7 @@ def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequenc
 
 def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Sequence[Group]) -> Running:
     """Holes of a side face across the thickness, from the face z = 0, and the thickness itself."""
-    body = extrusion(part)
+    body = part.extrusion
     x0 = body.outer.box[0]
     origin = Coordinate("underside", None, (x0, 0.0, 0.0))
     sketch.known[2] = [origin]

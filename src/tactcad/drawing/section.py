@@ -13,10 +13,10 @@ from dataclasses import replace
 from math import isclose
 
 from tactcad.contour import Arc, Line
-from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height
+from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height, vector
 
 from .boxes import Point
-from .contours import axis_of, contours, extrusion, in_part
+from .contours import axis_of, contours, in_part
 from .holes import Round, widest
 from .plan import Bore, Section, View, opposite, seen
 from .sketch import view_of
@@ -60,7 +60,7 @@ def _sight(front: View, below: Vector | None, k: int) -> tuple[Vector, Vector]:
 
 
 def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, way: float) -> float | None:
-    box = extrusion(part).outer.box
+    box = part.extrusion.outer.box
     low, high = box[k], box[k + 2]
     planes = sorted(
         {round(v, 9) for f in sunk if (v := _middle(f, k)) is not None and low + SAME < v < high - SAME}
@@ -139,8 +139,7 @@ def _bore(view: View, h: Hole) -> Bore:
     cone = drill_point_height(h.diameter) if h.drill_point else 0.0
 
     def at(depth: float) -> Point:
-        x, y, z = (p + depth * a for p, a in zip(h.at, h.axis))
-        return seen(view, (x, y, z))
+        return seen(view, vector(p + depth * a for p, a in zip(h.at, h.axis)))
 
     full = min(counterbore + h.thread_depth, h.depth) if h.thread else 0.0
     ends_inside = not (h.through and isclose(full, h.depth))

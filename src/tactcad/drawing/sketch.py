@@ -9,7 +9,6 @@ from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
 
 from .boxes import bounds
-from .contours import extrusion
 from .keys import Owner, Quantity, Spot, Variable
 from .measure import Determined, Level, Measure, level, variables
 from .plan import Dimension, View, seen
@@ -102,7 +101,7 @@ def closed(sketch: Sketch) -> None:
 def view_of(part: Part, name: str, eye: Vector, up: Vector) -> View:
     """The bare view of a part, as large as the part is."""
     view = View(name, eye, up, (0.0, 0.0, 0.0, 0.0))
-    body = extrusion(part)
+    body = part.extrusion
     x0, y0, x1, y1 = body.outer.box
     corners = product((x0, x1), (y0, y1), (0.0, body.thickness))
     return replace(view, box=bounds(seen(view, corner) for corner in corners))
