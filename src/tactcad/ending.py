@@ -1,9 +1,9 @@
 """How a signal ends the program: at once, by one door, with nothing half made left behind.
 
-An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it into
-another error, native imports above all. So the handler itself puts away what is unfinished, says one line and exits.
-It waits only for the native call that is running. Nothing but what Python has loaded anyway is imported here:
-`tactcad.__main__` lets it stand before everything else.
+An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it
+into another error, native imports above all. So the handler itself puts away what is unfinished, says one
+line and exits. It waits only for the native call that is running. Nothing but what Python has loaded anyway
+is imported here: `tactcad.__main__` lets it stand before everything else.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ _owner = 0  # the process whose unfinished things they are: a forked helper has 
 
 
 def end_on_signals() -> None:
-    """From now on SIGINT, SIGTERM and SIGHUP end this process with 128 + their number; what it was started to ignore, as
-    nohup does, stays ignored."""
+    """From now on SIGINT, SIGTERM and SIGHUP end this process with 128 + their number; what it was started to
+    ignore, as nohup does, stays ignored."""
     global _owner
     _owner = os.getpid()
     for number in SAID:
@@ -42,7 +42,8 @@ def past_ending() -> None:
 
 
 class unfinished:
-    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends the program.
+    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends
+    the program.
 
     It may be called between any two steps of the block, and must tell by what lies on the disk what is to go.
     """

@@ -10,7 +10,7 @@ from .parser import add_json, add_others
 
 EXAMPLES = """\
   tactcad bench                              everything in short: four minutes on two quiet cores
-  tactcad bench --full --out bench           for publication: report.json, report.md, tables/*.csv, plots/*.svg
+  tactcad bench --full --out bench           for publication: report.json, report.md, tables/, plots/
   tactcad bench --only rungs --only meshes   two of them
   tactcad bench --smoke                      does everything run? its figures mean nothing
 

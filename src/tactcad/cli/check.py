@@ -62,7 +62,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
-    """The design's report. Of several designs one that is refused fails, and the others are checked all the same."""
+    """The design's report. Of several designs one that is refused fails, and the others are checked all the
+    same."""
     from tactcad.checks.report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError

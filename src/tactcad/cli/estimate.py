@@ -21,13 +21,13 @@ EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
-  tactcad estimate --accuracy 1%                    # the quickest rung whose measured worst error is within it
+  tactcad estimate --accuracy 1%             # the quickest rung whose measured worst error is within it
   tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
   tactcad estimate --inspection inspections/macro-array-C.csv
-                                      the elements as made, from the inspection sheet that the shop filled in: a copy
-                                      of an export's inspection.csv, kept outside the export
+                                      the elements as made, from the inspection sheet that the shop
+                                      filled in: a copy of an export's inspection.csv, kept outside the export
 """
 
 COLUMNS = (  # heading, unit, field, format
@@ -60,8 +60,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accuracy",
         metavar="P",
-        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the examples), "
-        "against solid elements refined to their limit; takes the quickest rung whose measured worst error at this "
+        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the "
+        "examples), "
+        "against solid elements refined to their limit; takes the quickest rung whose measured worst error "
+        "at this "
         "design is within it, or refuses (docs/accuracy.md)",
     )
     parser.add_argument(
@@ -75,7 +77,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inspection",
         metavar="FILE",
-        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its elements as "
+        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
+        "elements as "
         "made, beside the nominal",
     )
 
@@ -154,7 +157,8 @@ def _why(choice: Choice, accuracy: float) -> str:
     from tactcad.mechanics.accuracy import accuracy_data
 
     return (
-        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, K within {100 * choice.expected_error:.2g} % of "
+        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, K within "
+        f"{100 * choice.expected_error:.2g} % of "
         f"solid elements refined to their limit, in about {choice.expected_time:.2g} s "
         f"(measured {accuracy_data()['date']}; docs/accuracy.md)"
     )
@@ -230,7 +234,8 @@ def _report(layout: Layout, model: str, rows: list[dict], uncut: dict | None) ->
         )
     if uncut:
         lines.append(
-            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in plane stress: "
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in "
+            f"plane stress: "
             f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
             "cut at load line and clamp edge"
         )

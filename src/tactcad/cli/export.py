@@ -18,9 +18,9 @@ EXAMPLES = """\
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
 
-The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing. A folder
-with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill in a copy of
-inspection.csv (in inspections/, say), not the export's own."""
+The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
+A folder with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill
+in a copy of inspection.csv (in inspections/, say), not the export's own."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +33,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="KEY=VALUE",
         default=[],
-        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
+        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be "
+        "repeated",
     )
     parser.add_argument(
         "--detail",

@@ -1,4 +1,5 @@
-"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their report."""
+"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their
+report."""
 
 from __future__ import annotations
 
@@ -130,7 +131,8 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
 
 
 def _today() -> date:
-    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no time."""
+    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no
+    time."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         return datetime.fromtimestamp(as_whole(epoch), UTC).date() if epoch else date.today()

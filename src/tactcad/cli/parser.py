@@ -79,7 +79,8 @@ def add_others(parser: argparse.ArgumentParser) -> None:
         action="store_const",
         const="keep",
         default="refuse",
-        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 (default: refuse)",
+        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 "
+        "(default: refuse)",
     )
     others.add_argument(
         "--discard",

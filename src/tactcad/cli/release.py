@@ -14,10 +14,10 @@ EXAMPLES = """\
   tactcad release                     exports/releases/macro-array-<revision>.zip
   tactcad release soft-tissue --out to-the-shop
   tactcad release --shop my-shop.toml with your own shop's limits for wire cutting
-  tactcad release --draft             although a check fails: PRELIMINARY on every sheet, in README and file name
+  tactcad release --draft             although a check fails: PRELIMINARY on sheets, in README and file name
 
-One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection sheet,
-strength summary, checksums. Every check runs first, and the golden file is compared; where one fails
+One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection
+sheet, strength summary, checksums. Every check runs first, and the golden file is compared; where one fails
 nothing is written and an earlier zip stays as it is."""
 
 

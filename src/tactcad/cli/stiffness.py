@@ -36,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--design",
         metavar="DESIGN",
         default=None,
-        help="the array that was pressed: where its pads stand says how far they feel each other through the object "
+        help="the array that was pressed: where its pads stand says how far they feel each other through "
+        "the object "
         f"(default {DEFAULT_DESIGN})",
     )
     parser.add_argument(
@@ -44,7 +45,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=1.0,
         metavar="C",
-        help="the object couples the pads by at most this share of what an elastic half-space does (default 1; 0: each "
+        help="the object couples the pads by at most this share of what an elastic half-space does (default "
+        "1; 0: each "
         "pad on an object of its own); the intervals hold for all up to it",
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")

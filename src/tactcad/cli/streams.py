@@ -29,13 +29,14 @@ class Lossy(io.FileIO):
 
     @property
     def failed(self) -> OSError | None:
-        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal that hung
-        up."""
+        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal
+        that hung up."""
         return None if self.terminal or isinstance(self.error, ConnectionError) else self.error
 
 
 def mend() -> None:
-    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its number."""
+    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its
+    number."""
     if None in (sys.stdin, sys.stdout, sys.stderr):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
             os.set_inheritable(handle, True)

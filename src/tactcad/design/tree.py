@@ -1,8 +1,8 @@
 """The parameter tree: one frozen dataclass a table of the design file.
 
-Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between
-the rows along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the
-object. A default of None is derived from other fields (design/layout.py says how).
+Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
+along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
+of None is derived from other fields (design/layout.py says how).
 """
 
 from __future__ import annotations

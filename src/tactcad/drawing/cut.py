@@ -27,8 +27,7 @@ SAME = 1e-7  # mm: the kernel's own tolerance
 
 
 def cut(shape: TopoDS_Shape, view: View, section: Section) -> tuple[TopoDS_Shape, Hatch]:
-    """What lies behind the plane of a section, and its cut face in the view's plane (mm of the
-    part).
+    """What lies behind the plane of a section, and its cut face in the view's plane (mm of the part).
 
     Raises CheckFailure where the plane misses the part.
     """

@@ -60,7 +60,8 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
 
 
 def torque(part: Part, design: Design) -> float | None:
-    """Tightening torque of a cap or set screw, N m; None for other parts, 0 for a set screw that only touches."""
+    """Tightening torque of a cap or set screw, N m; None for other parts, 0 for a set screw that only
+    touches."""
     match = _SCREW.match(part.part_no)
     if not match:
         return None

@@ -50,7 +50,8 @@ def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str, date: str) -> by
 
 @contextmanager
 def _dated(date: str) -> Iterator[None]:
-    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for others."""
+    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for
+    others."""
     given = os.environ.pop(EPOCH, None)
     os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
     try:

@@ -35,7 +35,7 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
     Returns
     -------
     Running
-        From the view's left or lower edge, of a disc from its centre; without stops where there are no points.
+        From the view's left or lower edge, of a disc from its centre; without points it has no stops.
     """
     if not points:
         return Running(side, ())
@@ -98,8 +98,8 @@ def _with_stops(
     way: float,
     points: Sequence[Coordinate],
 ) -> Running:
-    """One more dimension from the origin for every point that is not in line with one that has it, and does not follow
-    from it."""
+    """One more dimension from the origin for every point that is not in line with one that has it, and does
+    not follow from it."""
     stops = list(r.stops)
     for c in points:
         if c is origin:

@@ -1,8 +1,8 @@
 """The cut file of a part that is cut from sheet or plate, written from its contours and read back.
 
-AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities
-follow each contour head to tail; openings come before the outline, as they are cut, since the part drops
-with the last cut. The file holds the nominal contour: wire compensation belongs to the machine.
+AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities follow each
+contour head to tail; openings come before the outline, as they are cut, since the part drops with the last
+cut. The file holds the nominal contour: wire compensation belongs to the machine.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ def _section(part: Part) -> Extrusion:
 
 
 def dxf_bytes(part: Part) -> bytes:
-    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and home."""
+    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and
+    home."""
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing

@@ -64,8 +64,8 @@ def read_golden(path: Path) -> Record:
 def check_golden(design: Design, path: Path) -> list[Finding]:
     """Findings on a design against its golden file.
 
-    Geometry that the golden file's revision does not have fails; under a new revision, and where there is
-    no golden file yet, what `make golden` would take up is flagged.
+    Geometry that the golden file's revision does not have fails; under a new revision, and where there is no
+    golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
         return [
@@ -82,21 +82,22 @@ def judge(old: Record, new: Record) -> list[Finding]:
     """What the differences between golden file and design mean."""
     changes = [c for c in differences(old, new) if c.path[0] != "revision"]
     same_revision = old["revision"] == new["revision"]
-    geometric = [c for c in changes if not from_models(c)]
     if not changes and same_revision:
         return []
+    geometric, count = [c for c in changes if not from_models(c)], len(changes)
     name, letter = new["design"], new["revision"]
     if not same_revision:
-        said = f"revision {old['revision']} -> {letter} with {len(changes)} differences: `make golden` takes it up"
+        said = f"revision {old['revision']} -> {letter} with {count} differences: `make golden` takes it up"
     elif geometric:
+        count = len(geometric)
         said = (
-            f"revision {letter} has other geometry than its golden file, {len(geometric)} differences: "
+            f"revision {letter} has other geometry than its golden file, {count} differences: "
             "give the design a new revision letter"
         )
     else:
-        said = f"the geometry is the same, but the models give {len(changes)} other figures: `make golden` takes them up"
+        said = "the geometry is the same, but the models give "
+        said += f"{count} other figures: `make golden` takes them up"
     severity: Severity = "fail" if same_revision else "flag"
-    count = len(geometric) if same_revision and geometric else len(changes)
     head = Finding("golden", severity, name, (), count, 0, said)
     return [head, *(_about(severity, c) for c in changes)]
 

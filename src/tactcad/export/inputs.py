@@ -1,8 +1,8 @@
 """What an output depends on, as digests that are the same in every process, and why it is rebuilt, in words.
 
-An output depends on values (the design, a part's description), on the source of the rooms that make it,
-and on the libraries they use. All three go into the key: a key of values alone would serve
-stale geometry after a change of the code.
+An output depends on values (the design, a part's description), on the source of the rooms that make it, and
+on the libraries they use. All three go into the key: a key of values alone would serve stale geometry after a
+change of the code.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ def digest(value: object) -> str:
 def _canonical(value: object, known: dict[int, bytes]) -> bytes:
     """Unambiguous encoding: a tag, and lengths before contents.
 
-    `known` holds the digest of every dataclass met, by identity, so that a part placed a
-    thousand times is encoded once.
+    `known` holds the digest of every dataclass met, by identity, so that a part placed a thousand times is
+    encoded once.
     """
     match value:
         case None | bool() | int() | float():
@@ -147,7 +147,8 @@ def inputs_from_json(record: Any) -> Inputs | None:
 
 
 def reasons(before: Inputs | None, now: Inputs) -> list[str]:
-    """Why an output made from `before` has to be made again from `now`, a line each; none where nothing changed.
+    """Why an output made from `before` has to be made again from `now`, a line each; none where nothing
+    changed.
 
     Raises nothing: a record that cannot be understood (None) is a reason too.
     """

@@ -43,8 +43,8 @@ class Progress(Protocol):
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export did: its folder, how many files it holds, which were made anew, which parts the
-    kernel built, and why (empty where nothing had changed)."""
+    """What an export did: its folder, how many files it holds, which were made anew, which parts the kernel
+    built, and why (empty where nothing had changed)."""
 
     folder: Path
     files: int
@@ -57,8 +57,8 @@ class Exported:
 class ExportOptions:
     """What of a design is exported, and how; beside the design all that an export is made from.
 
-    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`: `full`
-    or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`:
+    `full` or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
     """
 
     scenes: tuple[str, ...]
@@ -72,13 +72,13 @@ class ExportOptions:
 def export(
     design: Design, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
 ) -> Exported:
-    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files there that
-    tactcad did not write so (publish.py).
+    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files
+    there that tactcad did not write so (publish.py).
 
-    Nothing is written where the folder already holds just this; the rules between fields, which the
-    earlier export kept, are tried only where something has to be made. Raises InputError where the
-    design breaks a rule, or `out` is not ours to replace or cannot be written, CheckFailure where a
-    file does not read back as it should, or where something in `out` had changed meanwhile and was kept.
+    Nothing is written where the folder already holds just this; the rules between fields, which the earlier
+    export kept, are tried only where something has to be made. Raises InputError where the design breaks a
+    rule, or `out` is not ours to replace or cannot be written, CheckFailure where a file does not read back
+    as it should, or where something in `out` had changed meanwhile and was kept.
     """
     inputs = inputs_of(
         {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())
@@ -180,7 +180,8 @@ def _rebuild(
 def _write_products(
     folder: Path, products: Sequence[Product], cache: Cache, progress: Progress
 ) -> tuple[str, ...]:
-    """Write every product's bytes, from the cache where it has them; returns the paths that were made anew."""
+    """Write every product's bytes, from the cache where it has them; returns the paths that were made
+    anew."""
     made = []
     for n, product in enumerate(products):
         data = cache.get(product.key)

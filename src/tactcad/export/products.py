@@ -76,7 +76,8 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
         ("below", "below", scene.placements),
         ("open", "above", opened),
     ):
-        text = f"{design.design.title}: {scene.name}, {'cover taken off' if label == 'open' else 'from ' + label}"
+        seen = "cover taken off" if label == "open" else f"from {label}"
+        text = f"{design.design.title}: {scene.name}, {seen}"
         products.append(
             Product(
                 f"pictures/{name}-{label}.svg",
@@ -121,7 +122,8 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
 
 @dataclass(frozen=True)
 class _Wanted:
-    """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its order."""
+    """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its
+    order."""
 
     stem: str
     part_no: str
@@ -195,7 +197,8 @@ def _drawn(
     shapes: Shapes,
     say: Callable[[int, int, str], None],
 ) -> list[Product]:
-    """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by side."""
+    """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by
+    side."""
     from tactcad.drawing.workers import all_written
 
     endings = ("pdf", "svg")
@@ -215,14 +218,15 @@ def _drawn(
 
 
 def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
-    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
-    from the DXF where there is one."""
+    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model,
+    and their blank from the DXF where there is one."""
     kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
     return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
 
 
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
-    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed forms."""
+    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed
+    forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
     return json.loads(cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
 

@@ -41,7 +41,8 @@ PLACE_AGREES = 1e-7
 
 
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
-    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back otherwise."""
+    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back
+    otherwise."""
     document, shape_tool = _document()
     _add_prototype(document, shape_tool, part, shape)
     data = _written(document, header)
@@ -122,7 +123,8 @@ class Instance:
 
 @dataclass(frozen=True)
 class Assembly:
-    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are valid."""
+    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are
+    valid."""
 
     name: str
     instances: tuple[Instance, ...]

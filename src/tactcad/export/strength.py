@@ -1,4 +1,5 @@
-"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload force."""
+"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload
+force."""
 
 from __future__ import annotations
 
@@ -41,8 +42,8 @@ COLUMNS = (
 def strength_bytes(layout: Layout) -> bytes:
     """The summary (RFC 4180, UTF-8), rows by element number, by the rung `solid`; four significant digits.
 
-    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element its
-    figures are blank and the last column says why.
+    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element
+    its figures are blank and the last column says why.
     """
     design, places = layout.design, layout.elements
     section, alloy = hinge_section(layout, places), design_alloy(design)

@@ -24,8 +24,8 @@ QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
 
 @dataclass(frozen=True)
 class Released:
-    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only), and what
-    differs from the zip that stood there before."""
+    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only),
+    and what differs from the zip that stood there before."""
 
     path: Path
     design: str
@@ -44,11 +44,12 @@ def release(
     progress: Progress,
     draft: bool = False,
 ) -> Released:
-    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft, `<design>-<revision>-PRELIMINARY.zip`.
+    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft,
+    `<design>-<revision>-PRELIMINARY.zip`.
 
-    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden file
-    does not hold just this revision (a draft goes on and says so in its README), or where what was written does
-    not read back; InputError where `out` cannot be written.
+    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden
+    file does not hold just this revision (a draft goes on and says so in its README), or where what was
+    written does not read back; InputError where `out` cannot be written.
     """
     revision = design.design.revision
     target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
@@ -82,8 +83,8 @@ def release(
 
 
 def golden_faults(design: Design, design_file: Path) -> list[str]:
-    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry, or where
-    the design stands in no hardware/ and can have none."""
+    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry,
+    or where the design stands in no hardware/ and can have none."""
     path = golden_path(design_file, design)
     return [] if path is None else [finding.message for finding in check_golden(design, path)]
 

@@ -1,4 +1,5 @@
-"""README.txt of a release: what a shop reads first. Plain ASCII where the design's own texts are, 96 columns."""
+"""README.txt of a release: what a shop reads first. Plain ASCII where the design's own texts are, 96
+columns."""
 
 from __future__ import annotations
 
@@ -22,12 +23,14 @@ WIDTH = 96
 MARK = "PRELIMINARY"
 DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 FOLDERS = {
-    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of milled and ground "
+    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
+    "milled and ground "
     "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
     "step/": "every part as a solid, and every assembly (AP214, millimetres)",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
-    inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, expanded, "
+    inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "
+    "expanded, "
     "k = 2, if you state it) and send it back. Decimal points, mm.",
     strength.NAME: "what every element is rated for; for information",
     MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
@@ -37,7 +40,8 @@ PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "T
 
 @dataclass(frozen=True)
 class Contents:
-    """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is none)."""
+    """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is
+    none)."""
 
     design: Design
     scenes: Sequence[Scene]
@@ -112,8 +116,10 @@ def _what(contents: Contents) -> list[str]:
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
     others = [scene.name for scene in contents.scenes if scene.name != "array"]
     text = (
-        f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from {design.sheet.thickness:g} mm "
-        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness decides its stiffness: "
+        f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from "
+        f"{design.sheet.thickness:g} mm "
+        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness "
+        f"decides its stiffness: "
         "one hundredth of a millimetre more or less is "
         f"{100 * per_hundredth:.0f} % more or less stiffness. Everything else is ordinary plate work."
     )
@@ -153,7 +159,8 @@ def _table(contents: Contents) -> list[str]:
         lines += line(row)
     lines.append("")
     return lines + _paragraph(
-        "Quantities are for one of every set-up. Bought parts (screws, pins, bearings, gauges) stand in the bills of "
+        "Quantities are for one of every set-up. Bought parts (screws, pins, bearings, gauges) stand in the "
+        "bills of "
         "materials with make_buy = buy; they need no quotation unless we ask for one."
     )
 
@@ -180,8 +187,10 @@ def _keys(contents: Contents) -> list[str]:
         lines.append(f"  {c.name}: {c.nominal:g} mm, {round(c.lower, 6):g} to {round(c.upper, 6):g}")
         lines += _paragraph(_short(contents, numbers), "      ")[:-1]
     return [*lines, ""] + _paragraph(
-        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
-        "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO 2768-2:1989-K."
+        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and "
+        f"record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
+        "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO "
+        "2768-2:1989-K."
     )
 
 
@@ -208,7 +217,8 @@ def _files(paths: Sequence[str]) -> list[str]:
             )
             lines += _paragraph(text, " " * 22, f"  {shown:20}")[:-1]
     return [*lines, ""] + _paragraph(
-        "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find that they do "
+        "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find "
+        "that they do "
         "not, the drawing holds and we want to know."
     )
 
@@ -217,9 +227,11 @@ def _questions(contents: Contents) -> list[str]:
     aluminium = contents.design.material.alloy
     return _listed(
         [
-            "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that they leave.",
+            "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that "
+            "they leave.",
             "Whether you hold the hinge thickness as toleranced, and with what you measure it.",
-            "The order of cuts, and how the hinge is kept from bending when the slug drops (tab, adhesive, order).",
+            "The order of cuts, and how the hinge is kept from bending when the slug drops (tab, adhesive, "
+            "order).",
             "How the holes of the elements are made: wire-cut from a start hole (as drawn), or reamed.",
             f"Whether your machine has an anti-electrolysis supply: {aluminium} pits without it.",
             "Price and delivery for the quantities above, and for twice the elements.",

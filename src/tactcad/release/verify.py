@@ -74,7 +74,8 @@ def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
 
 
 def _part_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
-    """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and headers name the revision."""
+    """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and
+    headers name the revision."""
     revision = contents.design.design.revision
     parts = {p.part_no: p for scene in contents.scenes for p in scene.parts}
     for part in parts.values():
@@ -118,7 +119,8 @@ def _dxf_faults(files: Mapping[str, bytes], path: str, part: Part) -> Iterator[s
 
 
 def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) -> Iterator[str]:
-    """The assembly has as many solids as its bill, the bill's files are here as it has them, and it says the revision."""
+    """The assembly has as many solids as its bill, the bill's files are here as it has them, and it says the
+    revision."""
     revision = contents.design.design.revision
     path = f"step/{contents.design.name}-{scene.name}_{revision}.step"
     bill = _bill(scene)
@@ -142,9 +144,10 @@ def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) 
 
 
 def _sheet_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
-    """A sheet for every part made and an assembly drawing for every scene: number and revision on every page, key
-    characteristics once and with the model's values, the digest of the file that the part is made from, balloons and
-    parts list as the bill has them; PRELIMINARY on every page of a draft and on none of a release."""
+    """A sheet for every part made and an assembly drawing for every scene: number and revision on every page,
+    key characteristics once and with the model's values, the digest of the file that the part is made from,
+    balloons and parts list as the bill has them; PRELIMINARY on every page of a draft and on none of a
+    release."""
     design, revision = contents.design, contents.design.design.revision
     for part in contents.made:
         path = f"pdf/{part.part_no}_{revision}.pdf"

@@ -68,8 +68,8 @@ def _only_solid(shape: Any, part: Part) -> Solid:
 def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
     """The contour as a closed wire in a plane.
 
-    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either
-    edge's end by memory address, and files then differ in their last digits from run to run.)
+    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either edge's end
+    by memory address, and files then differ in their last digits from run to run.)
     """
 
     def there(point: Point) -> gp_Pnt:

@@ -1,8 +1,7 @@
 """The same parts and scenes for people who work in CadQuery, and their models as bought parts here.
 
-from tactcad.solids.cadquery_view import assembly, workplane
-from tactcad.parts.designs import load
-from tactcad.scenes import make_scene
+from tactcad.solids.cadquery_view import assembly, workplane from tactcad.parts.designs import load from
+tactcad.scenes import make_scene
 
 scene = make_scene(load("macro-array"), "array")
 workplane(scene.parts[1])      # a cadquery.Workplane with the part's solid
