@@ -86,15 +86,22 @@ def _is_source(path: Path) -> bool:
     return path.is_file() and path.suffix != ".pyc" and not path.name.startswith(".")
 
 
+def first_installed(*names: str) -> str:
+    """Of libraries that stand for each other the first that is installed; the first of all where none is."""
+    return next((name for name in names if _version(name) != ABSENT), names[0])
+
+
 def library_versions(names: Iterable[str]) -> dict[str, str]:
     """Installed version of each library, and Python's own; an absent library has the version "(absent)"."""
     versions = {"python": "{}.{}.{}".format(*sys.version_info)}
-    for name in sorted(names):
-        try:
-            versions[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            versions[name] = ABSENT
-    return versions
+    return versions | {name: _version(name) for name in sorted(names)}
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ABSENT
 
 
 def flattened(value: object, path: str = "") -> dict[str, Any]:

@@ -14,7 +14,7 @@ from tactcad.design.tree import Design
 from . import manifest as manifests
 from .cache import Cache, default_root
 from .contents import Contents
-from .inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
+from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
 from .publish import REFUSE, Work, left_unfinished, looked_at, turn
 
@@ -27,7 +27,10 @@ if TYPE_CHECKING:
 
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
-LIBRARIES = ("build123d", "cadquery-ocp", "ezdxf", "numpy")
+# The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second is an
+# empty stand-in for the first.
+KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
+LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
 
 
