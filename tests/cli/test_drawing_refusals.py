@@ -94,7 +94,8 @@ def test_a_part_larger_than_the_sheet(place, capsys):
 
 def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
     """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
-    from tactcad.drawing import compose, sheets
+    from tactcad.drawing import compose
+    from tactcad.drawing import part_sheet as sheets
 
     for module in (compose, sheets):
         monkeypatch.setattr(module, "SERIES", ((30, 1),))

@@ -15,8 +15,8 @@ from tactcad.drawing import parts_list
 from tactcad.drawing.assembly import assembly_sheets
 from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
 from tactcad.drawing.gate import pdf_runs
-from tactcad.drawing.ink import Arc, Fill, Stroke, Text, preliminary
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.page import MOST_DRAWN, fewer
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.parts.library.screws import METRIC
@@ -51,7 +51,7 @@ def balloons(sheets) -> dict[int | str, tuple]:
     found = {}
     for n, sheet in enumerate(sheets):
         for circle in (
-            i for i in sheet.items if isinstance(i, Arc) and i.role == "symbol" and i.radius == 4.5
+            i for i in sheet.items if isinstance(i, DrawnArc) and i.role == "symbol" and i.radius == 4.5
         ):
             (text,) = (t for t in sheet.texts if dist(t.at, circle.centre) < 2.0)
             leaders = [

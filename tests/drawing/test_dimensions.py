@@ -16,11 +16,11 @@ from variants import variant
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.keys import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot
-from tactcad.drawing.measure import Radius, Slope, Span, level, variables
+from tactcad.drawing.measures import Radius, Slope, Span, level, variables
 from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.plan import Dimension, number
+from tactcad.drawing.part_sheet import part_plan
 from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.sheets import part_plan
+from tactcad.drawing.sheet_plan import Dimension, number
 from tactcad.parts.description import Characteristic, Extrusion, Hole, Material, Part
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import make_scene, scene_names

@@ -18,17 +18,18 @@ from variants import HARDWARE, variant
 import tactcad
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import fonts, sheets
+from tactcad.drawing import fonts
+from tactcad.drawing import part_sheet as sheets
 from tactcad.drawing.compose import compose
 from tactcad.drawing.gate import drawing_faults, key_faults, pdf_runs
-from tactcad.drawing.ink import Arc, Stroke, Text
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, Stroke, Text
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.paper import A3, A4
+from tactcad.drawing.part_sheet import Order, part_sheet, title_of, written
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.scale import SERIES
-from tactcad.drawing.sheets import Order, part_sheet, title_of, written
 from tactcad.drawing.workers import all_written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
 from tactcad.export.pipeline import ExportOptions, export
@@ -103,7 +104,9 @@ def test_the_hinge_is_shown_at_ten_to_one_or_larger(finished):
             assert int(label.removeprefix("Z (").split(":")[0]) >= 10
             # and its fillets are true arcs at that scale
             factor = int(label.removeprefix("Z (").split(":")[0])
-            radii = {round(i.radius, 3) for i in sheet.items if isinstance(i, Arc) and i.role == "outline"}
+            radii = {
+                round(i.radius, 3) for i in sheet.items if isinstance(i, DrawnArc) and i.role == "outline"
+            }
             assert round(0.3 * factor, 3) in radii
 
 
@@ -174,7 +177,7 @@ def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     assert [written(order) for order in some[:2]] == side_by_side[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
         "done = [written(o) for o in reversed(pickle.load(open(sys.argv[1], 'rb')))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in reversed(done)))"
     )

@@ -23,11 +23,11 @@ from tactcad.drawing import compose
 from tactcad.drawing.contours import in_part
 from tactcad.drawing.gate import pdf_runs
 from tactcad.drawing.ink import Fill, Hatch, Stroke, Text
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.notes import MadeFrom
+from tactcad.drawing.part_sheet import Order, part_sheet, written
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.sheets import Order, part_sheet, written
 from tactcad.drawing.svg import svg_bytes
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
 from tactcad.scenes import make_scene
@@ -350,7 +350,7 @@ def test_equal_bytes_in_other_processes(orders, tmp_path):
     here = [hashlib.sha256(w.pdf + w.svg).hexdigest() for w in map(written, some)]
     (tmp_path / "orders").write_bytes(pickle.dumps(some))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
         "done = [written(o) for o in pickle.load(open(sys.argv[1], 'rb'))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in done))"
     )

@@ -15,8 +15,8 @@ from pypdf import PdfReader
 
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing import fonts
-from tactcad.drawing.ink import Arc, Sheet, Stroke, Text, arrow, preliminary
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, DrawnSheet, Stroke, Text, arrow, preliminary
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.paper import A3, A4, frame
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.svg import svg_bytes
@@ -46,7 +46,7 @@ def block(**changes) -> TitleBlock:
     return TitleBlock(**{**usual, **changes})
 
 
-def sheet(paper=A3, **changes) -> Sheet:
+def sheet(paper=A3, **changes) -> DrawnSheet:
     lines, _ = notes((30, 270), [SIGNS, "burr-free"], 90)
     items = (
         *frame(paper),
@@ -54,10 +54,10 @@ def sheet(paper=A3, **changes) -> Sheet:
         *lines,
         Text((30, 150), "upright 12.5", 3.5, angle=90),
         Stroke(((60, 150), (80, 150))),
-        Arc((150, 150), 20, 30, 120),
+        DrawnArc((150, 150), 20, 30, 120),
         arrow((60, 150), (70, 150)),
     )
-    return Sheet("x-element-a4mm", "Sensing element", paper.size, items)
+    return DrawnSheet("x-element-a4mm", "Sensing element", paper.size, items)
 
 
 def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
@@ -89,7 +89,7 @@ def test_capitals_are_as_high_as_stated():
 def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
     """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too much."""
     text = Text((40, 60), "Qg±⌀(12)", 10, angle=90)
-    bare = Sheet("n", "t", A4.size, (text,))
+    bare = DrawnSheet("n", "t", A4.size, (text,))
     (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a", "2026-11-21"))
     subprocess.run(["pdftoppm", "-r", "127", "-gray", tmp_path / "a.pdf", tmp_path / "a"], check=True)
     data = next(tmp_path.glob("a*.pgm")).read_bytes()

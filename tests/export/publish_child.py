@@ -13,7 +13,7 @@ import sys
 import time
 from pathlib import Path
 
-from tactcad.export import publish
+from tactcad.export import publication as publish
 
 CHANGES = {
     "os.rename",

@@ -10,7 +10,7 @@ import pytest
 from variants import HARDWARE, variant
 
 from tactcad.export.inspection import COLUMNS, inspection_bytes
-from tactcad.export.strength import strength_bytes
+from tactcad.export.strength_table import strength_bytes
 from tactcad.parts.designs import load
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout

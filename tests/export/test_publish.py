@@ -18,8 +18,8 @@ import publish_child
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import publish
-from tactcad.export.publish import DISCARD, KEEP, REFUSE, turn
+from tactcad.export import publication as publish
+from tactcad.export.publication import DISCARD, KEEP, REFUSE, turn
 
 CHILD = Path(__file__).with_name("publish_child.py")
 FILES = {"a.step", "b.dxf", "sub/c.svg"}
@@ -626,7 +626,7 @@ def test_a_name_that_is_too_long(tmp_path, length):
 READ_ONLY = """
 import os, sys
 from tactcad.design.messages import InputError
-from tactcad.export.publish import turn
+from tactcad.export.publication import turn
 if os.geteuid() == 0:
     os.seteuid(65534)  # root may write everywhere; nobody may not
 try:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.export import step
+from tactcad.export import step_file as step
 from tactcad.export.step_text import Header, canonical
 
 pytestmark = pytest.mark.cad

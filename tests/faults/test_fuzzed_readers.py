@@ -23,7 +23,8 @@ from hypothesis import strategies as st
 
 from tactcad.checks.shop import load_shop
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import golden, manifest, sides
+from tactcad.export import golden_file as golden
+from tactcad.export import manifest, sides
 from tactcad.export.cache import Cache
 from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes

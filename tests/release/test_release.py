@@ -25,7 +25,7 @@ from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
 from tactcad.release import verify
 from tactcad.release.archive import archive_bytes
-from tactcad.release.readme import DRAFT, Contents
+from tactcad.release.readme import DRAFT, ReleaseContents
 from tactcad.release.verify import check_archive
 from tactcad.scenes import make_scene
 
@@ -94,7 +94,7 @@ def files(released):
 @pytest.fixture(scope="module")
 def contents(project):
     design = load(project / "hardware" / "tiny.toml")
-    return Contents(design, [make_scene(design, "array")], (), (), False)
+    return ReleaseContents(design, [make_scene(design, "array")], (), (), False)
 
 
 def test_nothing_in_it_names_the_machine(home, files):

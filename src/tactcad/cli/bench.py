@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.bench.run import SCHEMA
     from tactcad.bench.run import run as measure
     from tactcad.design.files import scratch_folder
-    from tactcad.export.publish import turn
+    from tactcad.export.publication import turn
 
     from .progress import progress
 

@@ -67,7 +67,7 @@ def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> 
     from tactcad.checks.report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
-    from tactcad.export.golden import check_golden, golden_path
+    from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.parts.finding import Finding
     from tactcad.scenes import chosen_scenes

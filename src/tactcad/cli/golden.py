@@ -39,7 +39,7 @@ def _renew(source: str, shop_file: str | None) -> None:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
-    from tactcad.export.golden import accept, changes_against, golden_path
+    from tactcad.export.golden_file import accept, changes_against, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
 

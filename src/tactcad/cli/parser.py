@@ -71,7 +71,7 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def add_others(parser: argparse.ArgumentParser) -> None:
-    """--keep and --discard, for commands that write a folder (tactcad.export.publish)."""
+    """--keep and --discard, for commands that write a folder (tactcad.export.publication)."""
     others = parser.add_mutually_exclusive_group()
     others.add_argument(
         "--keep",

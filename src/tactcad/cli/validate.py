@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
-    from tactcad.export.publish import turn
+    from tactcad.export.publication import turn
     from tactcad.paper import array_model as array
     from tactcad.paper import published, report, validation
     from tactcad.parts.designs import load

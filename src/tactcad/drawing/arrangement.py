@@ -15,11 +15,11 @@ from .dimension_lines import stacked
 from .extent import projected_box
 from .ink import Item, moved
 from .keys import WHOLE
-from .measure import size
+from .measures import size
 from .page import MARGIN, Page, edges, fewer
 from .paper import A0, A1, A2, A3, A3_UPRIGHT, Paper
-from .plan import Dimension, Linear, Side
 from .scale import ASSEMBLIES, Scale, factor, largest_fitting, shown
+from .sheet_plan import Dimension, Linear, Side
 from .title import HEIGHT, WIDTH, TitleBlock, notes
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from tactcad.scenes.scene import Scene
 
 from . import parts_list
 from .arrangement import arrangement
-from .ink import Sheet, preliminary
-from .layout import layout_faults
+from .ink import DrawnSheet, preliminary
+from .layout_check import layout_faults
 from .numbered import numbered_pages
 from .page import Page
 from .paper import A3, A4, frame
@@ -30,7 +30,7 @@ def assembly_sheets(
     rows: Sequence[BomRow],
     shapes: Mapping[str, TopoDS_Shape],
     draft: bool = False,
-) -> list[Sheet]:
+) -> list[DrawnSheet]:
     """All sheets of the scene, their layout clean. `shapes` by part number, `rows` the scene's bill of
     materials.
 
@@ -56,10 +56,10 @@ def assembly_sheets(
     return [preliminary(sheet) for sheet in sheets] if draft else sheets
 
 
-def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> Sheet:
+def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> DrawnSheet:
     own = replace(block, scale=page.scale, sheet=number, sheets=count, document_type=page.document_type)
     items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
-    return Sheet(block.number, f"{block.title}, sheet {number} of {count}", page.paper.size, items)
+    return DrawnSheet(block.number, f"{block.title}, sheet {number} of {count}", page.paper.size, items)
 
 
 def _fits_beside(list_: parts_list.Laid) -> bool:

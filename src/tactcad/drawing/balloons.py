@@ -16,8 +16,8 @@ from math import dist, hypot
 import numpy as np
 
 from .boxes import Box, Chord, Point, length
-from .ink import THIN, Arc, Fill, Item, Text, arrow, segment
-from .layout import crossing
+from .ink import THIN, DrawnArc, Fill, Item, Text, arrow, segment
+from .layout_check import crossing
 
 RADIUS = 4.5  # of a balloon
 TEXT, SMALLER = 3.5, 2.5  # height of its number, larger than dimensions are (ISO 6433); of three digits
@@ -184,7 +184,7 @@ def drawn(balloons: Sequence[Balloon]) -> list[Item]:
         number = str(b.item)
         size = height(number)
         items += [
-            Arc(b.centre, RADIUS, line=THIN, role="symbol"),
+            DrawnArc(b.centre, RADIUS, line=THIN, role="symbol"),
             Text((b.centre[0], b.centre[1] - size / 2), number, size, "middle"),
             segment(start, tip, THIN, "leader"),
             head,

@@ -10,8 +10,8 @@ import numpy as np
 from .boxes import Box, Chord, Point, bounds, corners, grown, overlap
 from .dimension_lines import ARROW, HEIGHT, PAD, boxed, boxed_width, datum, datum_letter
 from .ink import THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
-from .layout import BESIDE_LINE, Quad, chord_meets, quads_meet
-from .plan import Callout, Datum
+from .layout_check import BESIDE_LINE, Quad, chord_meets, quads_meet
+from .sheet_plan import Callout, Datum
 
 STEP = 1.7 * HEIGHT  # between lines of a callout
 SHELF = 3.0  # of the leader beside the text

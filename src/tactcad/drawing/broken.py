@@ -16,9 +16,9 @@ from tactcad.parts.description import Part, drill_point_height
 from .boxes import Box, Chord, Point
 from .contours import contours
 from .holes import Round, widest
-from .ink import THIN, Arc, Curve, Hatch, Stroke
+from .ink import THIN, Curve, DrawnArc, Hatch, Stroke
 from .keys import Owner
-from .plan import Breaks, Callout, Datum, Plan, View
+from .sheet_plan import Breaks, Callout, Datum, SheetPlan, View
 from .window import clipped, fine
 
 LEAST_LEFT_OUT = 1 / 3  # of a part's length: less is not worth a broken view
@@ -88,7 +88,9 @@ def _features(
     return extents
 
 
-def broken(plan: Plan, curves: Mapping[str, Sequence[Curve]]) -> tuple[Plan, Mapping[str, Sequence[Curve]]]:
+def broken(
+    plan: SheetPlan, curves: Mapping[str, Sequence[Curve]]
+) -> tuple[SheetPlan, Mapping[str, Sequence[Curve]]]:
     """The plan and the curves of its views, by name, without what the plan's breaks leave out."""
     if plan.breaks is None:
         return plan, curves
@@ -175,9 +177,9 @@ class _Squeezed:
         if isinstance(curve, Hatch):
             loops = [_cut_off(loop, band) for band in self._bands() for loop in curve.loops]
             return [replace(curve, loops=tuple(tuple(map(moved, loop)) for loop in loops if loop))]
-        if isinstance(curve, Arc) and all(self.shows(p) for chord in curve.chords() for p in chord):
+        if isinstance(curve, DrawnArc) and all(self.shows(p) for chord in curve.chords() for p in chord):
             return [replace(curve, centre=moved(curve.centre))] if self.shows(curve.centre) else []
-        chords = fine(curve) if isinstance(curve, Arc) else curve.chords()
+        chords = fine(curve) if isinstance(curve, DrawnArc) else curve.chords()
         pieces = (clipped(chord, band) for band in self._bands() for chord in chords)
         return [Stroke(self._chord(piece), curve.line, curve.role) for piece in filter(None, pieces)]
 

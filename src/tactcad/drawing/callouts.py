@@ -13,8 +13,8 @@ from .contours import contours, in_part
 from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
-from .measure import Difference, Offset, Radius, Slope, Span, Width, halfway, level, size
-from .plan import Callout, Dimension, View, seen
+from .measures import Difference, Offset, Radius, Slope, Span, Width, halfway, level, size
+from .sheet_plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 
 

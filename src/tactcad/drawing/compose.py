@@ -12,13 +12,26 @@ from .board import Board
 from .boxes import Box, Point, bounds, bounds_of, corners, grown, overlap, scaled, shifted
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
-from .ink import CENTRE, THIN, Arc, Curve, Hatch, Item, Sheet, Stroke, Text, bounds_of_items, moved, rectangle
+from .ink import (
+    CENTRE,
+    THIN,
+    Curve,
+    DrawnArc,
+    DrawnSheet,
+    Hatch,
+    Item,
+    Stroke,
+    Text,
+    bounds_of_items,
+    moved,
+    rectangle,
+)
 from .keys import Values
-from .layout import layout_faults
+from .layout_check import layout_faults
 from .paper import A3, A4, Paper, frame
-from .plan import Callout, Plan, Section, View, seen
 from .scale import SERIES, Scale, factor, shown
 from .section_lines import bore_lines, letters, mark_plane
+from .sheet_plan import Callout, SectionPlane, SheetPlan, View, seen
 from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
 from .window import windowed
 
@@ -50,12 +63,12 @@ class _Drawn:
 
 
 def compose(
-    plan: Plan,
+    plan: SheetPlan,
     curves: Mapping[str, Sequence[Curve]],
     block: TitleBlock,
     papers: Sequence[Paper],
     scales: Sequence[Scale] = SERIES,
-) -> Sheet:
+) -> DrawnSheet:
     """The sheet at the largest preferred scale, and on the first paper, at which its layout is clean.
 
     Raises NoPlace where no scale down to 1:10 fits, or none leaves a clean layout.
@@ -82,20 +95,20 @@ def compose(
     )
 
 
-def _main_size(plan: Plan) -> tuple[float, float]:
+def _main_size(plan: SheetPlan) -> tuple[float, float]:
     x0, y0, x1, y1 = plan.views[0].box
     return (x1 - x0, y1 - y0)
 
 
 def _attempt(
-    plan: Plan,
+    plan: SheetPlan,
     curves: Mapping[str, Sequence[Curve]],
     block: TitleBlock,
     paper: Paper,
     scale: Scale,
     beside: bool,
     shrunk: float,
-) -> tuple[Sheet | None, list[str]]:
+) -> tuple[DrawnSheet | None, list[str]]:
     board = Board(paper.area)
     board.add(frame(paper))
     board.add(title_block(paper, replace(block, scale=shown(scale))))
@@ -146,7 +159,7 @@ def _attempt(
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
                 return None, [f"callout {callout.lines[0]!r} finds no place"]
     keys = tuple(d.text(plan.values) for d in plan.dimensions if d.key)
-    sheet = Sheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
+    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
     return sheet, layout_faults(sheet)
 
 
@@ -186,7 +199,9 @@ def _drawn(
         items += centre_lines(centre, diameter, f)
     for centre, diameter in view.threads:
         # three quarters of a thin circle at the nominal diameter (ISO 6410-1)
-        items.append(Arc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline"))
+        items.append(
+            DrawnArc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline")
+        )
     for a, b in view.axes:
         items.append(Stroke(((a[0] * f, a[1] * f), (b[0] * f, b[1] * f)), CENTRE, "centre"))
     if view.section:
@@ -286,7 +301,7 @@ def _mark_window(board: Board, window: Box, label: str) -> bool:
     return False
 
 
-def _mark_section(board: Board, view: View, section: Section, front: _Drawn, place: Point) -> bool:
+def _mark_section(board: Board, view: View, section: SectionPlane, front: _Drawn, place: Point) -> bool:
     f = factor(front.scale)
     on = (section.at, 0.0, 0.0) if section.axis == 0 else (0.0, section.at, 0.0)
     at = seen(front.view, on)[section.axis] * f + place[section.axis]
@@ -297,6 +312,6 @@ def _mark_section(board: Board, view: View, section: Section, front: _Drawn, pla
 def _scaled(curve: Curve, f: float) -> Curve:
     if isinstance(curve, Hatch):
         return replace(curve, loops=tuple(tuple((x * f, y * f) for x, y in loop) for loop in curve.loops))
-    if isinstance(curve, Arc):
+    if isinstance(curve, DrawnArc):
         return replace(curve, centre=(curve.centre[0] * f, curve.centre[1] * f), radius=curve.radius * f)
     return replace(curve, points=tuple((x * f, y * f) for x, y in curve.points))

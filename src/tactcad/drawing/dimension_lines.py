@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 from .boxes import Box, Point, corners, grown
 from .fonts import ink_box, width
-from .ink import CENTRE, THIN, Arc, Fill, Item, Stroke, Text, arrow, polar, segment
+from .ink import CENTRE, THIN, DrawnArc, Fill, Item, Stroke, Text, arrow, polar, segment
 from .keys import Values
-from .plan import Across, Linear, Running, Side
+from .sheet_plan import Across, Linear, Running, Side
 
 HEIGHT = 2.5  # of dimension texts, mm
 ARROW = 2.5  # length of an arrow head: 10 line widths
@@ -227,7 +227,7 @@ def _stop(
     """Circle at the origin, arrow at a stop, a dot where its neighbour leaves no room for one."""
     s = stops[n][0]
     if abs(s - origin) < 1e-9:
-        return [Arc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
+        return [DrawnArc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
     inner = stops[n - 1][0] if s > origin else stops[n + 1][0]
     if abs(s - inner) < ARROW + 1.2:
         x, y = on_paper(s, o)

@@ -13,8 +13,8 @@ from tactcad.parts.description import Hole, Part, Vector
 
 from .contours import axis_of
 from .keys import Owner, Quantity, Values
-from .measure import size
-from .plan import Dimension
+from .measures import size
+from .sheet_plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
 EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a micrometre's thousandth

@@ -68,7 +68,7 @@ class Stroke:
 
 
 @dataclass(frozen=True)
-class Arc:
+class DrawnArc:
     """A circular arc from angle `start` counter-clockwise to `end`, degrees; 0 to 360 is the full circle."""
 
     centre: Point
@@ -188,12 +188,12 @@ class Hatch:
         return sum(x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) for a, b in passed) % 2 == 1
 
 
-Curve = Stroke | Arc | Hatch
-Item = Stroke | Arc | Fill | Hatch | Text
+Curve = Stroke | DrawnArc | Hatch
+Item = Stroke | DrawnArc | Fill | Hatch | Text
 
 
 @dataclass(frozen=True)
-class Sheet:
+class DrawnSheet:
     """One sheet: its paper's size (mm), number and title, and everything on it in drawing order.
 
     `keys` are the texts of its key characteristics, each of which has to stand on it exactly once.
@@ -255,7 +255,7 @@ def moved(item: Item, dx: float, dy: float) -> Item:
     def shifted(p: Point) -> Point:
         return (p[0] + dx, p[1] + dy)
 
-    if isinstance(item, Arc):
+    if isinstance(item, DrawnArc):
         return replace(item, centre=shifted(item.centre))
     if isinstance(item, Text):
         return replace(item, at=shifted(item.at))
@@ -269,7 +269,7 @@ def bounds_of_items(items: Iterable[Item]) -> Box:
     return bounds_of(map(points_of, items))
 
 
-def preliminary(sheet: Sheet) -> Sheet:
+def preliminary(sheet: DrawnSheet) -> DrawnSheet:
     """The sheet as a draft: PRELIMINARY across it, under everything else."""
     w, h = sheet.size
     angle = 35.0 if w > h else 55.0

@@ -21,10 +21,10 @@ from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outl
 from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
-from .measure import Difference, Level, Span, conventions, halfway, level, size
-from .plan import Datum, Dimension, Linear, Plan, Side, View, opposite, seen
+from .measures import Difference, Level, Span, conventions, halfway, level, size
 from .running import depth_running, face_running, filled, running_along
-from .section import section_of, section_view
+from .section_view import section_of, section_view
+from .sheet_plan import Datum, Dimension, Linear, SheetPlan, Side, View, opposite, seen
 from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_of
 
 FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
@@ -33,7 +33,7 @@ BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 
 def prism_plan(
     part: Part, design: Design, notes: Sequence[str], cut: bool = True, shortened: bool = False
-) -> Plan | None:
+) -> SheetPlan | None:
     """The plan of any extruded part.
 
     Parameters
@@ -84,7 +84,7 @@ def prism_plan(
     if section and (below or section.axis == 1):
         views.append(section_view(part, front, below, section))
     closed(sketch)
-    return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
 
 
 def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:

@@ -10,8 +10,8 @@ from tactcad.parts.description import Part
 from .boxes import Point
 from .holes import Group
 from .keys import OUTER, THICKNESS
-from .measure import Span
-from .plan import Running, Side, View, seen
+from .measures import Span
+from .sheet_plan import Running, Side, View, seen
 from .sketch import ALIKE, Coordinate, Sketch
 
 # Characteristics of parts that are a hole's height over the underside, by the hole's label.

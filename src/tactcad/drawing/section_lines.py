@@ -10,7 +10,7 @@ from .board import AROUND, FORBIDDEN, Board
 from .boxes import Box, Chord, Point
 from .dimension_lines import ABOVE
 from .ink import CENTRE, CUTTING, THIN, VISIBLE, Hatch, Item, Stroke, Text, arrow, segment
-from .plan import Bore, Section
+from .sheet_plan import Bore, SectionPlane
 
 LETTER = 3.5  # height of the letters: a size above that of the dimensions (ISO 128-3)
 PAST = 2.0  # of an axis beyond its hole
@@ -20,7 +20,7 @@ OUT = (6.5, 6.0, 7.0, 8.0, 9.5, 11.0, 13.0, 17.0)  # from the outline to the arr
 TAILS = (6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0)  # lengths of the arrows
 
 
-def letters(section: Section) -> str:
+def letters(section: SectionPlane) -> str:
     return f"{section.letter}-{section.letter}"
 
 
@@ -67,7 +67,7 @@ def inside(face: Hatch, a: Point, b: Point) -> list[Chord]:
     return [((a[0] + low * dx, a[1] + low * dy), (a[0] + high * dx, a[1] + high * dy)) for low, high in kept]
 
 
-def mark_plane(board: Board, section: Section, at: float, sight: float, view: Box) -> bool:
+def mark_plane(board: Board, section: SectionPlane, at: float, sight: float, view: Box) -> bool:
     """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the
     section's axis: a chain line with thick ends, arrows along that axis in the direction of `sight` (1 or
     -1), a letter at each; False where an end finds no place."""

@@ -10,8 +10,8 @@ from tactcad.parts.description import Part, Vector
 
 from .boxes import bounds
 from .keys import Owner, Quantity, Spot, Variable
-from .measure import Determined, Level, Measure, level, variables
-from .plan import Dimension, View, seen
+from .measures import Determined, Level, Measure, level, variables
+from .sheet_plan import Dimension, View, seen
 
 ALIKE = 1e-6  # mm: coordinates nearer than this are one
 

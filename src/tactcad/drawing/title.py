@@ -9,7 +9,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Identity
 
 from .fonts import width
-from .ink import CENTRE, FRAME, THIN, VISIBLE, Arc, Item, Point, Stroke, Text, rectangle, segment
+from .ink import CENTRE, FRAME, THIN, VISIBLE, DrawnArc, Item, Point, Stroke, Text, rectangle, segment
 from .paper import Paper
 
 WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
@@ -156,8 +156,8 @@ def _first_angle(at: Point) -> list[Item]:
             True,
         ),
         segment((left - 1.0, y), (right + 1.0, y), CENTRE, "symbol"),
-        Arc((circle, y), small, line=VISIBLE, role="symbol"),
-        Arc((circle, y), large, line=VISIBLE, role="symbol"),
+        DrawnArc((circle, y), small, line=VISIBLE, role="symbol"),
+        DrawnArc((circle, y), large, line=VISIBLE, role="symbol"),
         segment((circle - large - 1.0, y), (circle + large + 1.0, y), CENTRE, "symbol"),
         segment((circle, y - large - 1.0), (circle, y + large + 1.0), CENTRE, "symbol"),
     ]

@@ -30,7 +30,7 @@ class PartFormat:
 
 
 def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from .step import part_step
+    from .step_file import part_step
 
     return part_step(part, shapes.of(part), head)
 

@@ -16,13 +16,13 @@ from .cache import Cache, default_root
 from .contents import Contents
 from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
-from .publish import REFUSE, Work, left_unfinished, looked_at, turn
+from .publication import REFUSE, Work, left_unfinished, looked_at, turn
 
 if TYPE_CHECKING:
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Pose, Scene
 
-    from .products import Product
+    from .products import Output
     from .shapes import Shapes
 
 # What an exported file may depend on: a change in any of them rebuilds.
@@ -181,7 +181,7 @@ def _rebuild(
 
 
 def _write_products(
-    folder: Path, products: Sequence[Product], cache: Cache, progress: Progress
+    folder: Path, products: Sequence[Output], cache: Cache, progress: Progress
 ) -> tuple[str, ...]:
     """Write every product's bytes, from the cache where it has them; returns the paths that were made
     anew."""
@@ -205,7 +205,7 @@ def _write_products(
     return tuple(made)
 
 
-def _record(folder: Path, product: Product, design: Design) -> FileRecord:
+def _record(folder: Path, product: Output, design: Design) -> FileRecord:
     sha256 = manifests.sha256_of((folder / product.path).read_bytes())
     return FileRecord(product.path, product.kind, product.part_no, design.design.revision, sha256)
 
@@ -239,7 +239,8 @@ def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
     """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
     from tactcad.parts.layout import Layout
 
-    from . import inspection, strength
+    from . import inspection
+    from . import strength_table as strength
 
     layout = Layout(design)
     written = []

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Product:
+class Output:
     """One file of an export: path below its folder, kind and part number for the manifest, what it depends
     on, and the function that makes its bytes and has checked them."""
 
@@ -44,25 +44,25 @@ def header(design: Design, name: str, description: str) -> Header:
     return Header(name, description, d.revision, d.date, d.author, d.organisation)
 
 
-def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
+def part_products(design: Design, part: Part, shapes: Shapes) -> list[Output]:
     """A file of every format that the part has one in (formats.py)."""
     head = header(design, part.part_no, part.name)
 
-    def product(form: PartFormat) -> Product:
+    def product(form: PartFormat) -> Output:
         path = form.path.format(part_no=part.part_no, revision=head.revision)
         key = digest((form.kind, shapes.made_by, part, head))
-        return Product(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
+        return Output(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
 
     return [product(form) for form in PART_FORMATS if form.has(part)]
 
 
-def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
     """The assembly as STEP, and its pictures: from above, from below, and opened."""
     name = f"{design.name}-{scene.name}"
     revision = design.design.revision
     head = header(design, name, f"{design.design.title}: {scene.name}")
     products = [
-        Product(
+        Output(
             f"step/{name}_{revision}.step",
             "step-assembly",
             "",
@@ -79,7 +79,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
         seen = "cover taken off" if label == "open" else f"from {label}"
         text = f"{design.design.title}: {scene.name}, {seen}"
         products.append(
-            Product(
+            Output(
                 f"pictures/{name}-{label}.svg",
                 "picture",
                 "",
@@ -90,7 +90,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     return products
 
 
-def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
     """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
     from tactcad.drawing import guide
 
@@ -101,10 +101,10 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
 
     def picture(
         label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
-    ) -> Product:
+    ) -> Output:
         key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
         make = partial(picture_bytes, placements, "above", shapes, title, description, marked)
-        return Product(guide.picture_path(scene, label), "picture", "", key, make)
+        return Output(guide.picture_path(scene, label), "picture", "", key, make)
 
     products = [
         picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())
@@ -116,7 +116,7 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
                 picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming)
             )
     page = guide.page(design, scene)
-    products.append(Product(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
+    products.append(Output(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
     return products
 
 
@@ -135,20 +135,20 @@ def drawing_products(
     design: Design,
     parts: Sequence[Part],
     shapes: Shapes,
-    products: Sequence[Product],
+    products: Sequence[Output],
     say: Callable[[int, int, str], None],
     draft: bool = False,
-) -> list[Product]:
+) -> list[Output]:
     """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
     from tactcad.drawing.fonts import font_file
     from tactcad.drawing.notes import MadeFrom
-    from tactcad.drawing.sheets import Order, written
+    from tactcad.drawing.part_sheet import Order, written
 
     font_file()  # a missing font is said before anything is made
     sources = {(p.part_no, p.kind): p for p in products}
     revision, common = design.design.revision, (design.design, design.tolerance, design.holes, draft)
 
-    def order(part: Part, files: Sequence[Product]) -> Order:
+    def order(part: Part, files: Sequence[Output]) -> Order:
         from tactcad.solids.bytes import to_bytes
 
         made_from = [MadeFrom(f.path, sha256_of(shapes.cache.get_or_make(f.key, f.make))) for f in files]
@@ -171,7 +171,7 @@ def assembly_products(
     shapes: Shapes,
     say: Callable[[int, int, str], None],
     draft: bool = False,
-) -> list[Product]:
+) -> list[Output]:
     """An assembly drawing of every scene, as PDF and SVG."""
     from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
     from tactcad.scenes.bom import bom_rows
@@ -196,7 +196,7 @@ def _drawn(
     make: Callable[..., Written],
     shapes: Shapes,
     say: Callable[[int, int, str], None],
-) -> list[Product]:
+) -> list[Output]:
     """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by
     side."""
     from tactcad.drawing.workers import all_written
@@ -211,13 +211,13 @@ def _drawn(
         return getattr(drawn[key], ending)
 
     return [
-        Product(f"drawings/{w.stem}.{e}", "drawing", w.part_no, f"{w.key} {e}", partial(made, w.key, e))
+        Output(f"drawings/{w.stem}.{e}", "drawing", w.part_no, f"{w.key} {e}", partial(made, w.key, e))
         for w in wanted
         for e in endings
     ]
 
 
-def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
+def _made_from(part: Part, sources: Mapping[tuple[str, str], Output]) -> list[Output]:
     """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model,
     and their blank from the DXF where there is one."""
     kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
@@ -253,6 +253,6 @@ def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
 
 
 def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
-    from .step import scene_step
+    from .step_file import scene_step
 
     return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)

@@ -15,7 +15,7 @@ from tactcad.parts.designs import load
 from .difference import Change, differences
 from .dxf import read_dxf
 from .geometry import Record, bill_line, contour_record, geometry
-from .golden import MOST_BYTES, read_golden
+from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json
 from .manifest import NAME, Manifest, check_manifest, read_manifest
 

@@ -10,13 +10,13 @@ from tactcad.checks.report import Report
 from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.export.golden import check_golden, golden_path
+from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import ExportOptions, Progress, export
 from tactcad.scenes import make_scene, scene_names
 
 from .archive import archive_bytes, replaced_content
-from .readme import MARK, Contents, readme_bytes
+from .readme import MARK, ReleaseContents, readme_bytes
 from .verify import README, check_archive
 
 QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
@@ -65,7 +65,7 @@ def release(
     flags = [
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
-    contents = Contents(design, scenes, flags, failures, draft)
+    contents = ReleaseContents(design, scenes, flags, failures, draft)
     with scratch_folder("release") as folder:
         files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, draft)
     files = {README: readme_bytes(contents, list(files)), **files}

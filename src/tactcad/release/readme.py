@@ -10,7 +10,8 @@ from textwrap import wrap
 from tactcad import __version__
 from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
-from tactcad.export import inspection, strength
+from tactcad.export import inspection
+from tactcad.export import strength_table as strength
 from tactcad.parts.description import Characteristic, Part
 from tactcad.parts.finding import Finding
 from tactcad.parts.hinge_section import thickness_elasticity
@@ -39,7 +40,7 @@ PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "T
 
 
 @dataclass(frozen=True)
-class Contents:
+class ReleaseContents:
     """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is
     none)."""
 
@@ -60,7 +61,7 @@ class Contents:
         return max(scene.count(part) for scene in self.scenes)
 
 
-def readme_bytes(contents: Contents, paths: Sequence[str]) -> bytes:
+def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
     """The text for a release that holds `paths`, UTF-8 with line ends that every editor shows."""
     design = contents.design
     identity = design.design
@@ -102,14 +103,14 @@ def _listed(texts: Sequence[str]) -> list[str]:
     return [*lines, ""]
 
 
-def _draft(contents: Contents) -> list[str]:
+def _draft(contents: ReleaseContents) -> list[str]:
     lines = _paragraph(DRAFT)
     if contents.failures:
         lines += ["It could not be released because:", *_listed(contents.failures)]
     return lines
 
 
-def _what(contents: Contents) -> list[str]:
+def _what(contents: ReleaseContents) -> list[str]:
     design, layout = contents.design, Layout(contents.design)
     count = len(layout.elements)
     thinnest = min(layout.elements, key=lambda place: place.hinge.t)
@@ -128,7 +129,7 @@ def _what(contents: Contents) -> list[str]:
     return _paragraph(text)
 
 
-def _table(contents: Contents) -> list[str]:
+def _table(contents: ReleaseContents) -> list[str]:
     heads = ("part", "qty", "spares", "material", "size, mm", "finish")
     rows = [
         (
@@ -165,7 +166,7 @@ def _table(contents: Contents) -> list[str]:
     )
 
 
-def _short(contents: Contents, numbers: Sequence[str]) -> str:
+def _short(contents: ReleaseContents, numbers: Sequence[str]) -> str:
     """Part numbers in a sentence, without the design's name, which most of them begin with."""
     return ", ".join(number.removeprefix(f"{contents.design.name}-") for number in numbers)
 
@@ -175,7 +176,7 @@ def _size(part: Part) -> str:
     return " x ".join(f"{round(b - a, 3):g}" for a, b in zip(low, high))
 
 
-def _keys(contents: Contents) -> list[str]:
+def _keys(contents: ReleaseContents) -> list[str]:
     """Each distinct key characteristic with the parts that have it."""
     groups: dict[Characteristic, list[str]] = {}
     for part in contents.made:
@@ -194,7 +195,7 @@ def _keys(contents: Contents) -> list[str]:
     )
 
 
-def _how(contents: Contents) -> list[str]:
+def _how(contents: ReleaseContents) -> list[str]:
     """The parts' own notes, each once, with the parts that it holds for."""
     groups: dict[str, list[str]] = {}
     for part in contents.made:
@@ -223,7 +224,7 @@ def _files(paths: Sequence[str]) -> list[str]:
     )
 
 
-def _questions(contents: Contents) -> list[str]:
+def _questions(contents: ReleaseContents) -> list[str]:
     aluminium = contents.design.material.alloy
     return _listed(
         [
@@ -239,7 +240,7 @@ def _questions(contents: Contents) -> list[str]:
     )
 
 
-def _flags(contents: Contents) -> list[str]:
+def _flags(contents: ReleaseContents) -> list[str]:
     if not contents.flags:
         return ["Nothing.", ""]
     return _listed(list(dict.fromkeys(str(f).removeprefix("flag: ") for f in contents.flags)))

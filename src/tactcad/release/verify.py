@@ -13,7 +13,8 @@ from pathlib import Path, PurePosixPath
 
 from tactcad.drawing.assembly_file import assembly_faults
 from tactcad.drawing.gate import key_faults, pdf_runs
-from tactcad.export import inspection, strength
+from tactcad.export import inspection
+from tactcad.export import strength_table as strength
 from tactcad.export.dxf import check_dxf
 from tactcad.export.manifest import sha256_of
 from tactcad.parts.description import Part
@@ -22,12 +23,12 @@ from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 
 from .archive import MANIFEST, MODE
-from .readme import DRAFT, MARK, Contents
+from .readme import DRAFT, MARK, ReleaseContents
 
 README = "README.txt"
 
 
-def check_archive(path: Path, contents: Contents) -> list[str]:
+def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
     """What is wrong with the written zip; empty where nothing is."""
     try:
         with zipfile.ZipFile(path) as archive:
@@ -73,7 +74,7 @@ def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
     return wrong
 
 
-def _part_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
+def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and
     headers name the revision."""
     revision = contents.design.design.revision
@@ -118,7 +119,7 @@ def _dxf_faults(files: Mapping[str, bytes], path: str, part: Part) -> Iterator[s
     yield from (f"{path}: {fault}" for fault in check_dxf(files[path], part))
 
 
-def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) -> Iterator[str]:
+def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: Scene) -> Iterator[str]:
     """The assembly has as many solids as its bill, the bill's files are here as it has them, and it says the
     revision."""
     revision = contents.design.design.revision
@@ -143,7 +144,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: Contents, scene: Scene) 
             yield f"{bill}: {row.file} is not here as it stands there"
 
 
-def _sheet_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
+def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     """A sheet for every part made and an assembly drawing for every scene: number and revision on every page,
     key characteristics once and with the model's values, the digest of the file that the part is made from,
     balloons and parts list as the bill has them; PRELIMINARY on every page of a draft and on none of a
@@ -200,7 +201,7 @@ def _bill(scene: Scene) -> str:
     return "bom.csv" if scene.name == "array" else f"bom-{scene.name}.csv"
 
 
-def _table_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
+def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     identity = contents.design.design
     for name in (inspection.NAME, strength.NAME):
         rows = list(csv.DictReader(io.StringIO(files.get(name, b"").decode(), newline="")))
@@ -213,7 +214,7 @@ def _table_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[st
         yield f"{README}: does not name {identity.name} revision {identity.revision} in its first line"
 
 
-def _mark_faults(files: Mapping[str, bytes], contents: Contents) -> Iterator[str]:
+def _mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     """A draft's README says so, a release's does not."""
     if (DRAFT in files[README].decode().splitlines()) != contents.draft:
         yield f"{README}: {'does not say' if contents.draft else 'says'} that it is a draft"

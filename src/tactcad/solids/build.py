@@ -21,7 +21,7 @@ from tactcad.parts.description import (
     drill_point_height,
 )
 
-from .files import read_step_solid
+from .step_models import read_step_solid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
 VOLUME_AGREES = 1e-6

@@ -51,7 +51,7 @@ def bought_from_step(
     path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
 ) -> Part:
     """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has not one."""
-    from .files import model_file
+    from .step_models import model_file
 
     return Part(part_no, name, "bought", material, model_file(path), purchase=purchase)
 

@@ -10,7 +10,7 @@ from tactcad.parts.description import Characteristic, Part, Vector, vector
 
 from .boxes import Box, Point
 from .keys import Values, Variable
-from .measure import Measure
+from .measures import Measure
 
 Side = Literal["top", "bottom", "left", "right"]
 
@@ -150,7 +150,7 @@ class Bore:
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionPlane:
     """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes
     lie in its plane."""
 
@@ -186,7 +186,7 @@ class View:
     centres: tuple[tuple[Point, float], ...] = ()  # circles that carry centre lines
     threads: tuple[tuple[Point, float], ...] = ()  # seen along their axis: middle, nominal diameter
     axes: tuple[tuple[Point, Point], ...] = ()  # other centre lines
-    section: Section | None = None
+    section: SectionPlane | None = None
 
     @property
     def right(self) -> Vector:
@@ -231,7 +231,7 @@ class Breaks:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SheetPlan:
     """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
 
     part: Part

@@ -20,9 +20,9 @@ from .boxes import Box, Point
 from .callouts import equal_radii, hole_callout
 from .holes import Group, Round, groups, rounds
 from .keys import OUTER, THICKNESS, Spot
-from .measure import Level, Radius, Slope, Span, conventions, halfway, level, size
-from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View
+from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .prism import FRONT, side_view
+from .sheet_plan import Across, Callout, Datum, Dimension, Linear, SheetPlan, View
 from .sketch import ALIKE, Sketch, closed, view_of
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
@@ -33,7 +33,7 @@ ARM_ROOM = (190.0, 75.0)
 
 
 @dataclass(frozen=True)
-class Corner:
+class OutlineCorner:
     """A sharp corner of the outline: its levels, and where it is."""
 
     x: Level
@@ -70,11 +70,11 @@ class Outline:
         """A segment's start or end."""
         return Spot(OUTER, (self.index[name] + end) % len(self.contour))
 
-    def corner(self, before: str, after: str) -> Corner:
+    def corner(self, before: str, after: str) -> OutlineCorner:
         """The corner between two edges, of which fillets may have used up one."""
         point = self.point(before, True) if before in self else self.point(after, False)
         at = self.end(before) if before in self else self.start(after)
-        return Corner(level(point.place(0)), level(point.place(1)), at)
+        return OutlineCorner(level(point.place(0)), level(point.place(1)), at)
 
     def arc(self, name: str) -> Arc:
         segment = self.segment(name)
@@ -82,7 +82,7 @@ class Outline:
         return segment
 
 
-def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> Plan:
+def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> SheetPlan:
     """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
     with the arm.
 
@@ -104,7 +104,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
     thickness = _within((size(THICKNESS),), "thickness", design.tolerance.sheet_thickness)
     edge = replace(side_view(sketch, part, front, [], thickness), hidden=False, datums=())
     closed(sketch)
-    return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
 
 
 def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
@@ -161,7 +161,7 @@ def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list
     return equal_radii(sketch, view, arcs)
 
 
-def _slot(o: Outline) -> tuple[Corner, Corner]:
+def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
     """The slot's upper corners, arm side and body side."""
     return o.corner("slot_arm_wall", "arm_back"), o.corner("ledge", "slot_body_wall")
 
@@ -236,7 +236,7 @@ def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> Box:
 
 
 def _heights(
-    sketch: Sketch, tolerance: float, o: Outline, arm: Corner, body: Corner, near: Level
+    sketch: Sketch, tolerance: float, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
 ) -> list[Linear]:
     """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
     right."""

@@ -12,14 +12,14 @@ from tactcad.parts.description import Extrusion, Part, Vector
 
 from .broken import broken
 from .compose import NoPlace, compose
-from .element import element_plan
+from .element_plan import element_plan
 from .gate import drawing_faults
-from .ink import Curve, Sheet, preliminary
+from .ink import Curve, DrawnSheet, preliminary
 from .notes import MadeFrom, notes_of
 from .paper import A0, A1, A2, A3, A4, Paper
-from .plan import Plan, Section, View
 from .prism import prism_plan
 from .scale import SERIES, Scale, factor
+from .sheet_plan import SectionPlane, SheetPlan, View
 from .title import TitleBlock, block_of
 from .workers import Written
 
@@ -44,7 +44,7 @@ class Order:
 
 def part_plan(
     part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
-) -> Plan | None:
+) -> SheetPlan | None:
     """What a part's sheet shows.
 
     Parameters
@@ -70,17 +70,17 @@ def part_plan(
     return prism_plan(part, design, notes, not spare, shortened)
 
 
-def part_sheet(order: Order) -> Sheet:
+def part_sheet(order: Order) -> DrawnSheet:
     """The finished sheet, its layout clean."""
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
-    from .cut import cut
     from .hidden_lines import projected
+    from .section_cut import cut
 
     shape = from_bytes(order.shape)
 
     @cache
-    def curves(eye: Vector, up: Vector, section: Section | None) -> list[Curve]:
+    def curves(eye: Vector, up: Vector, section: SectionPlane | None) -> list[Curve]:
         view = View("", eye, up, (0.0, 0.0, 0.0, 0.0), section=section)
         if section is None:
             return [*projected(shape, eye, view.right)]
@@ -99,11 +99,11 @@ def part_sheet(order: Order) -> Sheet:
     raise refused
 
 
-def _attempts(order: Order) -> Iterator[tuple[Plan, Sequence[Paper], Sequence[Scale]]]:
+def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequence[Scale]]]:
     """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them
     down to 1:2 before broken ones, and smaller only after these."""
 
-    def plans(shortened: bool = False) -> Iterator[Plan]:
+    def plans(shortened: bool = False) -> Iterator[SheetPlan]:
         for spare in (False, True):
             plan = part_plan(order.part, order.design, order.files, spare, shortened)
             if plan is None:

@@ -18,14 +18,14 @@ from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill
 from .boxes import Point
 from .contours import axis_of, contours, in_part
 from .holes import Round, widest
-from .plan import Bore, Section, View, opposite, seen
+from .sheet_plan import Bore, SectionPlane, View, opposite, seen
 from .sketch import view_of
 
 LETTER = "S"  # neither a datum's (A, B, C) nor a detail's (X, Z)
 SAME = 1e-6  # mm: a plane nearer to an axis than this goes through it
 
 
-def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> Section | None:
+def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> SectionPlane | None:
     """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to
     the middle; None where nothing is sunk, or every plane through an axis would cut another hole off its axis
     or run along a wall.
@@ -39,11 +39,11 @@ def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | 
             continue
         bare = View("", *_sight(front, below, k), (0, 0, 0, 0))
         bores = [_bore(bare, r.hole) for r in holes if not r.hole.axis[k] and abs(r.at[k] - at) < SAME]
-        return Section(LETTER, k, at, tuple(bores))
+        return SectionPlane(LETTER, k, at, tuple(bores))
     return None
 
 
-def section_view(part: Part, front: View, below: Vector | None, section: Section) -> View:
+def section_view(part: Part, front: View, below: Vector | None, section: SectionPlane) -> View:
     """The bare view of a section, where first-angle projection puts it."""
     eye, up = _sight(front, below, section.axis)
     name = "right" if section.axis == 0 else "below" if eye == front.up else "above"

@@ -11,7 +11,7 @@ from itertools import combinations
 from math import hypot
 
 from .boxes import Chord, Point, bounds
-from .ink import Arc, Fill, Hatch, Item, Sheet, Stroke, Text, points_of
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Stroke, Text, points_of
 from .paper import LEFT, OTHER
 
 # Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's
@@ -25,7 +25,7 @@ Quad = tuple[Point, Point, Point, Point]
 
 
 @dataclass(frozen=True)
-class _Piece:
+class _Straight:
     """A straight piece of an item: half its line's width, what it is for, and which item it belongs to."""
 
     ends: Chord
@@ -34,7 +34,7 @@ class _Piece:
     item: int
 
 
-def layout_faults(sheet: Sheet) -> list[str]:
+def layout_faults(sheet: DrawnSheet) -> list[str]:
     """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension
     lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
@@ -48,12 +48,12 @@ def layout_faults(sheet: Sheet) -> list[str]:
     ]
 
 
-def _pieces(items: Sequence[Item]) -> Iterator[_Piece]:
+def _pieces(items: Sequence[Item]) -> Iterator[_Straight]:
     for n, item in enumerate(items):
-        if isinstance(item, Stroke | Arc | Fill | Hatch):
+        if isinstance(item, Stroke | DrawnArc | Fill | Hatch):
             half = 0.0 if isinstance(item, Fill) else item.line.width / 2
             for chord in item.chords():
-                yield _Piece(chord, half, item.role, n)
+                yield _Straight(chord, half, item.role, n)
 
 
 def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
@@ -63,7 +63,7 @@ def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
             yield f"text {a.text!r} over text {b.text!r} at {_shown(a.at)}"
 
 
-def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Piece]) -> Iterator[str]:
+def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator[str]:
     for text in texts:
         hit = text_hits(text, drawn)
         if hit:
@@ -77,7 +77,7 @@ def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[
             yield f"text {text.text!r} at {_shown(text.at)} over hatching"
 
 
-def text_hits(text: Text, drawn: Sequence[_Piece]) -> set[str]:
+def text_hits(text: Text, drawn: Sequence[_Straight]) -> set[str]:
     """Roles of the lines that come nearer to the text's ink than BESIDE_LINE."""
     quad = text.corners(BESIDE_LINE)
     x0, y0, x1, y1 = bounds(quad)
@@ -92,7 +92,7 @@ def text_hits(text: Text, drawn: Sequence[_Piece]) -> set[str]:
     return hit
 
 
-def _outside(sheet: Sheet) -> Iterator[str]:
+def _outside(sheet: DrawnSheet) -> Iterator[str]:
     """Everything but the frame itself lies inside it; the frame inside the paper."""
     w, h = sheet.size
     for item in sheet.items:
@@ -106,7 +106,7 @@ def _outside(sheet: Sheet) -> Iterator[str]:
             yield f"{what} at {_shown((x0, y0))} lies outside the {beyond}"
 
 
-def _dimension_lines(drawn: Sequence[_Piece]) -> Iterator[str]:
+def _dimension_lines(drawn: Sequence[_Straight]) -> Iterator[str]:
     """Dimension lines cross neither each other nor the part's visible edges (ISO 129-1, 5.3 and 5.4)."""
     lines = [p for p in drawn if p.role == "dimension" and p.half]
     others = [p for p in drawn if p.role in ("outline", "dimension") and p.half]

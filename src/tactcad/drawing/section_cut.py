@@ -20,13 +20,13 @@ from tactcad.solids.occt import as_face, as_wire
 from .hidden_lines import CHORD
 from .ink import Hatch, Point
 from .picture import on_curve
-from .plan import Section, View, seen
+from .sheet_plan import SectionPlane, View, seen
 
 AROUND = 1.0  # mm: the box that is kept stands out of the part
 SAME = 1e-7  # mm: the kernel's own tolerance
 
 
-def cut(shape: TopoDS_Shape, view: View, section: Section) -> tuple[TopoDS_Shape, Hatch]:
+def cut(shape: TopoDS_Shape, view: View, section: SectionPlane) -> tuple[TopoDS_Shape, Hatch]:
     """What lies behind the plane of a section, and its cut face in the view's plane (mm of the part).
 
     Raises CheckFailure where the plane misses the part.
