@@ -70,7 +70,7 @@ def _end(number: int, _frame: object) -> None:
             pass  # the next run does it
     for each in SAID:  # whoever presses Ctrl-C again does not wait for a reader that takes no line
         signal.signal(each, signal.SIG_DFL)
-    line = f"tactcad: {SAID[number]}; what was not finished is as it was before\n"
+    line = f"tactcad: {SAID[signal.Signals(number)]}; what was not finished is as it was before\n"
     try:
         os.write(2, (("\r\x1b[K" if os.isatty(2) else "") + line).encode())
     except OSError:

@@ -1,4 +1,5 @@
-"""What drawings and releases cannot do is said in one line, and nothing is written: through the command line, on a small design."""
+"""What drawings and releases cannot do is said in one line, and nothing is written: through the command line,
+on a small design."""
 
 from __future__ import annotations
 

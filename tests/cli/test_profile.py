@@ -1,4 +1,5 @@
-"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked for."""
+"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked
+for."""
 
 from __future__ import annotations
 

@@ -88,7 +88,8 @@ def test_a_regular_row_is_said_by_its_ends_and_its_number(design, long_parts):
 
 
 def test_what_is_shown_of_a_broken_view_is_true_to_scale(design, long_parts):
-    """Holes near an end stand as far from it, by the scale, as on the part; between the breaks nothing is drawn."""
+    """Holes near an end stand as far from it, by the scale, as on the part; between the breaks nothing is
+    drawn."""
     part = long_parts["Carrier"]
     sheet, runs = sheet_of(design, part)
     up, down = (float(v) for v in next(r for r in runs if re.fullmatch(r"\d+:\d+", r)).split(":"))

@@ -1,4 +1,5 @@
-"""Finished sheets: clean at paper size, read back, the same in any process, refused where they cannot be right."""
+"""Finished sheets: clean at paper size, read back, the same in any process, refused where they cannot be
+right."""
 
 from __future__ import annotations
 
@@ -111,7 +112,8 @@ def test_the_hinge_is_shown_at_ten_to_one_or_larger(finished):
 
 
 def test_dimension_lines_stand_off_the_outline(finished):
-    """No dimension line is nearer than 7 mm to the part's box in its own direction: those across a web apart."""
+    """No dimension line is nearer than 7 mm to the part's box in its own direction: those across a web
+    apart."""
     for number in ("macro-array-stop-plate", "macro-array-carrier", "macro-array-spacer"):
         sheet = finished[number]
         outline = [i for i in sheet.items if isinstance(i, Stroke) and i.role == "outline"]
@@ -171,7 +173,8 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
 
 
 def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
-    """Five sheets from two processes of this one, and two of them from fresh processes with other hash seeds."""
+    """Five sheets from two processes of this one, and two of them from fresh processes with other hash
+    seeds."""
     some = list(orders.values())[:5]
     side_by_side = all_written(some, written)
     assert [written(order) for order in some[:2]] == side_by_side[:2]
@@ -249,8 +252,9 @@ print(json.dumps([status, sorted({m.split(".")[0] for m in sys.modules})]))
 
 
 def test_export_with_drawings(tmp_path):
-    """Every part made here has its PDF and SVG in the manifest, each names the file it is made from with the hash that
-    the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF library."""
+    """Every part made here has its PDF and SVG in the manifest, each names the file it is made from with the
+    hash that the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF
+    library."""
     (tmp_path / "d.toml").write_text(
         (HARDWARE / "macro-array.toml").read_text().replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
     )

@@ -87,7 +87,8 @@ def test_capitals_are_as_high_as_stated():
 
 
 def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
-    """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too much."""
+    """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too
+    much."""
     text = Text((40, 60), "Qg±⌀(12)", 10, angle=90)
     bare = DrawnSheet("n", "t", A4.size, (text,))
     (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a", "2026-11-21"))
@@ -162,7 +163,8 @@ def test_a_draft_says_so_and_stays_clean():
         {"mass": None},
         {"number": "a-rather-long-design-name-element-a12.345mm-t0.123mm"},
         {
-            "finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face around it Ra 0.8"
+            "finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face "
+            "around it Ra 0.8"
         },
     ],
 )

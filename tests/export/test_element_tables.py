@@ -1,4 +1,5 @@
-"""Inspection sheet and strength summary: what stands in them, against the design, the contour and the closed forms."""
+"""Inspection sheet and strength summary: what stands in them, against the design, the contour and the closed
+forms."""
 
 from __future__ import annotations
 

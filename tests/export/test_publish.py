@@ -1,4 +1,5 @@
-"""All or nothing, and nothing of somebody's lost: kills at every file operation, two writers, a machine that refuses."""
+"""All or nothing, and nothing of somebody's lost: kills at every file operation, two writers, a machine that
+refuses."""
 
 from __future__ import annotations
 
@@ -302,8 +303,8 @@ def test_a_folder_moved_away_meanwhile(tmp_path, way):
 def killed_everywhere(tmp_path: Path, *how: str, meddled: bool = False) -> tuple[int, int]:
     """One run dies before its first operation, the next before its second, until one has lived.
 
-    After each the next run settles what it left: DIR is whole, and what somebody wrote is in DIR or kept. Returns how many
-    died with the earlier folder standing and with the new one.
+    After each the next run settles what it left: DIR is whole, and what somebody wrote is in DIR or kept.
+    Returns how many died with the earlier folder standing and with the new one.
     """
     out, stood = tmp_path / "macro", []
     export(out, "old")

@@ -1,4 +1,5 @@
-"""How K follows a dimension: beam theory's exponents by hand, elements, and every page that states the figure."""
+"""How K follows a dimension: beam theory's exponents by hand, elements, and every page that states the
+figure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""`tactcad release` on a design of one element: what is in the zip, when there is none, and that every fault in one is found."""
+"""`tactcad release` on a design of one element: what is in the zip, when there is none, and that every fault
+in one is found."""
 
 from __future__ import annotations
 
@@ -350,7 +351,8 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
 
 
 def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released, tmp_path, capsys):
-    """This process and the fresh one; here the design stands outside hardware/, where it can have no golden file."""
+    """This process and the fresh one; here the design stands outside hardware/, where it can have no golden
+    file."""
     (tmp_path / "tiny.toml").write_text(TEXT)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))

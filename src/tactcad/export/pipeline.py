@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
-# The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second is an
-# empty stand-in for the first.
+# The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
+# is an empty stand-in for the first.
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
 LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF

@@ -5,9 +5,10 @@ on the arm is a beam on two supports. What the force has beyond the one that clo
 in two ways, both per newton of it:
 
   shear   V = 1 - L/arm goes through the hinge
-  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give S/arm, c = arm - L, I = b h^3/12: the arm bends between its
-          supports, and the stop gives way by `give` mm for each newton of S = L/arm / (1 + K give (L/arm)^2),
-          which is what the hinge, of stiffness K at the load line, leaves to it
+  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give S/arm, c = arm - L, I = b h^3/12: the arm bends between
+          its supports, and the stop gives way by `give` mm for each newton of
+          S = L/arm / (1 + K give (L/arm)^2), which is what the hinge, of stiffness K at the load line,
+          leaves to it
 """
 
 from __future__ import annotations
