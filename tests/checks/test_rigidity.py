@@ -23,11 +23,12 @@ from tactcad.parts import seating
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import seating_force
+from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rules import broken_rules
 from tactcad.parts.stiffness_remedy import remedy
 from tactcad.parts.stiffness_table import deflections
 from tactcad.parts.stop_give import carrier_beam, carrier_opens
-from tactcad.scenes import scene_names
+from tactcad.scenes import make_scene, scene_names
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "rigs.md"
 RIGS = ("array", "calibration", "sample-stiffness", "grasping")
@@ -112,7 +113,7 @@ def test_what_the_rules_accept_passes_the_check(number):
 def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
     named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
-    named += ", cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
+    named += ", all of these, cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
     assert parts == set(named.split(", "))
 
 
@@ -209,6 +210,25 @@ def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
         assert line.load == pytest.approx(
             torque / 0.2 * seating_force("M3") * 2 * len(Layout(design).hold_down_y)
         )
+
+
+def test_what_stands_in_series_with_the_gauge_adds_up_and_is_told_in_guide_and_document():
+    """By hand: base plate, post, gauge and axis plate, roller, mount and carrier, um/N of the table's lines at 5 N; the
+    stiffest arm's own compliance is that of the estimator."""
+    design = load("macro-array")
+    lines = [s for s in deflections(design, ["calibration"]) if s.part != "all of these"]
+    together = line_of("calibration", "all of these")
+    assert len(lines) == 7 and together.gives == pytest.approx(sum(s.gives for s in lines))
+    assert together.allowed == pytest.approx(0.1 * 5.0 / 57.04 * 1e3)
+    K = min(design.array.row_arms[0] + design.array.row_arms[1])
+    stiff = max(e.force / e.deflection for e in calibration_loads(design))
+    c = together.gives / 5.0
+    softer = 100 * (1 - 1 / (1 + c * stiff / 1e3))
+    assert 0.6 < c < 0.75 and 2.0 < softer < 3.0
+    guide = " ".join(step.text for step in make_scene(design, "calibration").steps)
+    assert f"{c:.2g} um/N in series" in guide and f"arm of {K:g} mm would seem {softer:.2g} % softer" in guide
+    document = " ".join(DOCUMENT.read_text("utf-8").split())
+    assert f"together {c:.2g} um/N" in document and f"seems {softer:.2g} % softer" in document
 
 
 def rows_of(design) -> list[str]:

@@ -48,7 +48,30 @@ Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
-    """In series with the gauge: what gives way there is read as the element's own deflection."""
+    """In series with the gauge, one by one and together: what gives way there is read as the element's own deflection."""
+    lines = tuple(_in_series(design))
+    yield from lines
+    one, own = lines[0], 1e3 * lines[0].load / design.calibration.load_cell_stiffness
+    yield Deflection(
+        one.scene,
+        "all of these",
+        "in series with the gauge",
+        one.load,
+        one.origin,
+        1e3 * one.load * series_give(design),
+        TENTH * own,
+        "a tenth of what the gauge gives way, which is measured with them",
+        ("calibration.load_cell_stiffness",),
+        "flag",
+    )
+
+
+def series_give(design: Design) -> float:
+    """What stand and mount of the calibration add to the gauge's own compliance, mm/N."""
+    return sum(1e-3 * line.gives / line.load for line in _in_series(design))
+
+
+def _in_series(design: Design) -> Iterator[Deflection]:
     rig, c = StandLayout(design), design.calibration
     load = (
         "calibration",
