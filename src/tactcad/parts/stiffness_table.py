@@ -1,24 +1,26 @@
-"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its rigs.
+"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its
+rigs.
 
-Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most bend less.
-Bought parts are not in it: their makers state how stiff they are.
+Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most
+bend less. Bought parts are not in it: their makers state how stiff they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
-from typing import Literal
 
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam
+from tactcad.parts.finding import Severity
 
 from . import seating
 from .layout import Layout
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
-# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
-# of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
+# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 %
+# in root sum of squares, so that a dozen of them together are still less than the tenth part of what they are
+# a share of.
 TENTH = 0.1
 # By this share more is the same: sums of the same numbers in another order.
 ROUNDING = 1e-9
