@@ -48,7 +48,7 @@ class Deflection:
     allowed: float
     why: str
     fields: tuple[str, ...]
-    severity: Literal["fail", "flag"] = "fail"
+    severity: Literal[fail, flag] = "fail"
 
     @property
     def too_much(self) -> bool:
@@ -149,11 +149,12 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
     force_field = "rating.overload_force"
     plate, carrier = ("clamp.stop_plate_thickness", force_field), ("clamp.carrier_thickness", force_field)
-    for part, model, give, fields, severity in (
+    cases: tuple[tuple[str, str, Callable[[Layout, float], float], tuple[str, ...], Severity], ...] = (
         ("stop plate", "strip between rows of set screws, plate between pairs", _plate, plate, "fail"),
         ("carrier", "held by its threads in the middle", carrier_opens, carrier, "fail"),
         ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
-    ):
+    )
+    for part, model, give, fields, severity in cases:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm

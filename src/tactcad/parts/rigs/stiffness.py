@@ -52,7 +52,7 @@ def calibration_lines(design: Design) -> Iterator[Deflection]:
     """In series with the gauge, one by one and together: what gives way there is read as the element's own deflection."""
     lines = tuple(_in_series(design))
     yield from lines
-    one, own = lines[0], 1e3 * lines[0].load / design.calibration.load_cell_stiffness
+    one, own = lines[0], 1e3 * lines[0].load / present(design.calibration).load_cell_stiffness
     yield Deflection(
         one.scene,
         "all of these",
@@ -73,7 +73,7 @@ def series_give(design: Design) -> float:
 
 
 def _in_series(design: Design) -> Iterator[Deflection]:
-    rig, c = StandLayout(design), design.calibration
+    rig, c = StandLayout(design), present(design.calibration)
     load = (
         "calibration",
         min(c.load_cell_range, c.travel * c.load_cell_stiffness),
