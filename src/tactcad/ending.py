@@ -79,8 +79,8 @@ def _end(number: int, _frame: object) -> None:
 
 
 def _kill_helpers(of: str = "self") -> None:
-    """The processes that this one started, and theirs: they work for nobody now. Each stands still before it is asked for
-    its own, or it would start another meanwhile."""
+    """The processes that this one started, and theirs: they work for nobody now. Each stands still before it
+    is asked for its own, or it would start another meanwhile."""
     try:
         for thread in os.listdir(f"/proc/{of}/task"):
             with open(f"/proc/{of}/task/{thread}/children", encoding="ascii") as children:

@@ -82,8 +82,8 @@ def test_an_unknown_shop_file(command, place, capsys):
 
 @pytest.mark.nightly
 def test_plates_of_two_metres_are_drawn_whole(place):
-    """A row of 40 elements 50 mm apart has a stack of 40 x 50 + 30 mm, a stop plate inside its end plates and a carrier over
-    both: their sheets are broken, and say the whole length."""
+    """A row of 40 elements 50 mm apart has a stack of 40 x 50 + 30 mm, a stop plate inside its end plates and
+    a carrier over both: their sheets are broken, and say the whole length."""
     text = TEXT.replace("[[5]]", f"[{[5] * 40}]").replace("thickness = 3.0", "thickness = 20.0", 1)
     text = text.replace("\npitch = 4.0", "\npitch = 50.0").replace("spacer = 1.0", "spacer = 30.0")
     (place / "tiny.toml").write_text(text)
