@@ -151,6 +151,17 @@ def test_a_full_round_is_one_arc_in_the_slot():
     assert arc.centre == pytest.approx((place.hinge_x, place.hinge.t + 0.44))
 
 
+def test_a_full_round_given_to_nine_digits_is_one_too():
+    """2 r = l but for the last digits, by more than what the contour itself takes as rounding."""
+    large = variant(
+        {"element.override.3.hinge_length": 0.888888888, "element.override.3.fillet_radius": 0.444444446}
+    )
+    place = Layout(large).elements[2]
+    _, contour = outline(large, place)
+    (arc,) = [s for s in contour if isinstance(s, Arc) and "slot" in s.name]
+    assert abs(arc.sweep) == pytest.approx(pi, abs=1e-12)
+
+
 @pytest.mark.parametrize("design", DESIGNS.values(), ids=DESIGNS)
 def test_holes_are_in_line_with_the_webs_that_the_design_asks_for(design):
     layout = Layout(design)

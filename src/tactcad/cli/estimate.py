@@ -105,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
     else:
-        print(_report(design, model, rows, uncut))
+        print(_report(layout, model, rows, uncut))
         if choice:
             print(_why(choice, accuracy))
     return 0
@@ -214,8 +214,8 @@ def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     return document | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
-    first = rows[0]
+def _report(layout, model: str, rows: list[dict], uncut: dict | None) -> str:
+    design, first = layout.design, rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
         f"{first['force']:g} N on each pad",
@@ -233,7 +233,7 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None) -> str:
             "cut at load line and clamp edge"
         )
     if model in FITTED:
-        lines.append(_spread(design, first))
+        lines.append(_spread(layout, model))
     return "\n".join(lines)
 
 
@@ -262,8 +262,13 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(design, row: dict) -> str:
-    """What the hinge's tolerance does to these numbers: K goes with t^3."""
-    tolerance = design.tolerance.hinge_thickness
-    share = 3.0 * tolerance / design.element.hinge_thickness
-    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share:.0%}; measure it"
+def _spread(layout, model: str) -> str:
+    """What the hinge's tolerance does to these numbers, by the rung's own derivative."""
+    from tactcad.mechanics.derivative import elasticity
+    from tactcad.parts.hinge_section import hinge_section
+
+    section, tolerance = hinge_section(layout, layout.elements), layout.design.tolerance.hinge_thickness
+    shares = elasticity(section, "hinge_thickness", model) * tolerance / section.hinge_thickness
+    least, most = float(shares.min()), float(shares.max())
+    share = f"{shares.mean():.1%}" if most < 1.1 * least else f"{least:.1%} to {most:.1%}"
+    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share}; measure it"

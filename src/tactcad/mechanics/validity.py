@@ -8,6 +8,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from tactcad.design.plain_numbers import NINE_DIGITS
+
 from . import friction
 from .constants import ladder_data
 from .register import BY_NAME
@@ -61,7 +63,9 @@ GEOMETRY = (
     ),
     Rule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
     Rule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
-    Rule("fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -ROUNDING * s.hinge_length),
+    Rule(
+        "fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -NINE_DIGITS * s.hinge_length
+    ),
     Rule("load inside the slot: L <= l/2", lambda s: s.load_arm <= s.hinge_length / 2.0),
     Rule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
     Rule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),

@@ -7,6 +7,8 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from tactcad.paper.report import Figure
+
 # Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
     "#000000",
@@ -67,6 +69,11 @@ def svg(figure, name: str) -> str:
     # Several pictures share one page: ids get the picture's name before them.
     text = re.sub(r'(\bid="|xlink:href="#|url\(#)', rf"\g<1>{name}-", text)
     return re.sub(r"[ \t]+\n", "\n", text)
+
+
+def drawn(figure, name: str, caption: str) -> Figure:
+    """The picture for a report, under that name."""
+    return Figure(name, svg(figure, name), caption)
 
 
 def log_ticks(axis, ticks) -> None:

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design
+from tactcad.mechanics import ladder
+from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.section import HingeSection
 
 from .layout import ElementPlace, HingeShape, Layout
@@ -17,6 +19,12 @@ def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSectio
     return HingeSection.of(
         **{name: [each[name] for each in own] for name in own[0]}, **shared_parameters(layout.design)
     )
+
+
+def thickness_elasticity(layout: Layout, place: ElementPlace) -> float:
+    """dlnK/dln t of one element, by the solid rung; beyond the range of its fit by the section integral."""
+    s = hinge_section(layout, (place,))
+    return float(elasticity(s, "hinge_thickness", "solid" if ladder.evaluate(s).valid else "section").item())
 
 
 def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> dict[str, float]:

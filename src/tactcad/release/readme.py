@@ -12,6 +12,7 @@ from tactcad.drawing.extent import part_box
 from tactcad.export import inspection, strength
 from tactcad.parts.description import Characteristic, Part
 from tactcad.parts.finding import Finding
+from tactcad.parts.hinge_section import thickness_elasticity
 from tactcad.parts.layout import Layout
 from tactcad.scenes.scene import Scene
 
@@ -107,13 +108,14 @@ def _draft(contents: Contents) -> list[str]:
 def _what(contents: Contents) -> list[str]:
     design, layout = contents.design, Layout(contents.design)
     count = len(layout.elements)
-    thinnest = min(place.hinge.t for place in layout.elements)
+    thinnest = min(layout.elements, key=lambda place: place.hinge.t)
+    per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
     others = [scene.name for scene in contents.scenes if scene.name != "array"]
     text = (
         f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from {design.sheet.thickness:g} mm "
-        f"{design.material.alloy} sheet. Each has a hinge {thinnest:g} mm thin, whose thickness decides its stiffness: "
+        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness decides its stiffness: "
         "one hundredth of a millimetre more or less is "
-        f"{100 * ((1 + 0.01 / thinnest) ** 3 - 1):.0f} % more or less stiffness. Everything else is ordinary plate work."
+        f"{100 * per_hundredth:.0f} % more or less stiffness. Everything else is ordinary plate work."
     )
     if others:
         text += f" The set-ups that it is used in are here too: {', '.join(others)}."

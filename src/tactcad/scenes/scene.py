@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 from tactcad.parts.consumables import Supply
-from tactcad.parts.description import Part, Vector
+from tactcad.parts.description import Part, Vector, vector
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
+
+
+def rotation(rows: Iterable[Iterable[float]]) -> Rotation:
+    """Three rows of three numbers as a Rotation."""
+    x, y, z = (vector(map(float, row)) for row in rows)
+    return (x, y, z)
+
 
 UPRIGHT: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 ALONG_Y: Rotation = ((-1, 0, 0), (0, 0, 1), (0, 1, 0))  # local z runs along +y
@@ -119,7 +127,7 @@ class Scene:
         stepped = [d for step in self.steps for d in step.designators]
         if self.steps and sorted(stepped) != sorted(names):
             raise ValueError(f"scene {self.name}: the assembly's steps do not place every part once")
-        known = {}
+        known: dict[str, Part] = {}
         for p in self.placements:
             if known.setdefault(p.part.part_no, p.part) != p.part:
                 raise ValueError(f"scene {self.name}: two parts share the number {p.part.part_no}")
