@@ -123,10 +123,12 @@ def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) 
     """
     a = bottom * bottom - t * t * covariance[1, 1]
     b = top * bottom - t * t * covariance[0, 1]
-    c = top * top - t * t * covariance[0, 0]
     if a <= 0:
         return -inf, inf
-    root = sqrt(max(b * b - a * c, 0.0))
+    (tt, tb), (_, bb) = covariance
+    # b b - a c with c = top^2 - t^2 tt, without the difference of (top bottom)^2 from itself
+    along = top * top * bb - 2 * top * bottom * tb + bottom * bottom * tt
+    root = t * sqrt(max(along + t * t * (tb * tb - tt * bb), 0.0))
     return (b - root) / a, (b + root) / a
 
 
