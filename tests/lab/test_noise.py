@@ -34,13 +34,13 @@ def weights(readings: list[np.ndarray]) -> list[np.ndarray]:
 )
 def test_the_law_gives_the_variances_that_made_the_readings(sd):
     """400 elements: each reading's standard deviation within 10 % of the one it was drawn with; where noise grows, that of
-    the first displacement, whose reading nearly makes its run's intercept, within a third.
+    the first displacement, whose reading nearly makes its run's intercept, is taken for up to 1.4 times as much.
     """
     slopes = np.repeat(SLOPES, 80)
-    bound = np.where((X == STEPS[0]) & (sd[2] > 0), 1 / 3, 0.1)
+    most = np.where((X == STEPS[0]) & (sd[2] > 0), 1.4, 1.1)
     for k, w in zip(slopes, weights(read(sd, slopes, np.random.default_rng(1)))):
         true = np.maximum(deviation(*sd, k), deviation(*sd, k).max() / 10)
-        assert (np.abs(w**-0.5 / true - 1) < bound).all()
+        assert ((w**-0.5 > 0.9 * true) & (w**-0.5 < most * true)).all()
 
 
 def test_one_bad_reading_is_no_noise_that_grows():
