@@ -1,7 +1,7 @@
 """For every check one deliberately bad part, from the tests of that check: what is wrong with it, and what is
 found.
 
-docs/checks.md is written from this (benchmarks/checks_table.py), and tests/checks/test_checks_table.py holds
+docs/checks.md is written from this (tests/checks_table.py), and tests/checks/test_checks_table.py holds
 it complete.
 """
 

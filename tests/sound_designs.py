@@ -356,8 +356,9 @@ def _clamp(d: Draw) -> None:
 
 
 def _press_on(d: Draw, apart: float, thick: float, stack: float) -> None:
-    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of steel, half as
-    stiff for shear and set screws: across to the set screws, and along the row between them."""
+    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of
+    steel, half as stiff for shear and set screws: across to the set screws, and along the row between
+    them."""
     longest = max(
         v for path, v in d.table.items() if path.endswith("hinge_length") and path.startswith("element")
     )

@@ -1,4 +1,5 @@
-"""What is taken as rigid: the table's loads and lines by hand, what fails where something is thin, and docs/rigs.md."""
+"""What is taken as rigid: the table's loads and lines by hand, what fails where something is thin, and
+docs/rigs.md."""
 
 from __future__ import annotations
 
@@ -63,7 +64,10 @@ def test_what_is_thin_or_loaded_is_found(changes, wrong):
 
 def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
-    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
+    named = (
+        "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, "
+        "array mount, roller"
+    )
     named += ", cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
     assert parts == set(named.split(", "))
 
@@ -106,7 +110,8 @@ def test_lines_are_their_formulas_by_hand(scene, part, by_hand):
 
 
 def test_twice_as_thick_is_an_eighth():
-    """Of bending; shear, in which a cart plate of 20 mm gives way by a third as much as by bending, is a half."""
+    """Of bending; shear, in which a cart plate of 20 mm gives way by a third as much as by bending, is a
+    half."""
     for scene, part, model, field in (
         ("grasping", "cart plate", "", "cart.thickness"),
         ("grasping", "holder's lid", "evenly", "holder.lid_thickness"),
@@ -119,7 +124,8 @@ def test_twice_as_thick_is_an_eighth():
 @pytest.mark.parametrize("thickness", [3.0, 6.0, 20.0])
 @pytest.mark.parametrize("rows", [1, 10])
 def test_a_carrier_held_in_its_middle_opens_no_gap(thickness, rows):
-    """By integration of the bent and sheared carrier, ledges straight between its two ends; at most 0.01 um at 13.04 N."""
+    """By integration of the bent and sheared carrier, ledges straight between its two ends; at most 0.01 um
+    at 13.04 N."""
     arms = [[4, 7, 6, 8, 6] * rows, [8, 5, 4, 5, 7] * rows]
     layout = Layout(variant({"array.row_arms": arms, "clamp.carrier_thickness": thickness}))
     h = layout.end_plate_y
@@ -140,7 +146,8 @@ def test_a_carrier_held_in_its_middle_opens_no_gap(thickness, rows):
 
 
 def test_the_set_screws_seating_force_is_that_of_their_lead_and_friction():
-    """0.2 N m on M3: work of a turn is lift times force and friction times way, on the flanks and on the point."""
+    """0.2 N m on M3: work of a turn is lift times force and friction times way, on the flanks and on the
+    point."""
     force = seating_force("M3")
     flank, point = 2.675 * pi * 0.12 / np.cos(np.pi / 6), 2 / 3 * 2.0 * pi * 0.12
     assert force * (0.5 + flank + point) == pytest.approx(2 * pi * 200, rel=1e-3)
@@ -165,7 +172,8 @@ def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
 
 def rows_of(design) -> list[str]:
     return [
-        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} | {s.why} |"
+        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} "
+        f"| {s.why} |"
         for s in deflections(design, RIGS)
     ]
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import warnings
 
+import fem_extremes
 import numpy as np
 import pytest
 from hinges import scaled
@@ -15,7 +16,6 @@ from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.fit import fem_extremes
 from tactcad.fit.accuracy_samples import draw_range
 from tactcad.fit.fit_samples import section
 from tactcad.mechanics import ladder

@@ -52,7 +52,8 @@ BAD = {
             HEADER + ",force_mN",
             "{:g},{:g},{:g},{:g},{:g},{:g}",
         ),
-        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, force_mN",
+        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, "
+        r"force_mN",
     ),
     "thousands": (
         text(rows() * [1, 1, 1, 1, 1], HEADER.replace(",", "\t"), "{:g}\t{:g}\t1,250\t{:g}\t1,000"),
@@ -138,7 +139,8 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
 
 
 def test_outliers_cost_no_fit_each(monkeypatch):
-    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random cases."""
+    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random
+    cases."""
     rng, compared = np.random.default_rng(11), 0
     for _ in range(60):
         run = np.repeat(np.arange(rng.integers(1, 6)), rng.integers(6, 20))

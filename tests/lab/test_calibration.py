@@ -177,7 +177,8 @@ def test_two_outliers_do_not_hide_each_other():
 
 
 def test_the_interval_comes_from_the_runs_own_slopes():
-    """Equal steps in every run and equal weights: the mean of the runs' slopes with Student's t, two degrees of freedom."""
+    """Equal steps in every run and equal weights: the mean of the runs' slopes with Student's t, two degrees
+    of freedom."""
     data = simulated(Noise(), seed=5)
     data.force[(data.element == 4) & (data.run == 3)] *= 1.08
     row = calibration.calibrate(data, EXACT)[0]
@@ -211,8 +212,8 @@ def test_a_known_scatter_takes_the_place_of_the_runs_own():
 
 
 def test_an_interval_holds_for_every_load_cell_within_its_limits():
-    """The readings of a cell at either limit, evaluated with the nominal one: without noise the interval's end is the
-    truth.
+    """The readings of a cell at either limit, evaluated with the nominal one: without noise the interval's
+    end is the truth.
     """
     for true, pick in ((CELL + 1, 0), (CELL - 1, 1)):
         row = calibration.calibrate(simulated(Noise(0, 0, 0), cell=true), LoadCell(CELL, 1.0))[1]
@@ -250,14 +251,16 @@ def test_a_gap_over_more_than_a_step_is_found_and_said():
 
 
 def a_ramp(gap: float, seed: int) -> tuple[np.ndarray, ...]:
-    """2000 displacements of 0 to 0.15 mm and the force of 20 N/mm from the gap (mm) on, 5 mN of noise; one run."""
+    """2000 displacements of 0 to 0.15 mm and the force of 20 N/mm from the gap (mm) on, 5 mN of noise; one
+    run."""
     x = np.linspace(0, 0.15, 2000)
     force = 20 * np.maximum(x - gap, 0) + 0.005 * np.random.default_rng(seed).standard_normal(len(x))
     return x, force, np.ones(len(x), int)
 
 
 def test_of_a_ramp_in_contact_hardly_more_than_a_step_is_left_out():
-    """Stated: at most 16 steps are tried, each wrong in one of a thousand. 200 ramps: 3.2 expected, more than 12 by a chance under 1e-4."""
+    """Stated: at most 16 steps are tried, each wrong in one of a thousand. 200 ramps: 3.2 expected, more than
+    12 by a chance under 1e-4."""
     late = [contact.first_in_contact(*a_ramp(0, seed)) for seed in range(200)]
     assert sum(left_out > 1 for _, left_out in late) <= 12
     assert min(first for first, _ in late) == pytest.approx(0.15 / contact.MOST, abs=1e-4)

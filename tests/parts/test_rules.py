@@ -279,8 +279,8 @@ def holes_outside(part: Part) -> list[str]:
 
 
 def checked(design: Design) -> list[str]:
-    """What is wrong with the array as solids: what its loads do to it, or a drill to its plates, is not asked here,
-    nor whether lengths drawn by chance leave an edge of a micrometre."""
+    """What is wrong with the array as solids: what its loads do to it, or a drill to its plates, is not asked
+    here, nor whether lengths drawn by chance leave an edge of a micrometre."""
     from tactcad.checks.brep import check_brep
     from tactcad.checks.interference import check_interference
     from tactcad.checks.mesh import check_mesh

@@ -1,4 +1,5 @@
-"""Every rule of the rigs has a design that breaks it; an array that a rig cannot take costs only that scene."""
+"""Every rule of the rigs has a design that breaks it; an array that a rig cannot take costs only that
+scene."""
 
 from __future__ import annotations
 

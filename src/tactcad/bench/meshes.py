@@ -147,9 +147,8 @@ def findings(rows: list[dict]) -> list[str]:
         ratio = ours["seconds"] / theirs["own clock"]
         lines.append(
             f"{'met' if ratio <= GOAL_SOLVE else 'MISSED'}: plane elements within {100 * ASKED:g} %: "
-            f"{1e3 * ours['seconds']:.1f} ms (density "
-            f"{ours['density']}) against CalculiX's own {1e3 * theirs['own clock']:.0f} ms (density "
-            f"{theirs['density']}), {ratio:.2f} of its time "
+            f"{1e3 * ours['seconds']:.1f} ms (density {ours['density']}) against CalculiX's own "
+            f"{1e3 * theirs['own clock']:.0f} ms (density {theirs['density']}), {ratio:.2f} of its time "
             f"(goal {GOAL_SOLVE:g}); {1e3 * theirs['seconds']:.0f} ms as a process."
         )
     return lines

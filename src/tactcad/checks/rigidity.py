@@ -21,6 +21,6 @@ def check_rigidity(design: Design, scenes: Collection[str], table: list[Deflecti
 
 def _message(line: Deflection) -> str:
     return (
-        f"{line.scene}: gives way by {line.gives:.3g} um under {line.load:.3g} N ({line.origin}), {line.model}; "
-        f"allowed are {line.allowed:.3g} um, {line.why}"
+        f"{line.scene}: gives way by {line.gives:.3g} um under {line.load:.3g} N ({line.origin}), "
+        f"{line.model}; allowed are {line.allowed:.3g} um, {line.why}"
     )

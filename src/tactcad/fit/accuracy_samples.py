@@ -37,7 +37,7 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
     solid."""
     rng = np.random.default_rng(seed)
     groups = ladder_data()["range"]["groups"]
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         g = {k: math.exp(rng.uniform(math.log(low), math.log(high))) for k, (low, high) in groups.items()}
         row = _design(g, full_round=rng.random() < FULL_ROUND_SHARE) | {"two_sided": float(len(rows) % 2)}

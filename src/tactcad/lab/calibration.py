@@ -5,9 +5,10 @@ K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, a
 removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
 as the paper did, puts the force's noise on both axes; that estimate is given beside it.
 
-Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run to run
-(Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load cell is known
-within limits: the interval holds for every cell within them. Readings before contact are found and left out.
+Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run
+to run (Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load
+cell is known within limits: the interval holds for every cell within them. Readings before contact are found
+and left out.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ from tactcad.lab.regression import (
 )
 
 FALSE_ALARM = 0.01  # chance of naming any outlier in a file without one
-# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing of it.
-# Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
+# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing
+# of it. Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
 
 
@@ -105,8 +106,8 @@ def calibrate(
     level : float
         Of every interval.
     run_scatter : float, optional
-        Relative standard deviation of an element's slope from run to run, where it is known. Without it the runs
-        of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
+        Relative standard deviation of an element's slope from run to run, where it is known. Without it the
+        runs of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
     tell
         Hears of every element before it is fitted.
 
@@ -215,8 +216,8 @@ def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> 
     kept = here[steps(x) >= first]
     if left_out > 1:
         notes.append(
-            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above the line "
-            "of the others; they are left out"
+            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above "
+            "the line of the others; they are left out"
         )
     if not left_out:
         notes.append(
@@ -275,22 +276,22 @@ def _require_spring(
     if k - half_width >= load_cell.ends[1]:
         raise InputError(
             where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: another "
-            "unit "
-            "of displacement or force, or another load cell",
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: "
+            "another unit of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )
 
 
 def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
-    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that takes it
-    furthest.
+    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that
+    takes it furthest.
     """
     low, high = k - t * se, k + t * se
     softest, stiffest = load_cell.ends
     if low <= 0:
         notes.append(
-            "the force does not rise with displacement beyond noise: the data do not tell the stiffness from zero"
+            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
+            "from zero"
         )
     if high >= softest:
         notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")

@@ -49,8 +49,8 @@ def steps(x: np.ndarray) -> np.ndarray:
 
 
 def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
-    """How many steps there are, each counted in every run, beyond those that give every run its intercept and all of
-    them a slope; below 0 there is no line.
+    """How many steps there are, each counted in every run, beyond those that give every run its intercept and
+    all of them a slope; below 0 there is no line.
     """
     at = steps(x)
     order = np.lexsort((at, run))

@@ -1,25 +1,27 @@
-"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its rigs.
+"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its
+rigs.
 
-Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most bend less.
-Bought parts are not in it: their makers state how stiff they are.
+Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most
+bend less. Bought parts are not in it: their makers state how stiff they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
-from typing import Literal
 
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam
+from tactcad.parts.finding import Severity
 
 from . import seating
 from .layout import Layout
 from .stop_gap import stop_limit
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
-# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
-# of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
+# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 %
+# in root sum of squares, so that a dozen of them together are still less than the tenth part of what they are
+# a share of.
 TENTH = 0.1
 
 
@@ -43,7 +45,7 @@ class Deflection:
     gives: float
     allowed: float
     why: str
-    severity: Literal["fail", "flag"] = "fail"
+    severity: Severity = "fail"
 
 
 def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
@@ -129,11 +131,12 @@ def array_lines(design: Design) -> Iterator[Deflection]:
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     """What bends between arm and stop, under the arm that has least room for it."""
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
-    for part, model, give, severity in (
+    cases: tuple[tuple[str, str, Callable[[Layout, float], float], Severity], ...] = (
         ("stop plate", "strip between rows of set screws, plate between pairs", _plate, "fail"),
         ("carrier", "held by its threads in the middle", carrier_opens, "fail"),
         ("carrier", "the array held by its end plates alone", lambda layout, y: held, "flag"),
-    ):
+    )
+    for part, model, give, severity in cases:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
+from numpy.typing import ArrayLike
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder
 from OCP.BRepBndLib import BRepBndLib
@@ -51,13 +52,13 @@ def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[fl
     return found.Value(), (point.X(), point.Y(), point.Z())
 
 
-def boxed(boxes: np.ndarray, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
+def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
     """Least and largest corner (..., 2, 3) of boxes (mm) turned and moved.
 
     The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
     """
-    boxes = np.asarray(boxes)
-    middle, half = boxes.mean(axis=-2), (boxes[..., 1, :] - boxes[..., 0, :]) / 2
+    ends = np.asarray(boxes)
+    middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2
     there, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
     return np.stack([there - reach, there + reach], axis=-2)
 

@@ -174,44 +174,17 @@ def _plot(v: Inversion) -> Figure:
                     capsize=2,
                     alpha=0.95,
                 )
-                ax.plot(
-                    x[~ok] * shift,
-                    np.full((~ok).sum(), 0.36),
-                    d.MARKERS[i],
-                    mfc="white",
-                    mec=d.SERIES[i],
-                    ms=6,
-                )
-            ax.set_xscale("log")
-            ax.set_yscale("log")
-            d.log_ticks(ax.xaxis, (2, 3, 4, 5, 7, 10))
-            d.log_ticks(ax.yaxis, (0.5, 1, 2, 5, 10, 20, 50, 100))
-            ax.set_xlim(2.0, 12)
-            ax.set_ylim(0.3, 170)
-            ax.set_title(title)
-            ax.set_xlabel("K_obj of the sample, N/mm")
+                d.series(ax, i, x[~ok] * shift, np.full((~ok).sum(), 0.36), hollow=True, ms=6)
+            d.log_axes(ax, x=(2, 3, 4, 5, 7, 10), y=(0.5, 1, 2, 5, 10, 20, 50, 100))
+            ax.set(xlim=(2.0, 12), ylim=(0.3, 170), title=title, xlabel="K_obj of the sample, N/mm")
         axes[0].set_ylabel("K_obj by equation (3), N/mm")
         right = axes[2]
         for i in range(len(v.measuring)):
             ok = v.supported.physical()[i]
             condition = np.abs(v.supported.condition[i])
-            right.plot(
-                condition[ok],
-                np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok]))),
-                d.MARKERS[i],
-                color=d.SERIES[i],
-                ms=7,
-                mec="white",
-                mew=0.6,
-            )
-            right.plot(
-                np.minimum(condition[~ok], 600),
-                np.full((~ok).sum(), 8.5),
-                d.MARKERS[i],
-                mfc="white",
-                mec=d.SERIES[i],
-                ms=7,
-            )
+            off = np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok])))
+            d.series(right, i, condition[ok], off)
+            d.series(right, i, np.minimum(condition[~ok], 600), np.full((~ok).sum(), 8.5), hollow=True)
         grid = np.geomspace(2, np.log(9) / v.ratio_error, 50)
         right.plot(
             grid,
@@ -221,14 +194,13 @@ def _plot(v: Inversion) -> Figure:
             ls="--",
             label="condition × scatter of R",
         )
-        right.set_xscale("log")
-        right.set_yscale("log")
-        d.log_ticks(right.xaxis, (2, 5, 10, 50, 200, 600))
-        d.log_ticks(right.yaxis, (1, 1.5, 2, 3, 5, 8))
-        right.set_ylim(0.97, 10)
-        right.set_xlabel("|condition number| of K_obj in R")
-        right.set_ylabel("off by this factor, supported K_r")
-        right.set_title("what was to be expected")
+        d.log_axes(right, x=(2, 5, 10, 50, 200, 600), y=(1, 1.5, 2, 3, 5, 8))
+        right.set(
+            ylim=(0.97, 10),
+            xlabel="|condition number| of K_obj in R",
+            ylabel="off by this factor, supported K_r",
+            title="what was to be expected",
+        )
         right.legend(loc="lower right", fontsize=9)
         from matplotlib.lines import Line2D
 
@@ -243,9 +215,9 @@ def _plot(v: Inversion) -> Figure:
             columnspacing=1.2,
             handletextpad=0.3,
         )
-        return Figure(
+        return d.drawn(
+            figure,
             "inversion",
-            d.svg(figure, "inversion"),
             "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that "
             "runs through infinity.",
         )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import pi, radians
 
 from tactcad.design.materials import ALLOYS
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam, rod, round_plate
 
@@ -46,7 +47,7 @@ SEAT = 10.0  # mm, the roller's seat (roller_tip.py)
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
     """In series with the gauge: what gives way there is read as the element's own deflection."""
-    rig, c = StandLayout(design), design.calibration
+    rig, c = StandLayout(design), present(design.calibration)
     load = (
         "calibration",
         min(c.load_cell_range, c.travel * c.load_cell_stiffness),
@@ -66,21 +67,22 @@ def calibration_lines(design: Design) -> Iterator[Deflection]:
 
 
 def sample_lines(design: Design) -> Iterator[Deflection]:
-    rig, s = StandLayout(design), design.sample
+    rig, s = StandLayout(design), present(design.sample)
+    cart = present(rig.cart)
     load = (
         "sample-stiffness",
-        min(design.calibration.load_cell_range, s.stiffness * s.travel),
+        min(present(design.calibration).load_cell_range, s.stiffness * s.travel),
         "sample.stiffness times sample.travel",
         TENTH * s.step * 1e3,
         "a tenth of sample.step",
     )
-    yield from _stand_lines(rig, rig.cart.sample_top, load)
-    yield from _cart_lines(rig.cart, load)
+    yield from _stand_lines(rig, cart.sample_top, load)
+    yield from _cart_lines(cart, load)
 
 
 def grasping_lines(design: Design) -> Iterator[Deflection]:
     """Array and weights on their guide, and the cart under them; the guide itself is bought."""
-    rig, stand, layout = guide_layout(design), StandLayout(design), Layout(design)
+    rig, stand, layout = present(guide_layout(design)), StandLayout(design), Layout(design)
     g = rig.grasping
     weight, origin = g.moving_weight + g.weights * g.weight, "moving weight and all added weights"
     down = ("grasping", weight, origin, *pads_plane(design))
@@ -113,7 +115,7 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
     model = "turned at the weights' pin, held at the bar"
     yield _line(tilt, "platform", model, platform.cantilever_tilt() * row)
     alloy = ALLOYS[design.clamp.plate_alloy]
-    slender = rod(pin(rig).body.thickness, PIN, alloy.youngs_modulus, alloy.poisson)
+    slender = rod(pin(rig).extrusion.thickness, PIN, alloy.youngs_modulus, alloy.poisson)
     play = (
         "grasping",
         g.weight,
@@ -154,7 +156,8 @@ def _cart_lines(cart: CartLayout, load: tuple) -> Iterator[Deflection]:
 def _lid(cart: CartLayout) -> tuple[float, float]:
     """Holder's lid on the plenum's rim: mm for each newton in its middle, and for each MPa under it.
 
-    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch - d)/pitch.
+    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch -
+    d)/pitch.
     """
     h, alloy = cart.holder, ALLOYS[plate_material(cart.design).name]
     pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings

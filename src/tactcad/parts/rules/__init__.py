@@ -1,8 +1,9 @@
 """Rules between fields of a design, one file a subject: what cannot be built or held is refused before
 anything is made.
 
-In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried when the
-file is read, these after. A rule is a function with `@rule` above it; `@fits` says that a rig takes this array.
+In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried
+when the file is read, these after. A rule is a function with `@rule` above it; `@fits` says that a rig takes
+this array.
 """
 
 from __future__ import annotations

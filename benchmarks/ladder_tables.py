@@ -1,6 +1,6 @@
 """The tables of docs/mechanics.md and docs/accuracy.md, computed.
 
-`python -m tactcad.fit.ladder_tables docs/mechanics.md`, and the other likewise.
+`python benchmarks/ladder_tables.py docs/mechanics.md`, and the other likewise.
 
 Blocks stand between `<!-- table NAME -->` and `<!-- end -->`; running it writes them anew.
 """
