@@ -1,4 +1,4 @@
-"""The force sensor that gives way in series with the element: its stiffness and the limits within which it is known."""
+"""The force sensor that gives way in series with the element: its stiffness, and how well it is known."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from math import inf, isinf
 
 from tactcad.design.messages import InputError
 
-# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen, after one
-# measurement with weights and a micrometer.
+# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen,
+# after one measurement with weights and a micrometer.
 CELL_ACCURACY = 0.02
 
 

@@ -1,8 +1,9 @@
 """How much a reading scatters: one law for all elements of a file, since the same sensors read them.
 
-variance = a + b slope^2 + c (slope travel)^2, none of the three below zero: the read-out's own noise, the stage's (the
-same error of displacement is more force on a stiff element), and what grows with the reading (a sensor's per cent of
-value). An element alone has too few readings to tell a noise that grows from an outlier at its largest reading.
+variance = a + b slope^2 + c (slope travel)^2, none of the three below zero: the read-out's own noise, the
+stage's (the same error of displacement is more force on a stiff element), and what grows with the reading (a
+sensor's per cent of value). An element alone has too few readings to tell a noise that grows from an outlier
+at its largest reading.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ from scipy.optimize import nnls
 
 from tactcad.lab.regression import fit_lines
 
-# A squared residual counts up to so many times its variance (three standard deviations), so that a bad reading is no noise
-# that grows; of normal noise that takes away 1 % of the squares' mean.
+# A squared residual counts up to so many times its variance (three standard deviations), so that a bad reading
+# is no noise that grows; of normal noise that takes away 1 % of the squares' mean.
 STRANGE = 9.0
-FITS = 2  # of the lines: with equal weights, then with those that follow, since noisy readings turn a line off the others
+FITS = 2  # of the lines: by equal weights, then by those found, since noisy readings turn a line off the rest
 ROUNDS = 6  # fits of the law, each weighted by and held against the one before; after five nothing moves
 RANGE = 100.0  # of the variances of one element
 MEDIAN = 0.455  # of chi-squared with one degree of freedom, over its mean
@@ -26,8 +27,8 @@ MEDIAN = 0.455  # of chi-squared with one degree of freedom, over its mean
 
 @dataclass(frozen=True)
 class Readings:
-    """One element's readings of force (N) or signal (V): displacement (mm), the same from where the element began (mm),
-    what was read, number of the run.
+    """One element's readings of force (N) or signal (V): displacement (mm), the same from where the element
+    began (mm), what was read, number of the run.
     """
 
     x: np.ndarray
@@ -65,7 +66,7 @@ def _by_law(elements: Sequence[Readings], weight: list[np.ndarray]) -> list[np.n
 
 
 def _start(square: np.ndarray) -> float:
-    """Variance of an element's readings from the median of their squares, or the mean where that is nought."""
+    """Variance of an element's readings by the median of their squares, the mean where that is nought."""
     return float(np.median(square)) / MEDIAN or float(square.mean())
 
 

@@ -22,8 +22,8 @@ class Truth:
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations: of single readings' force (N), displacement (mm) and signal (V); and relative, of the reading
-    (force, and what the signal changes by) and of a run's slopes.
+    """Standard deviations: of single readings' force (N), displacement (mm) and signal (V); and relative, of
+    the reading (force, and what the signal changes by) and of a run's slopes.
     """
 
     force: float = 0.003
@@ -90,8 +90,8 @@ def approach(
 def coupled_deflection(
     load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
 ) -> np.ndarray:
-    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j does there; 1
-    on the diagonal.
+    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j does
+    there; 1 on the diagonal.
     """
     force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
     return np.outer(force / stiffness, load / force.sum())

@@ -75,7 +75,7 @@ def invert(study: Table2Study) -> Inversion:
 
 
 def _left_out(study: Table2Study) -> np.ndarray:
-    """No reading has a part in the K_r by which it is inverted, nor has any that shares its element or sample."""
+    """No reading, and none of its element or sample, has a part in the K_r by which it is inverted."""
     k, x, R = study.measuring, study.object_printed, study.ratio
     found = np.empty_like(R)
     for i, j in np.ndindex(R.shape):

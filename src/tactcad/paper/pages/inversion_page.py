@@ -60,8 +60,8 @@ def _without_its_own(v: Inversion) -> str:
     left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
     same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
     return (
-        f"That K_r is fitted to these very readings: with the one that all others support, without the reading's own "
-        f"element and sample, {left_out} are within the factor; {same} of its 95 % interval."
+        "That K_r is fitted to these very readings: with the one that all others support, without the reading's "
+        f"own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
     )
 
 
@@ -72,8 +72,9 @@ def _without_reading(v: Inversion) -> str:
     one = np.exp(log.mean())
     of_others = np.exp((log.sum() - log) / (len(x) - 1)) if len(x) > 1 else x
     return (
-        f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the factor for "
-        f"{elements * _near(one, x).sum()}, the mean of the other samples for {elements * _near(of_others, x).sum()}."
+        f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the "
+        f"factor for {elements * _near(one, x).sum()}, the mean of the other samples for "
+        f"{elements * _near(of_others, x).sum()}."
     )
 
 
@@ -85,10 +86,10 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     mean = np.broadcast_to(_near(np.exp(np.log(x).mean()), x), well.shape)
     least = np.abs(v.supported.condition).min()
     return (
-        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} of "
-        f"{well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others support, "
-        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The typical "
-        f"error is {inside} below and {outside} above; rank correlation of condition number and error "
+        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
+        f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others support, "
+        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The "
+        f"typical error is {inside} below and {outside} above; rank correlation of condition number and error "
         f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
         f"{percent(v.ratio_error * least)} in K_obj."
     )
