@@ -77,12 +77,15 @@ def _end(number: int, _frame: object) -> None:
     os._exit(128 + number)
 
 
-def _kill_helpers() -> None:
-    """The processes that this one started: they work for nobody now."""
+def _kill_helpers(of: str = "self") -> None:
+    """The processes that this one started, and theirs: they work for nobody now. Each stands still before it is asked for
+    its own, or it would start another meanwhile."""
     try:
-        for thread in os.listdir("/proc/self/task"):
-            with open(f"/proc/self/task/{thread}/children", encoding="ascii") as children:
+        for thread in os.listdir(f"/proc/{of}/task"):
+            with open(f"/proc/{of}/task/{thread}/children", encoding="ascii") as children:
                 for child in children.read().split():
+                    os.kill(int(child), signal.SIGSTOP)
+                    _kill_helpers(child)
                     os.kill(int(child), signal.SIGKILL)
     except OSError:
         pass  # no such list here, or one that ended by itself

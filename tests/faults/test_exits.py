@@ -209,3 +209,40 @@ def test_helpers_end_with_what_they_help(bench, work, name):
             time.sleep(0.02)
         assert not any(running(int(helper)) for helper in helpers)
         assert not (work / "out").exists() and not list((work / "tmp").iterdir())
+
+
+def descendants(process: int) -> set[int]:
+    """The processes that it started, and theirs; none of one that has ended."""
+    try:
+        tasks = list(Path(f"/proc/{process}/task").iterdir())
+        children = {int(child) for task in tasks for child in (task / "children").read_text().split()}
+    except OSError:
+        return set()
+    return children.union(*map(descendants, children))
+
+
+@pytest.mark.parametrize("name", STATUS)
+def test_a_benchmark_leaves_nobody_running(work, name):
+    """What it measures runs under a meter, two processes down; it alone gets the signal."""
+    with subprocess.Popen(
+        [*MODULE, "bench", "--smoke", "--only", "detail", "--out", "report"],
+        cwd=work,
+        env=environment(work),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as measuring:
+        below: set[int] = set()
+        until = time.monotonic() + 120
+        while len(below) < 2 and time.monotonic() < until and measuring.poll() is None:
+            time.sleep(0.02)
+            below = descendants(measuring.pid)
+        measuring.send_signal(getattr(signal, name))
+        said = measuring.stderr.read()
+    assert len(below) >= 2, said
+    assert_ended(subprocess.CompletedProcess([], measuring.returncode, b"", said.encode()), name)
+    until = time.monotonic() + 5
+    while any(map(running, below)) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not any(map(running, below))
+    assert not (work / "report").exists() and not list((work / "tmp").iterdir())

@@ -170,22 +170,28 @@ def _sorted_out(
     a: Placement, b: Placement, boxes: Mapping[str, Box], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
     """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as
-    they are assembled, where one lies beyond the other; else the later one goes on along its own axis, the
-    way that it came off."""
+    they are assembled, where one lies beyond the other along an axis that either comes off along (aside of
+    it, what holds a piece would stay behind); else the later one goes on along its own axis, the way that it
+    came off."""
     ends = owner[a.designator], owner[b.designator]
     for j in joints:
         if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):
             return (a, b, j.axis) if owner[j.lower] == ends[0] else (b, a, j.axis)
     p, q = boxes[a.designator], boxes[b.designator]
     beyond = np.maximum(q[0] - p[1], p[0] - q[1])
-    if beyond.max() >= -TOUCH:
-        axis = int(beyond.argmax())
+    ways = {j.axis for j in joints if not {owner[j.lower], owner[j.upper]}.isdisjoint(ends)} or {0, 1, 2}
+    axis = max(ways, key=lambda k: beyond[k])
+    if beyond[axis] >= -TOUCH:
         return (a, b, axis) if p[:, axis].sum() < q[:, axis].sum() else (b, a, axis)
+    mine = [j for j in joints if ends[1] in (owner[j.lower], owner[j.upper])]
     axis, sign = way_off(a, b, boxes)
-    axis = axis if (turned := axis_of(b)) is None else turned
-    mine = [j for j in joints if owner[b.designator] in (owner[j.lower], owner[j.upper]) and j.axis == axis]
-    if mine:
-        sign = 1 if owner[mine[0].upper] == owner[b.designator] else -1
+    if (turned := axis_of(b)) is not None:
+        axis = turned
+    elif mine and axis not in {j.axis for j in mine}:
+        axis = mine[0].axis
+    along = next((j for j in mine if j.axis == axis), None)
+    if along:
+        sign = 1 if owner[along.upper] == ends[1] else -1
     return (a, b, axis) if sign > 0 else (b, a, axis)
 
 

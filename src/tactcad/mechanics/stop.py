@@ -38,12 +38,15 @@ def largest_closing_force(
     s: HingeSection, stiffness: Array, arm: Array, give: float, overload: float, limit: Array
 ) -> Array:
     """Force (N) with which the stop may close at most, so that `overload` (N) on it neither turns nor
-    stresses the hinge more than `limit` (N) at the free arm's load line does.
+    stresses the hinge more than `limit` (N) at the free arm's load line does; never more than the limit itself.
 
-    F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone.
+    F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone: of a share of 1
+    and more it always is.
     """
     share = _share(s, stiffness, arm, give)
-    return (limit - share * overload) / (1.0 - share)
+    kept = np.where(share < 1.0, 1.0 - share, 1.0)
+    closing = limit - share / kept * np.maximum(overload - limit, 0.0)
+    return np.where((share < 1.0) | (overload <= limit), closing, 0.0)
 
 
 def largest_overload(
