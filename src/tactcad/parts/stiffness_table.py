@@ -48,7 +48,7 @@ class Deflection:
     allowed: float
     why: str
     fields: tuple[str, ...]
-    severity: Literal[fail, flag] = "fail"
+    severity: Severity = "fail"
 
     @property
     def too_much(self) -> bool:
