@@ -2,10 +2,10 @@
 
     .venv/bin/python packaging/same_output.py OTHER_TREE [WORD]...
 
-Both trees, each with its .venv, work on the designs of hardware/ here and on three drawn by chance; with WORDs only the runs
-whose name contains one. Archives are compared by their members, JSON by its values; a difference that MUST_DIFFER explains is
-named, any other gives exit status 1. `bench`, which reports times, is left out. What the other tree wrote is kept under
-its commit in .cache/same-output, and used again.
+Both trees, each with its .venv, work on the designs of hardware/ here and on three drawn by chance; with
+WORDs only the runs whose name contains one. Archives are compared by their members, JSON by its values; a
+difference that MUST_DIFFER explains is named, any other gives exit status 1. `bench`, which reports times, is
+left out. What the other tree wrote is kept under its commit in .cache/same-output, and used again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from typing import Any
 HERE = Path(__file__).resolve().parents[1]
 KEPT = HERE / ".cache" / "same-output"
 MUST_DIFFER = {
-    r".*manifest\.json: /(inputs/sources/|inputs/libraries/|seal)": "digest of the source, and libraries named",
+    r".*manifest\.json: /(inputs/sources/|inputs/libraries/|seal)": "digest of the source, and libraries "
+    "named",
     r"(check|release) .*\.out: .*seconds": "time",
 }
 RUNS = """\

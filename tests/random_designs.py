@@ -18,7 +18,7 @@ from typing import Any
 
 from sound_designs import LEGAL, Draw, as_table, sound_table
 
-from tactcad.design.fields import Choice
+from tactcad.design.fields import OneOf
 from tactcad.design.load import SECTION_TYPES
 from tactcad.design.messages import InputError
 
@@ -29,7 +29,7 @@ CHOICES = {
     for section, kind in SECTION_TYPES.items()
     if section != "origin"
     for name, f in kind.__dataclass_fields__.items()
-    if isinstance(f.metadata.get("spec"), Choice)
+    if isinstance(f.metadata.get("spec"), OneOf)
 }
 
 

@@ -186,8 +186,8 @@ def _arms(d: Draw, rows: list[int]) -> None:
         max(d.longest_arm, min(shortest + 0.002, 100.0)),
     )  # no sliver of half a micrometre beside the pad's root
     d.arms = [[d.between(shortest, longest) for _ in range(n)] for n in rows]
-    # The shortest arm's body reaches as far as the longest arm's: both halves of a length B at which it bends by a third
-    # of what its hinge does: 4 (B + L)^3/H^3 of 12 l L^2/t^3.
+    # The shortest arm's body reaches as far as the longest arm's: both halves of a length B at which it bends
+    # by a third of what its hinge does: 4 (B + L)^3/H^3 of 12 l L^2/t^3.
     least = min(map(min, d.arms))
     lever = least - pad / 2
     d.stiff_body = (d.table["element.body_height"] / d.t * (d.l * lever**2) ** (1 / 3) - lever) / 2
@@ -374,8 +374,9 @@ def bends(span: float, width: float, high: float) -> float:
 
 
 def _press_on(d: Draw, apart: float, thick: float, stack: float) -> float:
-    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of steel, half as
-    stiff for shear and set screws: across to the set screws, and along the row between them. Returns half the stop plate's room across (mm)."""
+    """No more force than bends the stop plate by a hundredth of what leaves its gap. Two Euler beams of
+    steel, half as stiff for shear and set screws: across to the set screws, and along the row between them.
+    Returns half the stop plate's room across (mm)."""
     longest = max(
         v for path, v in d.table.items() if path.endswith("hinge_length") and path.startswith("element")
     )

@@ -15,12 +15,14 @@ from tactcad.parts.rigs.guide_layout import guide_layout
 from tactcad.scenes.moving_axis import ballast_range
 
 M3, M5 = METRIC["M3"], METRIC["M5"]
-# mm/N of the stand's softest part: a post of 52 x 20 mm, up to 250 mm high, turned by its load's lever of 68 mm.
+# mm/N of the stand's softest part: a post of 52 x 20 mm, up to 250 mm high, turned by its load's lever of 68
+# mm.
 STAND = 1.1 * 68.0**2 * 250.0 / (69e3 * 52.0 * 20.0**3 / 12)
 # The stand: the post's front behind the sensor's axis, and the guide's front before it (mm, docs/rigs.md).
 POST_FRONT, GUIDE_FRONT = 58.0, 27.5
 CARRIAGE = 28.9
-# Heaviest that stands on the base plate: it bridges 200 mm, 168 wide and 12 thick, and bends by a tenth of 0.02 mm.
+# Heaviest that stands on the base plate: it bridges 200 mm, 168 wide and 12 thick, and bends by a tenth of
+# 0.02 mm.
 HEAVIEST = 0.9 * 0.002 / bends(200.0, 168.0, 12.0)
 
 

@@ -102,7 +102,8 @@ def test_what_no_field_helps_says_so():
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.integers(0, 2**48))
 def test_what_the_rules_accept_passes_the_check(number):
-    """Designs over the whole legal range, sound ones and others: what the rules take, with the scenes that they leave it."""
+    """Designs over the whole legal range, sound ones and others: what the rules take, with the scenes that
+    they leave it."""
     try:
         design = from_table(raw_table(number, (1, 2, 3, 8), rigs=0.7))
     except InputError:
@@ -113,8 +114,8 @@ def test_what_the_rules_accept_passes_the_check(number):
 
 def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
-    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
-    named += ", all of these, cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
+    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, "
+    named += "array mount, roller, all of these, cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
     assert parts == set(named.split(", "))
 
 
@@ -217,8 +218,8 @@ def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
 
 
 def test_what_stands_in_series_with_the_gauge_adds_up_and_is_told_in_guide_and_document():
-    """By hand: base plate, post, gauge and axis plate, roller, mount and carrier, um/N of the table's lines at 5 N; the
-    stiffest arm's own compliance is that of the estimator."""
+    """By hand: base plate, post, gauge and axis plate, roller, mount and carrier, um/N of the table's lines
+    at 5 N; the stiffest arm's own compliance is that of the estimator."""
     design = load("macro-array")
     lines = [s for s in deflections(design, ["calibration"]) if s.part != "all of these"]
     together = line_of("calibration", "all of these")

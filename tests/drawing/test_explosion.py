@@ -1,4 +1,5 @@
-"""Exploded sub-assemblies: nothing overlaps, screws come out on the side of their heads, distances worked out by hand."""
+"""Exploded sub-assemblies: nothing overlaps, screws come out on the side of their heads, distances worked out
+by hand."""
 
 from __future__ import annotations
 
@@ -38,8 +39,9 @@ def shifts(scene: Scene, placements=None) -> dict[str, tuple[float, ...]]:
 
 
 def test_a_lid_and_its_screws_by_hand():
-    """Lid 2 thick on a plate 10 thick, M3x8 through it: the lid rises by the gap, the screw's tip from z = 4 to gap over
-    the lid's top, 12 + 5 + 5; a block at the front face comes forward by the gap, its own screw's tip to gap before it."""
+    """Lid 2 thick on a plate 10 thick, M3x8 through it: the lid rises by the gap, the screw's tip from z = 4
+    to gap over the lid's top, 12 + 5 + 5; a block at the front face comes forward by the gap, its own screw's
+    tip to gap before it."""
     scene = Scene(
         "test",
         (

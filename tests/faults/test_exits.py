@@ -109,7 +109,8 @@ def test_a_terminal_that_hung_up_is_no_error(bench, work):
 
 # --- signals ---
 
-# Sends itself a signal at the n-th module that is imported after tactcad took its signals over; n = 0 counts them.
+# Sends itself a signal at the n-th module that is imported after tactcad took its signals over; n = 0 counts
+# them.
 AT_IMPORT = """
 import os, runpy, signal, sys
 number, turn = int(sys.argv[1]), int(sys.argv[2])
@@ -183,7 +184,8 @@ def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
 
 @pytest.mark.parametrize("name", STATUS)
 def test_helpers_end_with_what_they_help(bench, work, name):
-    """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them did."""
+    """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them
+    did."""
     arguments = ("export", "A.toml", "--drawings", "--out", "out")
     for group in (False, True):
         with subprocess.Popen(

@@ -110,8 +110,8 @@ def test_a_stop_closes_at_the_limit_where_the_overload_alone_is_less(overload):
 
 
 def test_a_stop_that_gives_more_than_the_hinge_keeps_nothing_from_it():
-    """A give of 1 mm/N leaves the hinge all and the lever's turn besides: no gap at all, where the equation's own root
-    would be a force beyond the overload, at which the stop is not even reached."""
+    """A give of 1 mm/N leaves the hinge all and the lever's turn besides: no gap at all, where the equation's
+    own root would be a force beyond the overload, at which the stop is not even reached."""
     s, K = section(3.0), ladder.stiffness(section(3.0))
     whippy = section(3.0, 0.05)
     share = float(deflection_share(whippy, K, 4.0, 1.0))

@@ -114,8 +114,8 @@ def chain(points: Iterable[Point]) -> Contour:
 def _area_and_moments(s: Segment, x0: float, y0: float) -> tuple[float, float, float]:
     """Green's theorem: the segment's share of area, and of its first moments about (x0, y0).
 
-    The chord's triangle with (x0, y0), and for an arc the circular segment between chord and arc:
-    area r^2 (w - sin w)/2, its centroid 4 r sin^3(w/2) / (3 (w - sin w)) from the centre (w = sweep).
+    The chord's triangle with (x0, y0), and for an arc the circular segment between chord and arc: area r^2 (w
+    - sin w)/2, its centroid 4 r sin^3(w/2) / (3 (w - sin w)) from the centre (w = sweep).
     """
     ax, ay = s.start[0] - x0, s.start[1] - y0
     bx, by = s.end[0] - x0, s.end[1] - y0

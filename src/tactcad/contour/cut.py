@@ -16,8 +16,8 @@ def cut(
 ) -> tuple[Contour, ...]:
     """The parts of the enclosed area on one side of the line x = at (or y = at), mm.
 
-    Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where
-    the whole contour lies on the other side.
+    Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where the
+    whole contour lies on the other side.
     """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0

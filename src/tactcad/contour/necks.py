@@ -1,8 +1,8 @@
 """Where a part, or the space around it, is narrow: webs, walls and slots, in closed form.
 
-A neck is a straight connection of two boundary points that is normal to the boundary at both
-(at a sharp corner: lies between the normals of its two edges) and that nothing else crosses. The smallest
-wall and the narrowest slot are necks.
+A neck is a straight connection of two boundary points that is normal to the boundary at both (at a sharp
+corner: lies between the normals of its two edges) and that nothing else crosses. The smallest wall and the
+narrowest slot are necks.
 """
 
 from __future__ import annotations

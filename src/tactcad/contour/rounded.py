@@ -28,8 +28,8 @@ class Corner:
 def rounded_polygon(corners: list[Corner]) -> Contour:
     """The closed contour through the corners, in their order, each rounded by its radius.
 
-    Where two fillets use up a whole edge the edge vanishes and the arcs meet; two that then share
-    their centre (a full round) become one arc. Raises ValueError where fillets do not fit an edge.
+    Where two fillets use up a whole edge the edge vanishes and the arcs meet; two that then share their
+    centre (a full round) become one arc. Raises ValueError where fillets do not fit an edge.
     """
     count = len(corners)
     arcs = [_fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)]

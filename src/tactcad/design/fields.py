@@ -66,7 +66,7 @@ class Whole:
 
 
 @dataclass(frozen=True)
-class Choice:
+class OneOf:
     """One of a few words."""
 
     options: tuple[str, ...]
@@ -92,7 +92,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Text:
+class TextLine:
     """One line of text that matches `pattern` whole."""
 
     pattern: str
@@ -170,7 +170,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Rows:
+class NumberRows:
     """One or two rows of numbers; a third row is refused with the reason."""
 
     row: Numbers
@@ -200,7 +200,7 @@ class Rows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Whole | Choice | Text | Day | Numbers | Rows
+Spec = Number | Whole | OneOf | TextLine | Day | Numbers | NumberRows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -31,7 +31,10 @@ NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
 def geometry(design: Design) -> Record:
-    """{parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}} of a design that keeps its rules."""
+    """What a design that keeps its rules means.
+
+    {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}
+    """
     scenes = [make_scene(design, name) for name in scene_names(design)]
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
@@ -131,7 +134,8 @@ def _placed(scene: Scene) -> Record:
 
 
 def _elements(design: Design) -> Record:
-    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its range."""
+    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its
+    range."""
     layout = Layout(design)
     hinges = hinge_section(layout, layout.elements)
     known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)

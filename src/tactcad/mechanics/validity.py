@@ -17,8 +17,8 @@ from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
-# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a nanometre to a
-# kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
+# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a
+# nanometre to a kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
 LENGTH = (1e-6, 1e6)  # mm
 MODULUS = (1e-6, 1e12)  # MPa
 LENGTHS = tuple(name for name in POSITIVE if name != "youngs_modulus")

@@ -1,4 +1,5 @@
-"""What to change where a part gives way by more than it may: the field, and from where on its value is enough."""
+"""What to change where a part gives way by more than it may: the field, and from where on its value is
+enough."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ V = TypeVar("V", int, float)
 
 
 def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
-    """Path, value, and what is enough: of the first field by which alone the line gets below what is allowed."""
+    """Path, value, and what is enough: of the first field by which alone the line gets below what is
+    allowed."""
     for path in line.fields:
         value, spec = attrgetter(path)(design), _spec(path)
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
@@ -37,7 +39,8 @@ def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
 
 
 def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
-    """The value nearest to `far`, which does not help, that still does, as `near` does; whole, or of four digits."""
+    """The value nearest to `far`, which does not help, that still does, as `near` does; whole, or of four
+    digits."""
     good, bad = near, far
     for _ in range(STEPS):
         middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2

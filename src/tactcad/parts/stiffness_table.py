@@ -56,7 +56,8 @@ class Deflection:
 
     def __str__(self) -> str:
         return (
-            f"{self.scene}: {self.part} gives way by {self.gives:.3g} um under {self.load:.3g} N ({self.origin}), "
+            f"{self.scene}: {self.part} gives way by {self.gives:.3g} um under {self.load:.3g} N "
+            f"({self.origin}), "
             f"{self.model}; allowed are {self.allowed:.3g} um, {self.why}"
         )
 

@@ -159,9 +159,12 @@ def _series(design: Design) -> str:
         softer = give / (give + stiffest.deflection / stiffest.force)
         seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
     return (
-        f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's {1e3 / cell:.3g}{seems}. So before the "
-        "array stands there measure the gauge in its stand, the roller on the array mount: newtons over millimetres of the "
-        "micrometer are calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its sheet says."
+        f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
+        f"{1e3 / cell:.3g}{seems}. So before the "
+        "array stands there measure the gauge in its stand, the roller on the array mount: newtons over "
+        "millimetres of the "
+        "micrometer are calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its "
+        "sheet says."
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
@@ -19,7 +21,7 @@ from tactcad.parts.description import (
     drill_point_height,
 )
 
-from .files import read_step_solid
+from .step_models import read_step_solid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
 VOLUME_AGREES = 1e-6
@@ -55,10 +57,9 @@ def _built(part: Part) -> Solid:
     return solid
 
 
-def _only_solid(shape: object, part: Part) -> Solid:
-    solids = (
-        list(shape.solids()) if hasattr(shape, "solids") else [s for piece in shape for s in piece.solids()]
-    )
+def _only_solid(shape: Any, part: Part) -> Solid:
+    pieces = [shape] if hasattr(shape, "solids") else shape
+    solids = [solid for piece in pieces for solid in piece.solids()]
     if len(solids) != 1:
         raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
     return solids[0]
@@ -67,8 +68,8 @@ def _only_solid(shape: object, part: Part) -> Solid:
 def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
     """The contour as a closed wire in a plane.
 
-    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either
-    edge's end by memory address, and files then differ in their last digits from run to run.)
+    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either edge's end
+    by memory address, and files then differ in their last digits from run to run.)
     """
 
     def there(point: Point) -> gp_Pnt:

@@ -49,7 +49,8 @@ Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
-    """In series with the gauge, one by one and together: what gives way there is read as the element's own deflection."""
+    """In series with the gauge, one by one and together: what gives way there is read as the element's own
+    deflection."""
     lines = tuple(_in_series(design))
     yield from lines
     one, own = lines[0], 1e3 * lines[0].load / present(design.calibration).load_cell_stiffness

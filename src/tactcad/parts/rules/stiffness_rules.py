@@ -1,4 +1,5 @@
-"""Rules on what is taken as rigid, the array's parts and its rigs': tactcad check has the same lines (checks/rigidity.py)."""
+"""Rules on what is taken as rigid, the array's parts and its rigs': tactcad check has the same lines
+(checks/rigidity.py)."""
 
 from __future__ import annotations
 
