@@ -44,6 +44,7 @@ from tactcad.lab import (
     readings,
 )
 from tactcad.lab.inspection_sheet import read_sheet
+from tactcad.lab.load_cell import LoadCell
 from tactcad.paper import published
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
@@ -66,7 +67,7 @@ class Reader:
     named: bool = True
 
 
-CELL = calibration.LoadCell.parse("57.04")
+CELL = LoadCell.parse("57.04")
 
 
 def calibrate(path: Path) -> None:

@@ -46,15 +46,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
+    from tactcad.lab.load_cell import LoadCell
     from tactcad.paper import published
 
     from .progress import slow_work
 
     if args.out:
         refuse_overwriting(args.out, args.file)
-    load_cell = calibration.LoadCell.parse(
-        args.load_cell or str(published.load().figure["load_cell_stiffness"])
-    )
+    load_cell = LoadCell.parse(args.load_cell or str(published.load().figure["load_cell_stiffness"]))
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         rows = calibration.calibrate(
