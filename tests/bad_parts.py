@@ -224,7 +224,7 @@ def left_out() -> list[Finding]:
 
 
 def golden() -> list[Finding]:
-    from tactcad.export.golden import golden_record, judge
+    from tactcad.export.golden_file import golden_record, judge
 
     return judge(
         golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1}))

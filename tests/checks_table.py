@@ -57,7 +57,7 @@ def measured() -> Times:
     from tactcad.bench import arrays
     from tactcad.checks import report as clocked
     from tactcad.checks.run import run_checks
-    from tactcad.export.golden import check_golden, golden_path
+    from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
 

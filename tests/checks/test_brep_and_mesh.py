@@ -17,8 +17,8 @@ from tactcad.checks.run import run_checks
 from tactcad.contour import chain, circle, rectangle
 from tactcad.parts.description import Extrusion, Material, Part
 from tactcad.solids import build as builder
-from tactcad.solids.mesh import triangles
 from tactcad.solids.step import write_step
+from tactcad.solids.triangles import triangles
 
 pytestmark = pytest.mark.cad
 

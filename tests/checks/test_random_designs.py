@@ -19,9 +19,6 @@ from sound_designs import LEGAL, sound_table
 pytestmark = pytest.mark.cad
 
 CI_SEED = 20261121
-# Open, and the only one of that seed: the pressed sample of this drawn rig overlaps an arm of 52 mm by 0.5
-# mm3.
-OPEN = "design 674: fail: SA1: overlap"
 NIGHTLY_SEED = int(os.environ.get("TACTCAD_SEED", SystemRandom().randrange(10**9)))
 
 
@@ -50,7 +47,7 @@ def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> C
 def test_twenty_designs_drawn_over_the_whole_legal_range(record_property):
     counts = draw(20, CI_SEED, (1, 2, 3), rigs=0.15)
     record_property("random designs", f"seed {CI_SEED}, {counts}")
-    assert [line for line in counts.failed if not str(line).startswith(OPEN)] == []
+    assert counts.failed == []
     assert counts.drawn >= 20 and 2 * counts.accepted >= counts.drawn
 
 

@@ -12,7 +12,8 @@ from tactcad.cli.main import main
 from tactcad.design import csv_table
 from tactcad.design.csv_table import Field
 from tactcad.design.messages import InputError
-from tactcad.lab import calibration, readings, regression
+from tactcad.lab import calibration, noise, readings, regression
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth, calibration_rows
 
 HEADER = "element,run,displacement,force,signal"
@@ -79,7 +80,7 @@ def test_noise_about_zero_is_no_reversed_sign():
     data = readings.CalibrationReadings(
         *(c for c in table.T[:2].astype(int)), *table.T[2:], np.arange(len(table))
     )
-    found = calibration.calibrate(data, calibration.LoadCell(57.04))[0]
+    found = calibration.calibrate(data, LoadCell(57.04))[0]
     assert "do not tell the stiffness from zero" in " ".join(found.notes) and found.stiffness.low == 0
 
 
@@ -147,8 +148,8 @@ def test_outliers_cost_no_fit_each(monkeypatch):
         y = 3 * x + run + 0.01 * rng.standard_normal(len(run))
         for i in rng.integers(0, len(run), rng.integers(0, 4)):
             y[i] += rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 1)
-        named = regression.extreme_deviates(x, y, run)
-        weight = regression.variance_weights(regression.fit_lines(x, y[:, None], run), x, 0)
+        weight = noise.weights([noise.Readings(x, x, y, run)])[0]
+        named = regression.extreme_deviates(x, y, run, weight)
         left = np.ones(len(x), bool)
         for i in named:  # by fits of what is left: each one named was the most extreme
             index = np.flatnonzero(left)

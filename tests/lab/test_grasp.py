@@ -11,6 +11,7 @@ from scipy.stats import binom
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings, simulate
 from tactcad.lab.combine import combine, scatter
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.lab.sensitivity import Sensitivity
 from tactcad.mechanics import fieller
@@ -137,7 +138,7 @@ def simulated_sensitivity(rng) -> Sensitivity:
         CalibrationReadings(
             rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows))
         ),
-        calibration.LoadCell(CELL),
+        LoadCell(CELL),
     )
     pick = lambda f: np.array([f(r) for r in made])  # noqa: E731
     return Sensitivity(

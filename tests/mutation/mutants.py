@@ -314,8 +314,8 @@ CALLERS = {
     "export/products.py": r"^_compare_box$",
     "export/shapes.py": r"^picture\.check_",
     "export/dxf.py": r"^check_dxf$",
-    "export/step.py": r"^_check_(part|scene)$",
-    "drawing/sheets.py": r"_faults$",
+    "export/step_file.py": r"^_check_(part|scene)$",
+    "drawing/part_sheet.py": r"_faults$",
     "drawing/assembly_file.py": r"_faults$",
     "release/make.py": r"^check_archive$|_faults$",
 }

@@ -240,6 +240,19 @@ def test_there_is_a_pose_for_every_element():
     assert [p.element for p in poses(design, "calibration")] == list(range(1, 11))
 
 
+@pytest.mark.parametrize("row_arms", [[[5]], [[4, 7], [6, 8]]])
+def test_a_part_number_is_one_part_in_every_scene_and_pose(row_arms):
+    """One arm's pad dents the sample as the force gauge's tip does, in another place: the kernel's shapes go
+    by number."""
+    design = variant({"array.row_arms": row_arms, "clamp.mount_pitch_y": 24.0})
+    known = {}
+    for name in scene_names(design):
+        for pose in (None, *poses(design, name)):
+            for part in make_scene(design, name, pose).parts:
+                assert known.setdefault(part.part_no, part) == part
+    assert sum("-pressed-" in number for number in known) >= 3
+
+
 @pytest.mark.parametrize(
     ("text", "pose"),
     [

@@ -22,8 +22,8 @@ STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
 
 def measure(plan: RunPlan) -> dict:
     from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import volume
+    from tactcad.solids.triangles import triangles
 
     scene = make_scene(arrays.published(), "array")
     plan.say(f"{len(scene.parts)} parts built")

@@ -114,8 +114,8 @@ class Prepared:
 
 
 def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import closed
+    from tactcad.solids.triangles import triangles
 
     return closed(triangles(shape, LINEAR, angular))
 

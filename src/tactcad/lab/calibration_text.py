@@ -11,7 +11,8 @@ from tactcad.design.csv_table import LARGEST_FILE, Field, refuse_duplicates
 from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab.calibration import ElementCalibration, Estimate, LoadCell
+from tactcad.lab.calibration import ElementCalibration, Estimate
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.plain import plain
 from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity

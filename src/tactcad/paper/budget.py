@@ -13,7 +13,7 @@ from math import inf, log, log10, nan, radians, tan
 
 import numpy as np
 
-from tactcad.lab.calibration import CELL_ACCURACY
+from tactcad.lab.load_cell import CELL_ACCURACY
 from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout, self_heating
 from tactcad.mechanics.sample_coupling import coupling

@@ -15,6 +15,7 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.carrier_screws import CARRIER_SCREW, carrier_pattern, under_carrier_screw
 from tactcad.parts.rigs.frame import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.stiffness import series_give
 
 from .array import array
 from .builder import Builder
@@ -49,10 +50,12 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Roller tip",
         (0, -130, AXIS_LIFT - 40),
-        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's shaft, "
-        "roller along y: lower it on a flat plate, which must show an even line of light; lock the thread. "
-        f"Above a pad, set x by the edge of the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to "
-        f"{c.travel * 1e3:g} um.",
+        "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's "
+        "shaft, roller along y: "
+        "lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, "
+        "set x by the edge of "
+        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um. "
+        + _series(design),
     )
     b.step(
         "Calibrate, then fit the stop plate",
@@ -144,6 +147,25 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
         "0.02 mm over the whole y travel.",
     )
     b.group(None)
+
+
+def _series(design: Design) -> str:
+    """By how much stand and mount seem to soften the stiffest element, and how they are told from it."""
+    give, cell = series_give(design), present(design.calibration).load_cell_stiffness
+    known = [load for load in calibration_loads(design) if not load.refused]
+    stiffest = max(known, key=lambda load: load.force / load.deflection, default=None)
+    seems = ""
+    if stiffest is not None:
+        softer = give / (give + stiffest.deflection / stiffest.force)
+        seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
+    return (
+        f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
+        f"{1e3 / cell:.3g}{seems}. So before the "
+        "array stands there measure the gauge in its stand, the roller on the array mount: newtons over "
+        "millimetres of the "
+        "micrometer are calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its "
+        "sheet says."
+    )
 
 
 def _limits(design: Design) -> str:

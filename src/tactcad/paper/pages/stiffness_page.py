@@ -43,17 +43,18 @@ def page(r: Residuals, array: ArrayModel) -> ReportSection:
 def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     """Sentences chosen by the residuals and the bands."""
     e = r.element
-    worst = int(np.argmax(np.abs(r.residual)))
+    worst = r.furthest
     out_cut, out_pad = r.outside(r.band_cut), r.outside(r.band_pad)
     common = (
         f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})"
         if abs(r.mean) < SMALL_FACTOR
         else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
     )
+    others = f"; {percent(r.scatter_of_others)} without no. {e[worst]}" if len(e) > 2 else ""
     found = [
         f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
-        f"{percent(r.scatter)} (standard deviation of ln K), whichever rung is used: the model's own "
-        "error is far below that.",
+        f"{percent(r.scatter)} (standard deviation of ln K{others}), "
+        "whichever rung is used: the model's own error is far below that.",
         f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
         + _cause(r, worst, array)
         + ".",
