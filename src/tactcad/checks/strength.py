@@ -41,9 +41,9 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         "tolerance included"
     )
     stress = present(design.material.yield_strength) / design.rating.deflection_factor
-    found = []
+    findings = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -56,7 +56,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.stress > stress * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -69,7 +69,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.rated_force < design.rating.force:
-        found.append(
+        findings.append(
             Finding(
                 "rated-force",
                 "flag",
@@ -81,4 +81,4 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )
-    return found
+    return findings

@@ -115,7 +115,7 @@ def _by_elements(
     from tactcad.fem.shape import cut_element
 
     solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
-    found = []
+    solutions = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
@@ -126,8 +126,8 @@ def _by_elements(
             # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
             plane = own if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
             solved[key] = own, plane
-        found.append(solved[key])
-    results, planes = zip(*found)
+        solutions.append(solved[key])
+    results, planes = zip(*solutions)
     E = section.youngs_modulus
     stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
     return np.array([r.stiffness for r in results]), _PerNewton(

@@ -39,13 +39,13 @@ class Witness:
 
 def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> ReportSection:
     who = witnesses(s, r, e)
-    found = findings(s, data, who)
+    sentences = findings(s, data, who)
     return ReportSection(
         "table2",
         "Table 2: which reference stiffness do the measured ratios support?",
         "Equation (2) predicts R from three stiffnesses. Measured R is far from it. Which stiffness, or "
         "what else, would mend that?",
-        found,
+        sentences,
         (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)),
         (_ratio_plot(s), _forest(s, who)),
         {"study": s, "witnesses": who},
@@ -61,7 +61,7 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
 
     i = int(np.flatnonzero(r.element == e.element)[0])
     rest = next(f for f in s.without_stiffest if f.model == "K_r free")
-    found = [
+    answers = [
         of("Table 2, all pairs", s.supported),
         of("Table 2 without the stiffest pair", rest),
         of("Table 2, K_obj as its ratios imply", s.with_implied_object),
@@ -78,10 +78,10 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
     ]
     if e.twin is not None:
         K = float(r.measured[np.flatnonzero(r.element == e.twin)[0]])
-        found.append(Witness(f"Table 1's K of no. {e.twin}, of equal arm", K, K, K))
-    found.append(Witness(f"K_v of no. {e.element}, load point free", *e.from_k_v_load_point))
-    found.append(Witness(f"K_v of no. {e.element}, thickness free", *e.from_k_v_thickness))
-    return tuple(found)
+        answers.append(Witness(f"Table 1's K of no. {e.twin}, of equal arm", K, K, K))
+    answers.append(Witness(f"K_v of no. {e.element}, load point free", *e.from_k_v_load_point))
+    answers.append(Witness(f"K_v of no. {e.element}, thickness free", *e.from_k_v_thickness))
+    return tuple(answers)
 
 
 def findings(s: Table2Study, data: Published, who: tuple[Witness, ...]) -> tuple[str, ...]:
