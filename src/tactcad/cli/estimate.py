@@ -202,6 +202,8 @@ def _as_made(args: argparse.Namespace) -> int:
 
 
 def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+    from tactcad.lab import material_text
+
     document = {
         "design": design.name,
         "revision": design.design.revision,
@@ -211,16 +213,19 @@ def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
         "units": {"length": "mm", "force": "N", "stiffness": "N/mm", "stress": "MPa", "strain": "1"},
         "elements": rows,
     }
-    return document | ({"uncut": uncut} if uncut else {})
+    return document | material_text.record(design) | ({"uncut": uncut} if uncut else {})
 
 
 def _report(layout, model: str, rows: list[dict], uncut: dict | None) -> str:
+    from tactcad.lab import material_text
+
     design, first = layout.design, rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
         f"{first['force']:g} N on each pad",
         *_table([_shown(row) for row in rows]),
     ]
+    lines += material_text.lines(design, [row["stiffness"] for row in rows])
     plastic = [str(row["number"]) for row in rows if not row["elastic"]]
     if plastic:
         lines.append(

@@ -11,11 +11,11 @@ from typing import Any
 
 from .fields import Number, shown_text
 from .files import read_text
-from .materials import ALLOYS
+from .materials import completed
 from .messages import InputError, near, one_of
 from .plain_numbers import as_number
 from .toml_text import parse_toml
-from .tree import Design, Element, Hinge, Stop
+from .tree import Design, Element, Hinge, Material, Stop
 
 # A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
 MOST_BYTES = 1_000_000
@@ -89,7 +89,9 @@ def from_table(table: dict[str, Any]) -> Design:
             continue  # a rig that this design does not have
         values[name] = _section(kind, table.get(name, {}), name)
     design = Design(**_with_alloy(values), origin={})
-    return dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
+    design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
+    _ = design.differences  # refuses values that are not those of the material's name
+    return design
 
 
 SECTION_TYPES = {
@@ -152,15 +154,9 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
 
 
 def _with_alloy(values: dict[str, Any]) -> dict[str, Any]:
-    """Fill in [material] from the alloy's table where the file says nothing."""
-    material = values["material"]
-    alloy = ALLOYS[material.alloy]
-    missing = {
-        f.name: float(getattr(alloy, f.name))
-        for f in dataclasses.fields(material)
-        if getattr(material, f.name) is None
-    }
-    return {**values, "material": dataclasses.replace(material, **missing)}
+    """Fill in [material] from the table of materials where the file says nothing."""
+    material = vars(values["material"])
+    return {**values, "material": Material(**completed(material["alloy"], material))}
 
 
 def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:

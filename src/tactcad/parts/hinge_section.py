@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactcad.design.materials import ALLOYS, Alloy
+from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
@@ -53,15 +53,9 @@ def shared_parameters(design: Design) -> dict[str, float]:
 
 
 def design_alloy(design: Design) -> Alloy:
-    """The design's alloy with the values that the design file gives."""
-    m, known = design.material, ALLOYS[design.material.alloy]
+    """The design's material with the values that the design file gives."""
+    own = vars(design.material)
+    row = ALLOYS.get(design.material.alloy)
     return Alloy(
-        m.alloy,
-        m.youngs_modulus,
-        m.poisson,
-        m.density,
-        m.yield_strength,
-        m.fatigue_strength,
-        known.source,
-        known.tensile_strength,
+        own["alloy"], **{k: own[k] for k in (*PROPERTIES, *OPTIONAL)}, source=row.source if row else ""
     )

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sqrt
 
-from tactcad.design.tree import Cart, Design, Holder, Sample
+from tactcad.design.rigs import Cart, Holder, Sample
+from tactcad.design.tree import Design
 from tactcad.parts.library import orings
 
 from ..library.bearings import BEARINGS, Bearing
