@@ -14,6 +14,9 @@ from .messages import InputError, in_brackets, near, one_of
 
 # A part that differs by more than this from what its name says is of another material, whatever the reason.
 MOST_DIFFERENCE = 0.10
+# Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as the widest of the
+# wrought alloys but the cold-rolled.
+LOT_SPREAD = 0.02
 # What a design may give, by the table's columns; the last three may stay unknown in a material of one's own.
 PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
 OPTIONAL = ("tensile_strength", "conductivity", "magnetic")

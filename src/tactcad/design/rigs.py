@@ -12,6 +12,9 @@ class Calibration:
     """[calibration]: the set-up that measures each element's stiffness."""
 
     load_cell_stiffness: float = given(Number("N/mm", 0.01, 1e6, "force sensor's own stiffness"), 57.04)
+    load_cell_accuracy: float = given(
+        Number("", 0, 0.5, "half-width of the limits within which that is known, relative"), 0.02
+    )
     load_cell_range: float = given(Number("N", 0.001, 1e5, "force sensor's range"), 5.0)
     load_cell_resolution: float = given(Number("N", 0, 100, "force sensor's resolution"), 0.001)
     step: float = given(Number("mm", 1e-5, 1, "micrometer step"), 0.025)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .fields import Choice, Day, Number, Numbers, Rows, Text, Whole, given
-from .materials import ALLOYS, MAGNETIC, PLATE_ALLOYS, Difference, differences
+from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
 from .rigs import Calibration, Cart, Grasping, Holder, Sample
 
 # Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
@@ -235,15 +235,38 @@ class Readout:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """[tolerance]: plus and minus, taken as two standard deviations; on drawings and in the budget."""
+    """[tolerance]: plus and minus, taken as two standard deviations; on drawings, in bands and budget.
+
+    docs/mechanics.md says where the defaults of what no drawing holds are from.
+    """
 
     hinge_thickness: float = given(Number("mm", 1e-4, 0.1, "hinge thickness"), 0.005)
     hinge_length: float = given(Number("mm", 1e-4, 0.5, "slot length"), 0.02)
+    fillet_radius: float = given(Number("mm", 1e-4, 0.5, "radius of the slot's fillets"), 0.02)
     load_arm: float = given(Number("mm", 1e-4, 1, "pad edges, and element in its clamp"), 0.05)
     sheet_thickness: float = given(Number("mm", 1e-4, 1, "sheet thickness"), 0.1)
     arm_height: float = given(Number("mm", 1e-4, 0.5, "arm height"), 0.02)
     pad_height: float = given(Number("mm", 1e-4, 0.5, "pad height over the dowel hole"), 0.01)
     tilt: float = given(Number("degree", 0, 5, "array against object"), 0.1)
+    youngs_modulus: float = given(
+        Number("", 0, 0.2, "Young's modulus of the lot, relative"),
+        None,
+        f"the spread of the material's row; {LOT_SPREAD:g} of a label of its own",
+    )
+    recast_layer: float = given(
+        Number("mm", 0, 0.05, "layer of every cut face that carries nothing, at most"), 0.001
+    )
+    clamp_compliance: float = given(
+        Number("rad/(N mm)", 0, 1e-3, "turn of the clamp under the moment at its edge, at most"), 1e-5
+    )
+    zero_drift: float = given(
+        Number("", 0, 0.01, "dR/R by which a bridge's zero drifts during a grasp, by its leads' warmth"),
+        1.1e-5,
+    )
+    creep: float = given(
+        Number("", 0, 0.1, "share of a gauge's signal that creeps under a held load, each decade of time"),
+        0.001,
+    )
 
 
 @dataclass(frozen=True)

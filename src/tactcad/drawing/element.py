@@ -153,8 +153,11 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
     )
 
 
-def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list[Callout]:
-    """Fillets by name, equal ones together; none for a full round, whose width says it."""
+def _radii(
+    sketch: Sketch, view: View, o: Outline, names: Sequence[str], tolerance: float | None = None
+) -> list[Callout]:
+    """Fillets by name, equal ones together, with a tolerance of their own or the general one; none for a full
+    round, whose width says it."""
     kinds: dict[float, list[str]] = {}
     for n in o.arcs(names):
         kinds.setdefault(round(o.segment(n).radius, 6), []).append(n)
@@ -166,6 +169,7 @@ def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list
                 " and ".join(n.replace("_", " ") for n in new),
                 tuple(Radius(OUTER, o.index[n]) for n in new),
                 "R",
+                limits=(tolerance, -tolerance) if tolerance else None,
             )
             callouts.append(radius_callout(sketch, view, d, [o.segment(n) for n in new]))
     return callouts
@@ -213,7 +217,7 @@ def _hinge_view(
         linears.append(along)
         linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
-    called = _radii(sketch, view, o, fillets)
+    called = _radii(sketch, view, o, fillets, t.fillet_radius)
     if "slot_floor" not in o:
         arc = o.segment(next(n for n in fillets if n in o))
         ends = "full round" if one else "full round, both slots"
