@@ -12,6 +12,11 @@ from tactcad.design.tree import Design
 
 HARDWARE = Path(__file__).parents[1] / "hardware"
 DROP = object()
+# All that a text or table of the published array needs of its origins: its modulus is not its alloy's.
+ORIGIN = {"material.youngs_modulus": "paper: 69000 MPa"}
+BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
+    0
+] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'
 
 
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:
