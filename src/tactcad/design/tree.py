@@ -56,8 +56,8 @@ class Material:
 
     alloy: str = given(
         Text(
-            _LINE,
-            f"{', '.join(ALLOYS)}, or a label of its own (one line of 1 to 80 characters)",
+            r"[A-Za-z0-9](?:[A-Za-z0-9 .,+/()_-]{0,28}[A-Za-z0-9)+])?",
+            f"{', '.join(ALLOYS)}, or a label of its own (1 to 30 letters, digits, blanks and .,+/()_-)",
             "material and temper of the sheet: a name of the table, or a label of its own",
         )
     )
