@@ -35,8 +35,8 @@ def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> d
 
 
 def variant(changes: dict[str, Any] | None = None, base: str = "macro-array") -> Design:
-    """That table as a design. Rules between fields are not tried. Origins are left out but for the material's, without
-    which its values would have to be those of its name."""
+    """That table as a design. Rules between fields are not tried. Origins are left out but for the
+    material's, without which its values would have to be those of its name."""
     tree = table(changes, base)
     origin = tree.pop("origin", {})
     return from_table(tree | {"origin": {k: v for k, v in origin.items() if k.startswith("material.")}})

@@ -1,4 +1,5 @@
-"""`tactcad estimate --inspection`: the sheet of an export, filled in as a shop would, and everything that can be wrong with it."""
+"""`tactcad estimate --inspection`: the sheet of an export, filled in as a shop would, and everything that can
+be wrong with it."""
 
 from __future__ import annotations
 
@@ -77,7 +78,8 @@ def test_a_blank_sheet_gives_the_nominal_stiffness_and_the_tolerances_interval(t
         least = 2.5 * tolerance.hinge_thickness / 0.25
         squares = (3 * tolerance.hinge_thickness / 0.25) ** 2 + (tolerance.sheet_thickness / 3) ** 2
         squares += (2.5 * tolerance.load_arm / row["load_arm"]) ** 2 + (tolerance.hinge_length / 0.88) ** 2
-        # what no sheet asks for: modulus of the lot, fillets (exponent 0.5), layer of two faces, clamp (2 to 5 % at most)
+        # what no sheet asks for: modulus of the lot, fillets (exponent 0.5), layer of two faces, clamp (2 to
+        # 5 % at most)
         squares += tolerance.youngs_modulus**2 + (0.5 * tolerance.fillet_radius / 0.3) ** 2
         squares += (3 * 2 * tolerance.recast_layer / 0.25) ** 2 + 0.04**2
         assert least < share < squares**0.5 * 1.05
@@ -187,8 +189,8 @@ def test_verdicts(tmp_path, capsys):
     assert main(["estimate", "--inspection", str(tmp_path / "sheet.csv")]) == 0
     shown = capsys.readouterr().out
     assert (
-        f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line {line_of('E2', 'hinge thickness')})"
-        in shown
+        f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line "
+        f"{line_of('E2', 'hinge thickness')})" in shown
     )
     assert "undecided" in shown and "not measured: arm height, every element: nominal" in shown
     assert "no uncertainty given: hinge thickness, no. 2, 5: taken as exact" in shown

@@ -17,7 +17,7 @@ from tactcad.drawing.notes import notes_of
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
-from tactcad.release.readme import Contents, readme_bytes
+from tactcad.release.readme import ReleaseContents, readme_bytes
 from tactcad.scenes import make_scene
 
 KSI, LB_PER_CUBIC_INCH = 6.894757, 27679.9  # MPa, kg/m3
@@ -56,9 +56,18 @@ PUBLISHED = {
         "tensile_strength": 190 * KSI,
     },
     "1.4310-C1300": {"youngs_modulus": 185e3, "yield_strength": 147 * KSI, "tensile_strength": 1300},
-    "maraging-300-aged": {"youngs_modulus": 27500 * KSI, "yield_strength": 270 * KSI, "tensile_strength": 280 * KSI},
-    "C17200-TF00": {"youngs_modulus": 19000 * KSI, "density": 8260, "yield_strength": 960, "tensile_strength": 1100},
-}  # fmt: skip
+    "maraging-300-aged": {
+        "youngs_modulus": 27500 * KSI,
+        "yield_strength": 270 * KSI,
+        "tensile_strength": 280 * KSI,
+    },
+    "C17200-TF00": {
+        "youngs_modulus": 19000 * KSI,
+        "density": 8260,
+        "yield_strength": 960,
+        "tensile_strength": 1100,
+    },
+}
 
 
 @pytest.mark.parametrize("name", ALLOYS)
@@ -76,7 +85,8 @@ def test_every_row_is_whole():
         assert set(PROPERTIES) < set(row.spread) and 0 < min(row.spread.values())
         assert max(row.spread.values()) <= MOST_DIFFERENCE
         assert 0 < row.fatigue_strength < row.yield_strength < row.tensile_strength
-        # an isotropic solid's bulk modulus is positive, and metals' E/density is 23 to 27 MPa m3/kg but for copper's 15
+        # an isotropic solid's bulk modulus is positive, and metals' E/density is 23 to 27 MPa m3/kg but for
+        # copper's 15
         assert 14 < row.youngs_modulus / row.density < 28 and 0.25 < row.poisson < 0.35
 
 
@@ -206,7 +216,7 @@ def test_notes_follow_the_material(name, metal, magnetic):
     notes = sheet_notes(d)
     assert ("anti-electrolysis" in notes) == (metal == "aluminium")
     assert ("demagnetise" in notes) == magnetic
-    readme = readme_bytes(Contents(d, [make_scene(d, "array")], (), (), False), ()).decode()
+    readme = readme_bytes(ReleaseContents(d, [make_scene(d, "array")], (), (), False), ()).decode()
     assert ("pits without it" in " ".join(readme.split())) == (metal == "aluminium")
     assert array_supplies(Layout(d))[0].description.endswith(f"for {metal}")
 

@@ -1,5 +1,5 @@
-"""What a part as built differs by: exponents by hand, the layer by the contour's own area, the clamp as a lever, and the
-root of squares against draws."""
+"""What a part as built differs by: exponents by hand, the layer by the contour's own area, the clamp as a
+lever, and the root of squares against draws."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ def array():
 
 
 def test_a_short_hinge_s_shares_by_hand():
-    """K = E b t^3/(12 l L^2): exponents 3, -1, -2, 1 and 1; a layer c at each face takes 2 c of t and adds 2 c to l."""
+    """K = E b t^3/(12 l L^2): exponents 3, -1, -2, 1 and 1; a layer c at each face takes 2 c of t and adds 2
+    c to l."""
     found = half_widths(REFERENCE, TOLERANCE, "short")
     c = TOLERANCE.recast_layer
     by_hand = {
@@ -65,7 +66,8 @@ def test_the_clamp_is_a_spring_in_series_at_its_edge():
 
 @pytest.mark.parametrize("two_sided", [True, False])
 def test_a_layer_takes_its_thickness_of_every_cut_face(two_sided):
-    """The contour's area falls by the layer times the length of its cut faces; the clamped and the loaded end stay."""
+    """The contour's area falls by the layer times the length of its cut faces; the clamped and the loaded
+    end stay."""
     s, layer = REFERENCE.with_(two_sided=two_sided), 1e-6
     whole, left = reference_contour(s), reference_contour(without_layer(s, layer))
     ends = [min(p[0] for p in (e.start, e.end)) for e in whole if isinstance(e, Line)]

@@ -76,9 +76,8 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 at_hinge,
                 state.rated_force,
                 design.rating.force,
-                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: "
-                "there the fillet "
-                f"would have less than its safety of {design.rating.yield_factor:g} against yield",
+                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there "
+                f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )
     return found

@@ -1,4 +1,5 @@
-"""tactcad calibrate FILE [--load-cell K | --design DESIGN] [--level P] [--drop-outliers] [--out FILE] [--json]"""
+"""tactcad calibrate FILE [--load-cell K | --design DESIGN] [--level P] [--drop-outliers] [--out FILE]
+[--json]"""
 
 from __future__ import annotations
 
@@ -9,14 +10,14 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import InputError
 
 if TYPE_CHECKING:
-    from tactcad.lab.calibration import LoadCell
+    from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
   tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
-  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   a measured cell, runs known to repeat
-  tactcad calibrate mine.csv --design my-sensor.toml                      the load cell as the design's [calibration] has it
-  tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
+  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
+  tactcad calibrate mine.csv --design my-sensor.toml                      the load cell as its [calibration]
+  has it tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
@@ -28,21 +29,24 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--load-cell",
         metavar="K[+-U]",
-        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 or "
-        "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, assumed); the "
+        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
+        "or "
+        "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
+        "assumed); the "
         "intervals hold for every load cell within them",
     )
     parser.add_argument(
         "--design",
         metavar="DESIGN",
-        help="take the load cell and its limits from the design's [calibration] instead (load_cell_stiffness, "
-        "load_cell_accuracy)",
+        help="take the load cell and its limits from the design's [calibration] instead "
+        "(load_cell_stiffness, load_cell_accuracy)",
     )
     parser.add_argument(
         "--run-scatter",
         type=float,
         metavar="S",
-        help="relative standard deviation of an element's slope from run to run, where you know it (0.01 for 1 %%); "
+        help="relative standard deviation of an element's slope from run to run, where you know it (0.01 "
+        "for 1 %%); "
         "without it the runs tell, and for a single run 0.01 is assumed",
     )
     parser.add_argument(
@@ -84,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _load_cell(given: str | None, design: str | None) -> LoadCell:
     """What is typed, else the design's, else the paper's with limits that are assumed."""
-    from tactcad.lab.calibration import LoadCell
+    from tactcad.lab.load_cell import LoadCell
 
     if design is None:
         from tactcad.paper import published

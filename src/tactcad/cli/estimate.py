@@ -13,19 +13,21 @@ from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
+    from tactcad.design.tree import Design, Tolerance
     from tactcad.mechanics.accuracy import Choice
+    from tactcad.parts.layout import Layout
 
 EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
-  tactcad estimate --accuracy 1%                    # the quickest rung whose measured worst error is within it
+  tactcad estimate --accuracy 1%             # the quickest rung whose measured worst error is within it
   tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
   tactcad estimate --inspection inspections/macro-array-C.csv
-                                      the elements as made, from the inspection sheet that the shop filled in: a copy
-                                      of an export's inspection.csv, kept outside the export
+                                      the elements as made, from the inspection sheet that the shop
+                                      filled in: a copy of an export's inspection.csv, kept outside the export
 """
 
 COLUMNS = (  # heading, unit, field, format
@@ -58,8 +60,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accuracy",
         metavar="P",
-        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the examples), "
-        "against solid elements refined to their limit; takes the quickest rung whose measured worst error at this "
+        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the "
+        "examples), "
+        "against solid elements refined to their limit; takes the quickest rung whose measured worst error "
+        "at this "
         "design is within it, or refuses (docs/accuracy.md)",
     )
     parser.add_argument(
@@ -73,7 +77,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inspection",
         metavar="FILE",
-        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its elements as "
+        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
+        "elements as "
         "made, beside the nominal",
     )
 
@@ -107,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(_document(design, model, rows, uncut, shares) | _chosen(choice, accuracy), indent=2))
     else:
         print(_report(design, model, rows, uncut, shares))
-        if choice:
+        if choice and accuracy:
             print(_why(choice, accuracy))
     return 0
 
@@ -153,7 +158,8 @@ def _why(choice: Choice, accuracy: float) -> str:
     from tactcad.mechanics.accuracy import accuracy_data
 
     return (
-        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, K within {100 * choice.expected_error:.2g} % of "
+        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, K within "
+        f"{100 * choice.expected_error:.2g} % of "
         f"solid elements refined to their limit, in about {choice.expected_time:.2g} s "
         f"(measured {accuracy_data()['date']}; docs/accuracy.md)"
     )
@@ -202,7 +208,7 @@ def _as_made(args: argparse.Namespace) -> int:
     return 0
 
 
-def _document(design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> dict:
+def _document(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> dict:
     from tactcad.lab import material_text
 
     document = {
@@ -221,7 +227,7 @@ def _document(design, model: str, rows: list[dict], uncut: dict | None, shares: 
     return document | material_text.record(design) | ({"uncut": uncut} if uncut else {})
 
 
-def _report(design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> str:
+def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> str:
     from tactcad.lab import material_text
 
     first = rows[0]
@@ -238,7 +244,8 @@ def _report(design, model: str, rows: list[dict], uncut: dict | None, shares: di
         )
     if uncut:
         lines.append(
-            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in plane stress: "
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in "
+            f"plane stress: "
             f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
             "cut at load line and clamp edge"
         )
@@ -272,7 +279,7 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(tolerance, shares: dict) -> list[str]:
+def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
     """What the hinge's tolerance does to these numbers, and what all of [tolerance] does, worst element."""
     from tactcad.mechanics.as_built import together
 
@@ -287,12 +294,14 @@ def _spread(tolerance, shares: dict) -> list[str]:
     )
     return [
         f"as cut: hinge thickness +-{1e3 * tolerance.hinge_thickness:g} um alone is K +-{share}; measure it",
-        f"as built: all of [tolerance] together K +-{total[worst]:.1%} at no. {worst + 1} (root of squares): {parts}",
+        f"as built: all of [tolerance] together K +-{total[worst]:.1%} at no. {worst + 1} "
+        f"(root of squares): {parts}",
     ]
 
 
-def _shares(layout, model: str) -> dict | None:
-    """Relative half-widths of every element's K, by field of [tolerance]; None by a rung that knows no fillets."""
+def _shares(layout: Layout, model: str) -> dict | None:
+    """Relative half-widths of every element's K, by field of [tolerance]; None by a rung that knows no
+    fillets."""
     if model not in FITTED:
         return None
     from tactcad.mechanics.as_built import half_widths

@@ -15,7 +15,7 @@ from .materials import ALLOYS, LOT_SPREAD, completed
 from .messages import InputError, near, one_of
 from .plain_numbers import as_number
 from .toml_text import parse_toml
-from .tree import Design, Element, Hinge, Material, Stop, Tolerance
+from .tree import Design, Element, Hinge, SheetMaterial, Stop, Tolerance
 
 # A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
 MOST_BYTES = 1_000_000
@@ -26,8 +26,8 @@ DEFAULT_DESIGN = "macro-array"
 def read(source: str | Path) -> Design:
     """The design in a file, or the one of that name in hardware/, field by field.
 
-    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call.
-    Raises InputError where the file is missing or not a design, or a value is not legal.
+    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
+    InputError where the file is missing or not a design, or a value is not legal.
     """
     path = find(source)
     return parse(read_text(path, MOST_BYTES, "a design file (TOML)"), str(path))
@@ -155,13 +155,14 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
     return dict(sorted(gaps.items()))
 
 
-def _material(given: Material) -> Material:
+def _material(given: SheetMaterial) -> SheetMaterial:
     """[material] with what the file leaves out from the table of materials."""
-    return Material(**completed(given.alloy, vars(given)))
+    return SheetMaterial(**completed(given.alloy, vars(given)))
 
 
 def _tolerance(given: Tolerance, alloy: str) -> Tolerance:
-    """[tolerance] with the spread of Young's modulus that the material's row has, where the file gives none."""
+    """[tolerance] with the spread of Young's modulus that the material's row has, where the file gives
+    none."""
     if given.youngs_modulus is not None:
         return given
     row = ALLOYS.get(alloy)

@@ -1,4 +1,5 @@
-"""Materials of the sensing element: the table of those known by name, and what a design's own values differ from it."""
+"""Materials of the sensing element: the table of those known by name, and what a design's own values differ
+from it."""
 
 from __future__ import annotations
 
@@ -14,8 +15,8 @@ from .messages import InputError, in_brackets, near, one_of
 
 # A part that differs by more than this from what its name says is of another material, whatever the reason.
 MOST_DIFFERENCE = 0.10
-# Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as the widest of the
-# wrought alloys but the cold-rolled.
+# Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as
+# the widest of the wrought alloys but the cold-rolled.
 LOT_SPREAD = 0.02
 # What a design may give, by the table's columns; the last three may stay unknown in a material of one's own.
 PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
@@ -35,9 +36,9 @@ FAMILIES = {
 class Alloy:
     """A sheet material.
 
-    youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in kg/m3,
-    conductivity in W/(m K). `tensile_strength` is None where it is not known; the Goodman line then ends at the
-    yield strength, which is Soderberg's. spread: relative, by property.
+    youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in
+    kg/m3, conductivity in W/(m K). `tensile_strength` is None where it is not known; the Goodman line then
+    ends at the yield strength, which is Soderberg's. spread: relative, by property.
     """
 
     name: str
@@ -119,8 +120,8 @@ def alloy(name: str) -> Alloy:
 
 
 def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The properties of a design's material: those given, else the table's. Raises InputError where the name is not
-    in the table and a property is missing, or is one of the table's in another spelling."""
+    """The properties of a design's material: those given, else the table's. Raises InputError where the name
+    is not in the table and a property is missing, or is one of the table's in another spelling."""
     row = ALLOYS.get(name)
     if row:
         return {key: getattr(row, key) if value is None else value for key, value in given.items()}
@@ -144,8 +145,8 @@ def _spelled(name: str) -> str:
 def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) -> tuple[Difference, ...]:
     """What a design's material differs by from the table's row of its name; none for a label of its own.
 
-    Raises InputError where a value leaves the row by more than its spread and `origin` does not say where it is
-    from, or by more than MOST_DIFFERENCE.
+    Raises InputError where a value leaves the row by more than its spread and `origin` does not say where it
+    is from, or by more than MOST_DIFFERENCE.
     """
     row = ALLOYS.get(name)
     if row is None:

@@ -1,10 +1,11 @@
-"""The rigs' tables of the parameter tree; a design without one has no such rig. Units and frame as in `tree`."""
+"""The rigs' tables of the parameter tree; a design without one has no such rig. Units and frame as in
+`tree`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .fields import Choice, Number, Whole, given
+from .fields import Number, OneOf, Whole, given
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Calibration:
     )
     retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
     roller: str = given(
-        Choice(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
+        OneOf(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
     )
 
 
@@ -63,8 +64,7 @@ class Cart:
     """[cart]: plate on four ball bearings that roll along the arms."""
 
     bearing: str = given(
-        Choice(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"),
-        "623-2Z",
+        OneOf(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
     )
     length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
     width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)

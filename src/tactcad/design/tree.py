@@ -1,8 +1,8 @@
 """The parameter tree: one frozen dataclass a table of the design file.
 
-Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between
-the rows along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the
-object. A default of None is derived from other fields (design/layout.py says how).
+Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
+along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
+of None is derived from other fields (design/layout.py says how).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from .fields import Choice, Day, Number, Numbers, Rows, Text, Whole, given
+from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
 from .rigs import Calibration, Cart, Grasping, Holder, Sample
 
@@ -20,8 +20,8 @@ _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uf
 IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands write beside the designs' own
 
 
-def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
+def _line(meaning: str) -> TextLine:
+    return TextLine(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Identity:
     """[design]: who made which revision of what."""
 
     name: str = given(
-        Text(
+        TextLine(
             rf"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9]|{'|'.join(IN_EXPORTS)})$)"
             r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
             "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...), "
@@ -38,24 +38,24 @@ class Identity:
         )
     )
     title: str = given(_line("title on drawings"))
-    revision: str = given(Text(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
+    revision: str = given(TextLine(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
     date: str = given(Day("date of issue; the only date in any output"))
     author: str = given(_line("creator, for the title block"))
     organisation: str = given(_line("legal owner, for the title block"))
 
 
-def _property(spec: Number | Choice, optional: bool = False) -> Any:
+def _property(spec: Number | OneOf, optional: bool = False) -> Any:
     left_out = "the table's value" + ("; unknown of a label of its own" if optional else "")
     return given(spec, None, left_out)
 
 
 @dataclass(frozen=True)
-class Material:
-    """[material]: the sheet that the elements are cut from. Of a name in the table (data/materials.csv) what is left
-    out is the table's; a label of its own needs all properties but the last three."""
+class SheetMaterial:
+    """[material]: the sheet that the elements are cut from. Of a name in the table (data/materials.csv) what
+    is left out is the table's; a label of its own needs all properties but the last three."""
 
     alloy: str = given(
-        Text(
+        TextLine(
             r"[A-Za-z0-9](?:[A-Za-z0-9 .,+/()_-]{0,28}[A-Za-z0-9)+])?",
             f"{', '.join(ALLOYS)}, or a label of its own (1 to 30 letters, digits, blanks and .,+/()_-)",
             "material and temper of the sheet: a name of the table, or a label of its own",
@@ -71,7 +71,7 @@ class Material:
     )
     conductivity: float | None = _property(Number("W/(m K)", 0.1, 500, "thermal conductivity"), optional=True)
     magnetic: str | None = _property(
-        Choice(MAGNETIC, "whether a magnet draws it; on the drawing's notes"), optional=True
+        OneOf(MAGNETIC, "whether a magnet draws it; on the drawing's notes"), optional=True
     )
 
 
@@ -87,7 +87,7 @@ class Array:
     """[array]: which elements stand where."""
 
     row_arms: tuple[tuple[float, ...], ...] = given(
-        Rows(
+        NumberRows(
             Numbers(Number("mm", 0.1, 100, "arm length"), 1, 500, "arm lengths of a row"),
             "arm lengths, hinge centre to the arm's tip, row by row; elements are numbered in this order",
         )
@@ -121,7 +121,7 @@ class Element:
     pad_length: float = given(Number("mm", 0.05, 50, "contact pad's length along the arm"))
     pad_height: float = given(Number("mm", 0.01, 50, "how far the pad stands out of the flat face"))
     sides: str = given(
-        Choice(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
+        OneOf(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
     )
     pad_root_radius: float = given(Number("mm", 0.005, 10, "fillet between pad and flat face"), 0.3)
     corner_radius: float = given(
@@ -161,9 +161,9 @@ class Holes:
 class Clamp:
     """[clamp]: spacers, end plates, stop plate, carrier and their fasteners."""
 
-    screw: str = given(Choice(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
-    dowel: str = given(Choice(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
-    plate_alloy: str = given(Choice(PLATE_ALLOYS, "end plates and carrier"), "6061-T6")
+    screw: str = given(OneOf(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
+    dowel: str = given(OneOf(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
+    plate_alloy: str = given(OneOf(PLATE_ALLOYS, "end plates and carrier"), "6061-T6")
     end_plate_thickness: float = given(Number("mm", 2, 40, "end plate along the row"), 8.0)
     end_plate_bottom: float = given(
         Number("mm", 0, 50, "end plates start this far over the flat face: clear of the object"), 0.5
@@ -186,12 +186,12 @@ class Clamp:
     carrier_thickness: float = given(Number("mm", 2, 40, "carrier plate"), 6.0)
     carrier_margin: float = given(Number("mm", 0, 20, "carrier beyond the end plates"), 2.0)
     carrier_screw_offset: float = given(Number("mm", 0.5, 200, "carrier screws behind the clamp edge"), 10.6)
-    mount_thread: str = given(Choice(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
+    mount_thread: str = given(OneOf(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
     mount_pitch_y: float = given(Number("mm", 5, 200, "distance of these threads along the row"), 32.0)
 
 
 @dataclass(frozen=True)
-class Gauge:
+class StrainGauge:
     """[gauge]: the strain gauge at each hinge."""
 
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
@@ -314,13 +314,13 @@ class Design:
     """A whole design file."""
 
     design: Identity
-    material: Material
+    material: SheetMaterial
     sheet: Sheet
     array: Array
     element: Element
     holes: Holes = Holes()
     clamp: Clamp = Clamp()
-    gauge: Gauge = Gauge()
+    gauge: StrainGauge = StrainGauge()
     stop: Stop = Stop()
     rating: Rating = Rating()
     readout: Readout = Readout()

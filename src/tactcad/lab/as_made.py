@@ -3,8 +3,9 @@ the nominal ones.
 
 The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by
 one, added as squares. Of a dimension that was not measured it is the tolerance, as in the design's
-[tolerance]; of one that was measured with no uncertainty given it is nought. What no sheet asks for (fillets, the
-lot's modulus, the cut's layer, the clamp) has its tolerance too. The model's own error is not in them.
+[tolerance]; of one that was measured with no uncertainty given it is nought. What no sheet asks for
+(fillets, the lot's modulus, the cut's layer, the clamp) has its tolerance too. The model's own error is not
+in them.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactcad.design.present import present
 from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.hinge_section import hinge_section
@@ -116,5 +118,6 @@ def _intervals(
         value = getattr(made, name)
         found[name] = None if value is None or half != half else (value - half, value + half)
     safety = layout.design.rating.yield_factor
-    found["rated_force"] = tuple(min(made.force, end / safety) for end in found["yield_force"])
+    low, high = present(found["yield_force"])
+    found["rated_force"] = (min(made.force, low / safety), min(made.force, high / safety))
     return found

@@ -1,7 +1,8 @@
 """What an element as built differs by from its drawing, and what each of that does to its stiffness.
 
-All are half-widths of `[tolerance]`, taken as two standard deviations, by the names of its fields. Two only soften:
-a layer of the cut that carries nothing, and a clamp that turns. They count both ways in a root of squares.
+All are half-widths of `[tolerance]`, taken as two standard deviations, by the names of its fields. Two only
+soften: a layer of the cut that carries nothing, and a clamp that turns. They count both ways in a root of
+squares.
 """
 
 from __future__ import annotations

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from tactcad.mechanics import ladder, lumped
 from tactcad.mechanics.section import HingeSection
+
+Stiffness = Callable[[HingeSection], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,11 @@ class Pair:
     def together(self, short: float, long: float) -> float:
         """On K_obj, of errors of K that all elements share."""
         return abs(self.by_reference * short + self.by_measuring * long)
+
+    def log_change(self, new: Stiffness, old: Stiffness) -> tuple[float, float]:
+        """ln of new over old stiffness, of both arms."""
+        short, long = (float(np.log(new(s) / old(s)).item()) for s in (self.short, self.long))
+        return short, long
 
     def change(self, name: str, half: float) -> tuple[float, float]:
         """Half-width of ln K of both arms for a half-width (mm) of one dimension."""

@@ -1,10 +1,9 @@
-"""Effects on K where it is taken from the drawing: what an element as built differs by, and what a model leaves out."""
+"""Effects on K where it is taken from the drawing: what an element as built differs by, and what a model
+leaves out."""
 
 from __future__ import annotations
 
 from math import log
-
-import numpy as np
 
 from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.as_built import COMMON, half_widths
@@ -74,14 +73,8 @@ def _contact(pair: Pair, array: ArrayModel) -> list[Effect]:
 
 def _models(pair: Pair, array: ArrayModel) -> list[Effect]:
     """What a computed K leaves out."""
-    width = [
-        float(np.log(ladder.stiffness(s, "solid") / ladder.stiffness(s, "plane")).item())
-        for s in (pair.short, pair.long)
-    ]
-    gauge = [
-        float(np.log(gauge_signal.stiffness(s, array.gauge) / ladder.stiffness(s)).item())
-        for s in (pair.short, pair.long)
-    ]
+    width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
+    gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
     warm = MODULUS_PER_KELVIN * ROOM_SWING
     other = abs(log(array.stiffness_factor))
     error = CLOSED_FORM_ERROR

@@ -28,36 +28,32 @@ def rig(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
 def _calibration(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
     """The paper's calibration: force sensor on the pad."""
     rig = array.rig
-    friction = [
-        [
-            float(
-                np.log(
-                    ladder.stiffness(s.with_(pad_height=array.pad_height, friction=mu)) / ladder.stiffness(s)
-                ).item()
-            )
-            for s in (pair.short, pair.long)
-        ]
-        for mu in (rig.friction, SLIPPERY)
-    ]
+
+    def stuck(mu: float) -> tuple[float, float]:
+        rubbing = {"pad_height": array.pad_height, "friction": mu}
+        return pair.log_change(lambda s: ladder.stiffness(s.with_(**rubbing)), ladder.stiffness)
+
+    flat, roller = stuck(rig.friction), stuck(SLIPPERY)
     stage = stage_error(data, array)
-    cell = [K / rig.load_cell_stiffness * rig.load_cell_accuracy for K in (pair.K_r, pair.K_m)]
+    cell_r, cell_m = (K / rig.load_cell_stiffness * rig.load_cell_accuracy for K in (pair.K_r, pair.K_m))
+    cell = pair.together(cell_r, cell_m)
     return [
         Effect(
             "friction at the force sensor's tip",
             f"µ {rig.friction:g}, K L/(L − µH), H = pad height + t/2",
-            *friction[0],
-            pair.together(*friction[0]),
+            *flat,
+            pair.together(*flat),
             "roller instead of a flat tip",
-            pair.together(*friction[1]),
+            pair.together(*roller),
         ),
         Effect(
             "load cell in series in the calibration",
             f"{rig.load_cell_stiffness:g} N/mm ±{rig.load_cell_accuracy:.0%}: K = k K_c/(K_c - k)",
-            cell[0],
-            cell[1],
-            pair.together(*cell),
+            cell_r,
+            cell_m,
+            cell,
             f"measure the cell in its stand to {CELL_MEASURED:.1%}",
-            pair.together(*cell) * min(CELL_MEASURED / max(rig.load_cell_accuracy, CELL_MEASURED), 1.0),
+            cell * min(CELL_MEASURED / max(rig.load_cell_accuracy, CELL_MEASURED), 1.0),
         ),
         Effect(
             "micrometer of the calibration",
@@ -121,10 +117,10 @@ def _sample(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
     # Tangential over normal stiffness of a pad, 2(1 - nu)/(2 - nu): Johnson, Contact Mechanics.
     lateral = x * 2 * (1 - rig.sample_poisson) / (2 - rig.sample_poisson)
     lever = array.pad_height + float(pair.short.hinge_thickness.item()) / 2
-    shear = [
+    shear_r, shear_m = (
         lateral * (lever / float(s.load_arm.item())) ** 2 / K
         for s, K in ((pair.short, pair.K_r), (pair.long, pair.K_m))
-    ]
+    )
     relaxed = RELAXATION_PER_DECADE * abs(log10(GRASP_TIME / SAMPLE_TEST_TIME))
     ratio = {h: _coupled(pair, data, array, h) for h in (inf, rig.sample_thickness)}
     return [
@@ -149,10 +145,11 @@ def _sample(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
         Effect(
             "rubber shears on stuck pads",
             "lateral stiffness of the sample on the pad's lever (H/L)^2",
-            *shear,
-            pair.together(*shear),
+            shear_r,
+            shear_m,
+            pair.together(shear_r, shear_m),
             "lubricate the sample: a fifth of it",
-            pair.together(*shear) / 5,
+            pair.together(shear_r, shear_m) / 5,
         ),
         Effect(
             "relaxation between sample test and grasp",

@@ -66,7 +66,8 @@ def signal(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
         ),
         Effect(
             "gauges creep",
-            f"{array.tolerance.creep:.1%} of the signal a decade, {SAMPLE_TEST_TIME:g} s to {GRASP_TIME:g} s, each for itself",
+            f"{array.tolerance.creep:.1%} of the signal a decade, {SAMPLE_TEST_TIME:g} s to "
+            f"{GRASP_TIME:g} s, each for itself",
             nan,
             nan,
             creep * log10(GRASP_TIME / SAMPLE_TEST_TIME),

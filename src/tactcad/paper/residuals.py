@@ -54,6 +54,16 @@ class Residuals:
         return float(self.residual.std(ddof=1))
 
     @property
+    def furthest(self) -> int:
+        """Row of the element whose stiffness is furthest off."""
+        return int(np.argmax(np.abs(self.residual)))
+
+    @property
+    def scatter_of_others(self) -> float:
+        """The same without the element that is furthest off."""
+        return float(np.delete(self.residual, self.furthest).std(ddof=1))
+
+    @property
     def thickness_change(self) -> np.ndarray:
         return self.thickness_needed - self.thickness
 
@@ -151,8 +161,8 @@ def spread(
     """Stiffness [draw, element] with everything that [tolerance] holds drawn: half-widths are two standard
     deviations. NaN where a draw is out of the rung's range.
 
-    contact: half-width (mm) over which the load's place on the pad is uniform. What one sheet and one cut share is
-    one draw for all elements of an array, the rest is drawn for each. Layer and clamp only soften.
+    contact: half-width (mm) over which the load's place on the pad is uniform. What one sheet and one cut
+    share is one draw for all elements of an array, the rest is drawn for each. Layer and clamp only soften.
     """
     tol = array.tolerance
     shape, shared = (draws, *s.shape), (draws, 1)

@@ -152,7 +152,8 @@ def sheet_material(design: Design) -> Material:
 
 
 def material_notes(design: Design) -> tuple[str, ...]:
-    """What its material asks of the part: by its data, and by what the design has otherwise than its name says."""
+    """What its material asks of the part: by its data, and by what the design has otherwise than its name
+    says."""
     magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
     return (*magnetic, *(f"designed with other data than its material's: {d}" for d in design.differences))
 

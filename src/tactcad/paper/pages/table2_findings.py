@@ -180,7 +180,9 @@ def _said(f: Fit) -> str:
 
 def other_witnesses(s: Table2Study, who: tuple[Witness, ...]) -> str:
     K, printed = s.supported.value[0], s.reference_printed
-    for_supported, for_printed, silent = [], [], []
+    for_supported: list[Witness] = []
+    for_printed: list[Witness] = []
+    silent: list[Witness] = []
     for w in who[3:]:
         if w.high > w.low * USABLE:
             silent.append(w)
