@@ -15,7 +15,7 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import calculix, elasticity
-from tactcad.fem.convergence import ORDER, richardson
+from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.mesh import plane_mesh
 from tactcad.fem.plane import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
@@ -177,7 +177,7 @@ def _extrapolated(density: int):
 
     def solve(shape, nu, width):
         pair = [solve_plane(shape, 1.0, nu, width, density=d) for d in (density // 2, density)]
-        limit = richardson((pair[0].compliance, pair[1].compliance), (density // 2, density), ORDER)
+        limit = richardson((pair[0].compliance, pair[1].compliance), (density // 2, density), RATE)
         return 1.0 / limit, pair[1].unknowns
 
     return solve

@@ -114,24 +114,19 @@ def _by_elements(
     from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
 
-    solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
+    solved: dict[tuple, elements.ElementResult] = {}
     results = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
             contour = element(layout, place).body.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
-            one = section.rows(i)
-            found = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
-            # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
-            plane = found if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
-            solved[key] = found, plane
+            solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
         results.append(solved[key])
-    results, planes = zip(*results)
-    E = section.youngs_modulus
-    stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
+    read = [r.readings for r in results]
+    names = "gauge", "fillet_strain", "fillet_stress", "face_stress"
     return np.array([r.stiffness for r in results]), _PerNewton(
-        np.array([r.gauge_strain for r in results]), np.array([r.fillet_peak for r in results]), stress, face
+        *(np.array([getattr(r, name) for r in read]) for name in names)
     )
 
 
