@@ -73,28 +73,19 @@ def test_actions_are_run_in_turns_and_each_as_often():
     timed = interleaved({name: (lambda name=name: order.append(name)) for name in "abc"}, 3)
     rounds = "".join(key for i, key in enumerate(order) if i == 0 or order[i - 1] != key)
     assert rounds == "abc" + "abc" + "bca" + "cab", "a warm-up, then every round begins with the next one"
-    assert all(t.runs == 3 and 0 < t.least <= t.median for t in timed.values())
+    assert all(t.runs == 3 and 0 < t.seconds <= t.median for t in timed.values())
 
 
 def test_samples_of_another_clock():
     found = of_samples([3.0, 1.0, 8.0])
-    assert (found.least, found.median, found.runs) == (1.0, 3.0, 3)
+    assert (found.seconds, found.median, found.runs) == (1.0, 3.0, 3)
 
 
 ROWS = [
     {"name": "a", "time": 0.00123456, "wrong": 3, "kept": True},
     {"name": "b | c", "time": None, "wrong": 0, "kept": False},
 ]
-TABLE = tables.table(
-    "T",
-    [
-        ("name", "name", tables.PLAIN),
-        ("time", "time", tables.MILLI),
-        ("wrong", "wrong", tables.PLAIN),
-        ("kept", "kept", tables.PLAIN),
-    ],
-    ROWS,
-)
+TABLE = tables.table("T", "name; time [ms]; wrong; kept", ROWS)
 
 
 def test_a_table_reads_the_same_in_every_form():

@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from tactcad.bench.figures import Point, _error_against_time, _labelled
-from tactcad.paper.plots import panels
+from tactcad.bench.figures import Panel, Point, error_against_time
+from tactcad.paper.plots import panels, place_labels
 
 CLUSTER = [
     Point("short", "closed form", 3.8e-8, 1.1),
@@ -32,8 +32,8 @@ def test_labels_stand_free_of_each_other_and_of_markers(seed):
     )
     points = [Point(p.label, p.series, p.seconds * f, p.worst) for p, f in zip(CLUSTER, shift)]
     with panels(1, 2, (12.4, 5.0), width_ratios=(1.7, 1.0)) as (figure, (ax, _)):
-        _error_against_time(ax, points, "t", "x", "y")
-        _labelled(figure, [ax], [points])
+        error_against_time(ax, Panel(points, "t", "x", "y"))
+        place_labels(figure, ax, [(p.label, p.seconds, p.worst) for p in points])
         figure.canvas.draw()
         boxes = [text.get_window_extent() for text in ax.texts]
         assert [text.get_text() for text in ax.texts] == [p.label for p in points]
@@ -48,7 +48,7 @@ def test_labels_stand_free_of_each_other_and_of_markers(seed):
 
 def test_what_is_dominated_is_hollow_and_the_front_is_joined():
     with panels() as (figure, ax):
-        _error_against_time(ax, CLUSTER, "t", "x", "y")
+        error_against_time(ax, Panel(CLUSTER, "t", "x", "y"))
         joined, *rest = ax.lines
         markers = [line for line in rest if line.get_marker() not in ("None", "", None)]
         filled = {

@@ -12,7 +12,10 @@ from tactcad.cli.main import main
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import accuracy_data
 
-HEADER = "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,poisson,youngs_modulus,width"
+HEADER = (
+    "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,"
+    "poisson,youngs_modulus,width"
+)
 ROW = "0.25,0.75,0.15,6,2,4,4,0.33,69000,3"
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from tactcad.fem import elasticity
 from tactcad.fem.convergence import RATE, converged_plane, richardson
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import end_load, solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import end_load, solve_plane
 from tactcad.fem.shape import outline, reference_shape
 from tactcad.fem.space import PlaneSpace
 from tactcad.mechanics.section import REFERENCE

@@ -14,7 +14,7 @@ from exact_ladder import ORDER
 
 from tactcad.cli.fit import RANGE_FILE
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import ladder as elements
+from tactcad.fem import one_element as elements
 from tactcad.fem.convergence import converged_solid
 from tactcad.fem.shape import reference_shape
 from tactcad.fit import accuracy_samples, fit_samples
@@ -119,7 +119,8 @@ def test_the_least_work_that_is_good_enough_is_taken():
 
 
 def test_meshes_are_chosen_by_their_work_whatever_a_clock_said(monkeypatch):
-    """Where one disturbed run made the finer of two meshes the quicker one in the file, the coarser is still taken."""
+    """Where one disturbed run made the finer of two meshes the quicker one in the file, the coarser is still
+    taken."""
     disturbed = json.loads(json.dumps(accuracy_data()))
     for zone in disturbed["zones"]:
         zone["seconds"] |= {"fem-solid, mesh 2": 6.9, "fem-solid, mesh 3": 6.4}
@@ -145,7 +146,8 @@ NOTCH = REFERENCE.with_(
 
 
 def test_solid_elements_keep_their_promise_at_a_thin_notch():
-    """A fillet of a sixth of the thickness: mesh 2 was 0.089 % off where 0.039 % was promised, mesh 3 0.026 and 0.0059 %."""
+    """A fillet of a sixth of the thickness: mesh 2 was 0.089 % off where 0.039 % was promised, mesh 3 0.026
+    and 0.0059 %."""
     K = [elements.stiffness(NOTCH, "fem-solid", mesh) for mesh in (2, 3)]
     promised = [float(accuracy.expected_error(NOTCH, c)) for c in CANDIDATES if c.mesh]
     assert abs(K[0] / K[1] - 1.0) < promised[0] - promised[1]

@@ -116,7 +116,8 @@ def test_the_stop_lands_gap_and_length(design, place):
 
 
 def test_stop_gaps_of_the_paper_arms_are_below_yield_and_grow_with_the_arm():
-    """hardware.md's worked values are 0.13, 0.16, 0.19, 0.22, 0.25 mm; travel at yield is the bound that counts."""
+    """hardware.md's worked values are 0.13, 0.16, 0.19, 0.22, 0.25 mm; travel at yield is the bound that
+    counts."""
     layout = Layout(ONE_SIDED)
     gaps = {}
     for place in layout.elements:
@@ -149,6 +150,17 @@ def test_a_full_round_is_one_arc_in_the_slot():
     (arc,) = [s for s in contour if isinstance(s, Arc) and "slot" in s.name]
     assert abs(arc.sweep) == pytest.approx(pi)
     assert arc.centre == pytest.approx((place.hinge_x, place.hinge.t + 0.44))
+
+
+def test_a_full_round_given_to_nine_digits_is_one_too():
+    """2 r = l but for the last digits, by more than what the contour itself takes as rounding."""
+    large = variant(
+        {"element.override.3.hinge_length": 0.888888888, "element.override.3.fillet_radius": 0.444444446}
+    )
+    place = Layout(large).elements[2]
+    _, contour = outline(large, place)
+    (arc,) = [s for s in contour if isinstance(s, Arc) and "slot" in s.name]
+    assert abs(arc.sweep) == pytest.approx(pi, abs=1e-12)
 
 
 @pytest.mark.parametrize("design", DESIGNS.values(), ids=DESIGNS)

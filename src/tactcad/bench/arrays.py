@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import tomllib
+from collections.abc import Sequence
 from functools import lru_cache
 
 from tactcad.design.load import DEFAULT_DESIGN, find, parse
@@ -39,5 +40,5 @@ def of(elements: int) -> Design:
     return dataclasses.replace(design, array=dataclasses.replace(design.array, row_arms=rows))
 
 
-def _repeated(rows, elements: int) -> list[list[float]]:
+def _repeated(rows: Sequence[Sequence[float]], elements: int) -> list[list[float]]:
     return [[row[i % len(row)] for i in range(elements // 2)] for row in rows]

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from tactcad.parts.detail import DETAILS
 from tactcad.scenes import scene_names
 
 from . import arrays, tables
 from .plan import Plan
-from .process import child, command, last_line, measured
-from .timing import of_samples
+from .process import Run, child, command, cost, in_turns, last_line, measured
 
 TITLE = "Detail levels of each scene"
 QUESTION = "What do holes, pockets and threads cost where an envelope would do?"
@@ -18,69 +18,47 @@ QUESTION = "What do holes, pockets and threads cost where an envelope would do?"
 
 def measure(plan: Plan) -> dict:
     scenes = scene_names(arrays.published())[: plan.of(1, None, None)]
-    cases = [(scene, detail) for scene in scenes for detail in DETAILS]
+    commands = {
+        f"{scene}, {detail}": child(
+            "assembly", scene=scene, detail=detail, path=str(plan.folder / "scene.step")
+        )
+        for scene in scenes
+        for detail in DETAILS
+    }
     plan.say("the kernel alone")
     floor = measured(child("kernel")).peak_bytes if plan.mode != "smoke" else 0
-    runs: dict[tuple[str, str], list] = {case: [] for case in cases}
-    for turn in range(plan.of(1, 1, 3)):
-        for scene, detail in cases:
-            plan.say(f"{scene}, {detail}, run {turn + 1}")
-            runs[scene, detail].append(
-                measured(child("assembly", scene=scene, detail=detail, path=str(plan.folder / "scene.step")))
-            )
-    rows = [_row(scene, detail, runs[scene, detail], floor) for scene, detail in cases]
+    runs = in_turns(commands, plan.of(1, 1, 3), plan.say)
+    rows = [_row(name, made, floor) for name, made in runs.items()]
     if plan.mode == "full":
         for row in rows:
             row |= _exported(row["scene"], row["detail"], plan)
     for full, light in zip(rows[::2], rows[1::2]):
-        light["time ratio"], light["size ratio"] = (
-            light["seconds"] / full["seconds"],
-            light["bytes"] / full["bytes"],
-        )
-    columns = [
-        ("scene", "scene", tables.PLAIN),
-        ("detail", "detail", tables.PLAIN),
-        ("parts", "parts", tables.PLAIN),
-        ("solids", "solids", tables.PLAIN),
-        ("seconds", "built and written", tables.SECONDS),
-        ("median", "median", tables.SECONDS),
-        ("time ratio", "over full", tables.PLAIN),
-        ("peak_bytes", "peak memory", tables.MEGA),
-        ("above", "above the kernel", tables.MEGA),
-        ("bytes", "STEP", tables.KILO),
-        ("size ratio", "over full", tables.PLAIN),
-        ("cold", "whole export", tables.SECONDS),
-        ("unchanged", "unchanged", tables.SECONDS),
-        ("files", "files", tables.PLAIN),
-        ("export_bytes", "all files", tables.KILO),
-    ]
+        light["time ratio"] = light["seconds"] / full["seconds"]
+        light["size ratio"] = light["bytes"] / full["bytes"]
+    columns = (
+        "scene; detail; parts; solids; seconds: built and written [s]; median [s]; time ratio: over full; "
+        "peak_bytes: peak memory [MB]; above: above the kernel [MB]; bytes: STEP [kB]; "
+        "size ratio: over full; cold: whole export [s]; unchanged [s]; files; export_bytes: all files [kB]"
+    )
     note = (
         "Built and written: parts described and built, assembly written and read back, in a fresh process; "
         "the kernel alone takes "
         f"{floor / 1e6:.0f} MB. Whole export: `tactcad export --scene`, empty cache (full runs only)."
     )
-    return {
-        "tables": {"detail": tables.table(TITLE, columns, rows, note)},
-        "findings": findings(rows),
-        "missing": [],
-    }
+    return {"tables": {"detail": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
-def _row(scene: str, detail: str, runs: list, floor: int) -> dict:
-    found = [last_line(run) for run in runs]
-    timed = of_samples([sum(f["seconds"].values()) for f in found])
-    peak = min(run.peak_bytes for run in runs)
-    return {
+def _row(name: str, runs: list[Run], floor: int) -> dict:
+    scene, detail = name.split(", ")
+    told = [last_line(run) for run in runs]
+    row: dict[str, Any] = {
         "scene": scene,
         "detail": detail,
-        "parts": found[0]["parts"],
-        "solids": found[0]["solids"],
-        "seconds": timed.least,
-        "median": timed.median,
-        "peak_bytes": peak,
-        "above": peak - floor,
-        "bytes": found[0]["bytes"],
+        "parts": told[0]["parts"],
+        "solids": told[0]["solids"],
     }
+    row |= cost(runs, [sum(t["seconds"].values()) for t in told])
+    return row | {"above": row["peak_bytes"] - floor, "bytes": told[0]["bytes"]}
 
 
 def _exported(scene: str, detail: str, plan: Plan) -> dict:

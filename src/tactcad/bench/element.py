@@ -18,6 +18,8 @@ TITLE = "One element: tactcad, the bare kernel, FreeCAD"
 QUESTION = "What do the description, its checks and repeatable files cost over a script?"
 BARE = Path(__file__).with_name("peers") / "kernel_element.py"
 
+Program = tuple[str, list[str], dict[str, str] | None]
+
 
 def measure(plan: Plan) -> dict:
     part = next(p.part for p in make_scene(arrays.published(), "array").placements if p.designator == "E1")
@@ -35,23 +37,14 @@ def measure(plan: Plan) -> dict:
     bare = next(row for row in rows if row["program"] == "bare kernel")
     for row in rows:
         row["time ratio"] = (row["build"] + row["write"]) / (bare["build"] + bare["write"])
-    columns = [
-        ("program", "program", tables.PLAIN),
-        ("build", "build", tables.MILLI),
-        ("write", "write STEP", tables.MILLI),
-        ("median", "both, median", tables.MILLI),
-        ("time ratio", "over the bare kernel", tables.PLAIN),
-        ("process", "whole process", tables.SECONDS),
-        ("peak_bytes", "peak memory", tables.MEGA),
-        ("bytes", "STEP", tables.KILO),
-        ("volume", "volume, mm3", tables.PLAIN),
-        ("off", "off the closed form", ("ppm", 1e6)),
-        ("read off", "STEP read back, off", ("ppm", 1e6)),
-    ]
+    columns = (
+        "program; build [ms]; write: write STEP [ms]; median: both, median [ms]; time ratio: over the bare "
+        "kernel; process: whole process [s]; peak_bytes: peak memory [MB]; bytes: STEP [kB]; volume: volume, "
+        "mm3; off: off the closed form [ppm]; read off: STEP read back, off [ppm]"
+    )
     note = (
         f"{part.part_no}, {part.volume:.6f} mm3 in closed form. tactcad's build compares solid and closed "
-        "form, and its file is "
-        "read back and compared before it is let out; the scripts check nothing."
+        "form, and its file is read back and compared before it is let out; the scripts check nothing."
     )
     missing = [] if freecad.version() else ["FreeCAD (freecadcmd) is not installed: not compared."]
     return {
@@ -64,9 +57,9 @@ def measure(plan: Plan) -> dict:
 def as_job(part: Part, repeats: int, step: Path) -> dict:
     """The part's contour for a peer's script."""
     return {
-        "outer": _chain(part.body.outer),
-        "openings": [_chain(c) for c in part.body.openings],
-        "thickness": part.body.thickness,
+        "outer": _chain(part.extrusion.outer),
+        "openings": [_chain(c) for c in part.extrusion.openings],
+        "thickness": part.extrusion.thickness,
         "repeats": repeats,
         "step": str(step),
     }
@@ -82,12 +75,12 @@ def _chain(contour: Contour) -> list:
     ]
 
 
-def _programs(part: Part, repeats: int, folder: Path) -> list[tuple]:
+def _programs(part: Part, repeats: int, folder: Path) -> list[Program]:
     """(name, command, environment) of each; tactcad comes last and reads back what all have written."""
     job = {name: as_job(part, repeats, folder / f"{name}.step") for name in ("FreeCAD", "bare kernel")}
-    programs = (
-        [("FreeCAD", freecad.command(), freecad.environment(job["FreeCAD"]))] if freecad.version() else []
-    )
+    programs: list[Program] = []
+    if freecad.version():
+        programs.append(("FreeCAD", freecad.command(), freecad.environment(job["FreeCAD"])))
     programs.append(("bare kernel", python(str(BARE), json.dumps(job["bare kernel"])), None))
     files = {name: str(folder / f"{name}.step") for name in ("tactcad", *(name for name, *_ in programs))}
     return [*programs, ("tactcad", child("element", designator="E1", repeats=repeats, files=files), None)]

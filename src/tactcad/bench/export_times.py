@@ -9,8 +9,7 @@ from tactcad.parts.designs import load
 
 from . import arrays, tables
 from .plan import Plan
-from .process import child, command, measured, python
-from .timing import of_samples
+from .process import child, command, cost, in_turns, measured, python
 
 TITLE = "Whole exports"
 QUESTION = "How long from design file to finished folder: first, again, and after a change?"
@@ -25,32 +24,18 @@ def measure(plan: Plan) -> dict:
     for row in rows:
         row["STEP over smallest"] = row["bytes"] / rows[0]["bytes"]
     starts = _starts(plan)
-    columns = [
-        ("elements", "elements", tables.PLAIN),
-        ("runs", "runs", tables.PLAIN),
-        ("cold", "cold", tables.SECONDS),
-        ("plain", "plain script", tables.SECONDS),
-        ("cold / plain", "ratio", tables.PLAIN),
-        ("changed", "one arm changed", tables.SECONDS),
-        ("unchanged", "unchanged", tables.SECONDS),
-        ("numpy", "import numpy", tables.SECONDS),
-        ("unchanged / numpy", "ratio", tables.PLAIN),
-        ("peak_bytes", "peak memory", tables.MEGA),
-        ("bytes", "assembly STEP", tables.KILO),
-        ("STEP over smallest", "over the smallest", tables.PLAIN),
-    ]
-    started = [
-        ("what", "process", tables.PLAIN),
-        ("seconds", "time", tables.SECONDS),
-        ("median", "median", tables.SECONDS),
-        ("ratio", "over import numpy", tables.PLAIN),
-        ("peak_bytes", "peak memory", tables.MEGA),
-    ]
+    columns = (
+        "elements; runs; cold [s]; plain: plain script [s]; cold / plain: ratio; "
+        "changed: one arm changed [s]; unchanged [s]; numpy: import numpy [s]; unchanged / numpy: ratio; "
+        "peak_bytes: peak memory [MB]; bytes: assembly STEP [kB]; STEP over smallest: over the smallest"
+    )
+    started = (
+        "what: process; seconds: time [s]; median [s]; ratio: over import numpy; peak_bytes: peak memory [MB]"
+    )
     note = (
         "`tactcad export --scene array` in fresh processes, shortest of the runs. Cold: empty cache. The "
-        "plain script "
-        "builds each shape once, writes each file once and reads it back once, without tactcad, cache or "
-        "repeatable bytes."
+        "plain script builds each shape once, writes each file once and reads it back once, without tactcad, "
+        "cache or repeatable bytes."
     )
     return {
         "tables": {
@@ -58,7 +43,6 @@ def measure(plan: Plan) -> dict:
             "start-up": tables.table("Starting up", started, starts, "Whole processes, in turns."),
         },
         "findings": findings(rows, starts),
-        "missing": [],
     }
 
 
@@ -78,9 +62,8 @@ def _row(elements: int, runs: int, plan: Plan) -> dict:
         times["cold"].append(cold.seconds)
         peaks.append(cold.peak_bytes)
         plan.say(f"{elements} elements, plain script, run {run + 1}")
-        times["plain"].append(
-            measured(python(str(PLAIN_SCRIPT), str(elements), str(folder / "plain"))).seconds
-        )
+        plain = python(str(PLAIN_SCRIPT), str(elements), str(folder / "plain"))
+        times["plain"].append(measured(plain).seconds)
         for _ in range(plan.of(1, 5, 10) if run == 0 else 0):
             times["unchanged"].append(measured(export, cache).seconds)
             times["numpy"].append(measured(python("-c", "import numpy")).seconds)
@@ -90,12 +73,11 @@ def _row(elements: int, runs: int, plan: Plan) -> dict:
             plan.say(f"{elements} elements, one arm changed, run {run + 1}")
             design.write_text(arrays.text(elements, changed=True), "utf-8")
             times["changed"].append(measured(export, cache).seconds)
-    least = {name: min(t) if t else None for name, t in times.items()}
-    ratios = {
-        "cold / plain": least["cold"] / least["plain"],
-        "unchanged / numpy": least["unchanged"] / least["numpy"],
-    }
-    return {"elements": elements, "runs": runs, "bytes": size, "peak_bytes": min(peaks)} | least | ratios
+    row = {"elements": elements, "runs": runs, "bytes": size, "peak_bytes": min(peaks)}
+    row |= {name: min(seconds, default=None) for name, seconds in times.items()}
+    for above, below in (("cold", "plain"), ("unchanged", "numpy")):
+        row[f"{above} / {below}"] = min(times[above]) / min(times[below])
+    return row
 
 
 def _starts(plan: Plan) -> list[dict]:
@@ -106,16 +88,8 @@ def _starts(plan: Plan) -> list[dict]:
         "the CAD kernel and build123d": child("kernel"),
     }
     chosen = dict(list(commands.items())[: plan.of(2, None, None)])
-    runs: dict[str, list] = {name: [] for name in chosen}
-    for turn in range(plan.of(1, 3, 15)):
-        plan.say(f"starting up, run {turn + 1}")
-        for name, args in chosen.items():
-            runs[name].append(measured(args))
-    rows = []
-    for name, made in runs.items():
-        timed = of_samples([run.seconds for run in made])
-        peak = min(run.peak_bytes for run in made)
-        rows.append({"what": name, "seconds": timed.least, "median": timed.median, "peak_bytes": peak})
+    runs = in_turns(chosen, plan.of(1, 3, 15), plan.say)
+    rows: list[dict] = [{"what": name} | cost(made) for name, made in runs.items()]
     for row in rows:
         row["ratio"] = row["seconds"] / rows[0]["seconds"]
     return rows

@@ -5,14 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
+from typing import TYPE_CHECKING
 
 from tactcad.paper import plots as drawing
-from tactcad.paper.plots import GREY, MARKERS, SERIES, log_ticks, panels, place_labels, svg
+from tactcad.paper.plots import GREY, MARKERS, SERIES, drawn, log_ticks, panels, place_labels
 from tactcad.paper.report import Figure
 
 from .exponent import fit
 from .front import efficient
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as MplFigure
+
+SIZE, SMALL = (12.4, 5.0), (7.6, 4.8)  # inches, of two panels and of one
 FRONT = "#c8d3dc"
 COLOUR = {
     "closed form": drawing.BLUE,
@@ -63,59 +69,71 @@ class Point:
     mean: float | None = None
 
 
+@dataclass(frozen=True)
+class Panel:
+    """Error against time: the points, a title, what stands at the axes; a key to read it by; the error that
+    stands for none."""
+
+    points: list[Point]
+    title: str
+    across: str
+    up: str
+    legend: bool = False
+    key: str = ""
+    none: float | None = None
+
+
 def figures(result: dict) -> dict[str, list[Figure]]:
     """Every plot that the run's benchmarks allow, by benchmark."""
-    found: dict[str, list[Figure]] = {}
-    for name, make in (
-        ("rungs", _rungs),
-        ("meshes", _meshes),
-        ("tessellation", _tessellation),
-        ("interference", _interference),
-        ("scaling", _scaling),
-    ):
-        rows = _rows(result, name)
-        if rows:
-            found[name] = [make(rows)]
-    if _rows(result, "rungs") and _rows(result, "meshes") and _rows(result, "tessellation"):
-        found["rungs"].insert(0, choose(result))
-    return found
+    makers = {
+        "rungs": _rungs,
+        "meshes": _meshes,
+        "tessellation": _tessellation,
+        "interference": _interference,
+        "scaling": _scaling,
+    }
+    rows = {name: _rows(result, name) for name in makers}
+    shown = {name: [make(rows[name])] for name, make in makers.items() if rows[name]}
+    if rows["rungs"] and rows["meshes"] and rows["tessellation"]:
+        shown["rungs"].insert(0, choose(result))
+    return shown
 
 
-def _rows(result: dict, name: str, key: str | None = None) -> list[dict]:
-    return result["benchmarks"].get(name, {}).get("tables", {}).get(key or name, {}).get("rows", [])
+def _rows(result: dict, name: str) -> list[dict]:
+    return result["benchmarks"].get(name, {}).get("tables", {}).get(name, {}).get("rows", [])
 
 
 def choose(result: dict) -> Figure:
     """What to take for stiffness and for triangles."""
-    rungs = _rung_points(_rows(result, "rungs"), "solid")
     meshes = [
         Point(f"mesh {r['density']}", "solid elements", r["seconds"], r["worst"], r["mean"])
         for r in _rows(result, "meshes")
         if r["code"] == "tactcad" and r["elements"] == "solid"
     ]
-    with panels(1, 2, (12.4, 5.0), width_ratios=(1.7, 1.0)) as (figure, (left, right)):
-        triangles = _triangle_points(_rows(result, "tessellation"))
-        _error_against_time(
-            left,
-            rungs + meshes,
+    key = (
+        "filled and joined: worth choosing\nhollow: something else is quicker and more accurate\nmarker: "
+        "worst error; line: down to the mean"
+    )
+    shown = (
+        Panel(
+            _rung_points(_rows(result, "rungs"), "solid") + meshes,
             "Stiffness of an element, in three dimensions",
             "time per element",
             "error against converged solid elements",
-        )
-        _error_against_time(
-            right, triangles, "Triangles of the array's parts", "time for all parts", "volume error"
-        )
-        key = (
-            "filled and joined: worth choosing\nhollow: something else is quicker and more accurate\nmarker: "
-            "worst error; line: down to the mean"
-        )
-        left.text(
-            0.36, 0.97, key, transform=left.transAxes, va="top", fontsize=9, color=GREY, linespacing=1.5
-        )
-        _labelled(figure, (left, right), (rungs + meshes, triangles))
-        return Figure(
+            key=key,
+        ),
+        Panel(
+            _triangle_points(_rows(result, "tessellation")),
+            "Triangles of the array's parts",
+            "time for all parts",
+            "volume error",
+        ),
+    )
+    with panels(1, 2, SIZE, width_ratios=(1.7, 1.0)) as (figure, axes):
+        return _drawn(
+            figure,
+            dict(zip(axes, shown)),
             "bench-choose",
-            svg(figure, "bench-choose"),
             "Error against time: markers at the worst, lines down to the mean; what is worth choosing is "
             "joined, what is dominated is hollow",
         )
@@ -124,108 +142,80 @@ def choose(result: dict) -> Figure:
 def _rung_points(rows: list[dict], against: str) -> list[Point]:
     kind = {"fem-plane": "plane elements", "fem-solid": "solid elements"}
     return [
-        Point(
-            r["rung"],
-            kind.get(r["rung"], "closed form"),
-            r["seconds"],
-            r[f"{against} worst"],
-            r[f"{against} mean"],
-        )
+        Point(r["rung"], kind.get(r["rung"], "closed form"), r["seconds"], worst, r[f"{against} mean"])
         for r in rows
-        if r.get(f"{against} worst")
+        if (worst := r.get(f"{against} worst"))
     ]
 
 
 def _rungs(rows: list[dict]) -> Figure:
-    with panels(1, 2, (12.4, 5.0)) as (figure, axes):
-        for ax, against, title in zip(axes, ("solid", "plane"), ("In three dimensions", "In plane stress")):
-            kind = "solid" if against == "solid" else "plane-stress"
-            _error_against_time(
-                ax,
-                _rung_points(rows, against),
-                title,
-                "time per element",
-                f"error against converged {kind} elements",
-            )
-        _labelled(figure, axes, [_rung_points(rows, against) for against in ("solid", "plane")])
-        return Figure(
+    shown = [
+        Panel(
+            _rung_points(rows, against), title, "time per element", f"error against converged {kind} elements"
+        )
+        for against, title, kind in (
+            ("solid", "In three dimensions", "solid"),
+            ("plane", "In plane stress", "plane-stress"),
+        )
+    ]
+    with panels(1, 2, SIZE) as (figure, axes):
+        return _drawn(
+            figure,
+            dict(zip(axes, shown)),
             "bench-rungs",
-            svg(figure, "bench-rungs"),
             "Every rung over the envelope: markers at the worst error, lines down to the mean",
         )
 
 
 def _meshes(rows: list[dict]) -> Figure:
-    def series(row: dict) -> str:
-        if row["code"] == "CalculiX":
-            return f"CalculiX, {row['elements']}"
-        if row["code"] != "tactcad":
-            return row["code"]
-        return {"plane": "plane elements", "plane, two meshes": "two meshes", "solid": "solid elements"}.get(
-            row["elements"], row["elements"]
-        )
+    names = {"plane": "plane elements", "plane, two meshes": "two meshes", "solid": "solid elements"}
 
-    points = [
-        [
+    def series(row: dict) -> str:
+        if row["code"] == "tactcad":
+            return names.get(row["elements"], row["elements"])
+        return f"CalculiX, {row['elements']}" if row["code"] == "CalculiX" else row["code"]
+
+    def panel(against: str, title: str) -> Panel:
+        points = [
             Point(str(r["density"]), series(r), r["seconds"], r["worst"], r["mean"])
             for r in rows
             if r["against"] == against
         ]
-        for against in ("plane", "solid")
-    ]
-    with panels(1, 2, (12.4, 5.0)) as (figure, axes):
-        for ax, some, title in zip(axes, points, ("Plane stress", "Three dimensions")):
-            _error_against_time(
-                ax,
-                some,
-                f"{title}: numbers are densities",
-                "time",
-                "error against converged elements",
-                legend=True,
-            )
-        _labelled(figure, axes, points)
-        return Figure(
+        title = f"{title}: numbers are densities"
+        return Panel(points, title, "time", "error against converged elements", legend=True)
+
+    with panels(1, 2, SIZE) as (figure, (left, right)):
+        return _drawn(
+            figure,
+            {left: panel("plane", "Plane stress"), right: panel("solid", "Three dimensions")},
             "bench-meshes",
-            svg(figure, "bench-meshes"),
             "Every mesh density, with CalculiX as whole processes where it is installed",
         )
 
 
 def _triangle_points(rows: list[dict]) -> list[Point]:
-    return [
-        Point(
-            f"{r['angular']:g} rad, {r['triangles'] / 1000:.0f}k",
-            "triangles",
-            r["seconds"],
-            r["worst"],
-            r["volume error"],
-        )
-        for r in rows
-        if r["linear"] == rows[0]["linear"]
-    ]
+    def label(r: dict) -> str:
+        return f"{r['angular']:g} rad, {r['triangles'] / 1000:.0f}k"
+
+    same = [r for r in rows if r["linear"] == rows[0]["linear"]]
+    return [Point(label(r), "triangles", r["seconds"], r["worst"], r["volume error"]) for r in same]
 
 
 def _tessellation(rows: list[dict]) -> Figure:
-    with panels(1, 1, (7.6, 4.8)) as (figure, ax):
-        points = _triangle_points(rows)
-        _error_against_time(
-            ax,
-            points,
-            "Angular tolerance, triangles",
-            "time for all parts of the array",
-            "volume error: worst part, and all",
-        )
-        _labelled(figure, [ax], [points])
-        return Figure(
+    across, up = "time for all parts of the array", "volume error: worst part, and all"
+    with panels(1, 1, SMALL) as (figure, ax):
+        return _drawn(
+            figure,
+            {ax: Panel(_triangle_points(rows), "Angular tolerance, triangles", across, up)},
             "bench-tessellation",
-            svg(figure, "bench-tessellation"),
             "Volume error against time of meshing the array's parts",
         )
 
 
 def _interference(rows: list[dict]) -> Figure:
     known = [r for r in rows if r["pairs"] == rows[0]["pairs"]]
-    none = 0.5 / known[0]["count"]  # where a logarithmic axis shows "none wrong"
+    count = known[0]["count"]
+    none = 0.5 / count  # where a logarithmic axis shows "none wrong"
     points = [
         Point(
             r["by"].replace("meshes, ", ""),
@@ -235,29 +225,18 @@ def _interference(rows: list[dict]) -> Figure:
         )
         for r in known
     ]
-    with panels(1, 1, (7.6, 4.8)) as (figure, ax):
-        _error_against_time(
-            ax,
-            points,
-            f"Verdicts on {known[0]['count']} known pairs",
-            "time a pair",
-            "share of wrong verdicts",
-        )
-        if any(not r["wrong"] for r in known):
-            ax.axhline(none, color=GREY, linewidth=0.8, linestyle=":")
-            ax.annotate(
-                "none wrong",
-                (0.01, none),
-                xycoords=("axes fraction", "data"),
-                xytext=(0, 4),
-                textcoords="offset points",
-                color=GREY,
-                fontsize=10,
-            )
-        _labelled(figure, [ax], [points])
-        return Figure(
+    panel = Panel(
+        points,
+        f"Verdicts on {count} known pairs",
+        "time a pair",
+        "share of wrong verdicts",
+        none=None if all(r["wrong"] for r in known) else none,
+    )
+    with panels(1, 1, SMALL) as (figure, ax):
+        return _drawn(
+            figure,
+            {ax: panel},
             "bench-interference",
-            svg(figure, "bench-interference"),
             "Wrong verdicts against time: meshes at each tolerance, and the kernel",
         )
 
@@ -288,22 +267,23 @@ def _scaling(rows: list[dict]) -> Figure:
             log_ticks(ax.xaxis, [10**k for k in range(6)])
             ax.set_xlim(*_decades([r["elements"] for r in rows if r["what"] in chosen]))
             ax.set_ylim(*_decades([r["seconds"] for r in rows if r["what"] in chosen]))
-            ax.set_xlabel("elements")
-            ax.set_ylabel("time")
-            ax.set_title(title)
+            ax.set(xlabel="elements", ylabel="time", title=title)
             ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=9)
-        return Figure(
-            "bench-scaling",
-            svg(figure, "bench-scaling"),
-            "Cost against the number of elements, with fitted exponents",
-        )
+        return drawn(figure, "bench-scaling", "Cost against the number of elements, with fitted exponents")
 
 
-def _error_against_time(
-    ax, points: Sequence[Point], title: str, across: str, up: str, legend: bool = False
-) -> None:
+def _drawn(figure: MplFigure, shown: dict[Axes, Panel], name: str, caption: str) -> Figure:
+    for ax, panel in shown.items():
+        error_against_time(ax, panel)
+    for ax, panel in shown.items():
+        place_labels(figure, ax, [(p.label, p.seconds, p.worst) for p in panel.points])
+    return drawn(figure, name, caption)
+
+
+def error_against_time(ax: Axes, panel: Panel) -> None:
     """Markers at the worst error, a line down to the mean; the efficient front joined, what it dominates
     hollow."""
+    points = panel.points
     front = efficient([(p.seconds, p.worst) for p in points])
     ax.plot(
         [points[i].seconds for i in front],
@@ -335,16 +315,24 @@ def _error_against_time(
     _scale(ax, "y", SHARES)
     ax.set_xlim(*_decades([p.seconds for p in points]))
     ax.set_ylim(*_decades([v for p in points for v in (p.worst, p.mean) if v]))
-    ax.set_xlabel(across)
-    ax.set_ylabel(up)
-    ax.set_title(title)
-    if legend:
+    ax.set(xlabel=panel.across, ylabel=panel.up, title=panel.title)
+    if panel.legend:
         ax.legend(loc="best", fontsize=9)
-
-
-def _labelled(figure, axes: Sequence, points: Sequence[Sequence[Point]]) -> None:
-    for ax, some in zip(axes, points):
-        place_labels(figure, ax, [(p.label, p.seconds, p.worst) for p in some])
+    if panel.key:
+        ax.text(
+            0.36, 0.97, panel.key, transform=ax.transAxes, va="top", fontsize=9, color=GREY, linespacing=1.5
+        )
+    if panel.none is not None:
+        ax.axhline(panel.none, color=GREY, linewidth=0.8, linestyle=":")
+        ax.annotate(
+            "none wrong",
+            (0.01, panel.none),
+            (0, 4),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            color=GREY,
+            fontsize=10,
+        )
 
 
 def _decades(values: Sequence[float]) -> tuple[float, float]:
@@ -352,7 +340,7 @@ def _decades(values: Sequence[float]) -> tuple[float, float]:
     return 10 ** (floor(log10(min(values))) - 0.1), 10 ** (ceil(log10(max(values))) + 0.1)
 
 
-def _scale(ax, axis: str, names: dict[float, str]) -> None:
+def _scale(ax: Axes, axis: str, names: dict[float, str]) -> None:
     """A logarithmic axis with a name at every power of ten."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -19,10 +20,16 @@ from . import arrays, tables
 from .pairs import known_pairs
 from .plan import Plan
 
+if TYPE_CHECKING:
+    from manifold3d import Manifold
+    from OCP.TopoDS import TopoDS_Shape
+
 TITLE = "Interference by meshes and by the kernel"
 QUESTION = "How often is a mesh's verdict wrong, and what does the kernel's cost?"
 LINEAR = 0.05  # mm
 ANGULAR = (0.5, 0.2, 0.1, 0.05)  # rad
+T = TypeVar("T")
+Placed = tuple[Placement, Placement]
 
 
 def measure(plan: Plan) -> dict:
@@ -32,34 +39,20 @@ def measure(plan: Plan) -> dict:
     rows = _compared(plan, "known pairs", known, angular)
     rows += _compared(plan, "the array's near pairs", [(pair, None) for pair in own], angular)
     situations = _situations(plan)
-    columns = [
-        ("pairs", "pairs", tables.PLAIN),
-        ("by", "by", tables.PLAIN),
-        ("count", "number", tables.PLAIN),
-        ("wrong", "wrong verdicts", tables.PLAIN),
-        ("missed", "missed overlaps", tables.PLAIN),
-        ("false", "false overlaps", tables.PLAIN),
-        ("others", "touch and clear mistaken", tables.PLAIN),
-        ("seconds", "time a pair", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("time ratio", "over the kernel's", tables.PLAIN),
-        ("meshing", "meshing a part", tables.MILLI),
-    ]
+    columns = (
+        "pairs; by; count: number; wrong: wrong verdicts; missed: missed overlaps; false: false overlaps; "
+        "others: touch and clear mistaken; seconds: time a pair [ms]; median [ms]; "
+        "time ratio: over the kernel's; meshing: meshing a part [ms]"
+    )
     note = (
         "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, "
-        "verdicts in closed form. "
-        "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median "
-        "time; meshes are made once a part."
+        "verdicts in closed form. The array's near pairs: all whose boxes meet, the kernel's verdict taken "
+        "as true. Mean and median time; meshes are made once a part."
     )
-    others = [
-        ("elements", "elements", tables.PLAIN),
-        ("placed", "placed parts", tables.PLAIN),
-        ("findings", "contacts judged", tables.PLAIN),
-        ("seconds", "tactcad check", tables.SECONDS),
-        ("kernel seconds", "every near pair", tables.SECONDS),
-        ("time ratio", "times as long", tables.PLAIN),
-        ("same verdicts", "same verdicts", tables.PLAIN),
-    ]
+    others = (
+        "elements; placed: placed parts; findings: contacts judged; seconds: tactcad check [s]; "
+        "kernel seconds: every near pair [s]; time ratio: times as long; same verdicts"
+    )
     return {
         "tables": {
             "interference": tables.table(TITLE, columns, rows, note),
@@ -71,11 +64,10 @@ def measure(plan: Plan) -> dict:
             ),
         },
         "findings": findings(rows, situations),
-        "missing": [],
     }
 
 
-def near(scene: Scene) -> list[tuple[Placement, Placement]]:
+def near(scene: Scene) -> list[Placed]:
     """Pairs of the scene whose boxes meet."""
     from tactcad.checks.interference import near_pairs, placed_box
     from tactcad.solids.build import build
@@ -109,8 +101,6 @@ class Prepared:
     def add(self, part: Part, angular: tuple[float, ...], meshing: dict[float, list[float]]) -> None:
         from tactcad.solids.build import build
         from tactcad.solids.measure import bounding_box
-        from tactcad.solids.mesh import triangles
-        from tactcad.solids.mesh_overlap import closed
         from tactcad.solids.near import Faces
 
         number = part.part_no
@@ -119,21 +109,26 @@ class Prepared:
         shape = self.shapes[number] = build(part).wrapped
         self.boxes[number], self.faces[number] = bounding_box(shape), Faces(shape)
         for a in angular:
-            self.meshes[number, a] = _timed(
-                meshing.setdefault(a, []), lambda a=a: closed(triangles(shape, LINEAR, a))
-            )
+            self.meshes[number, a] = _timed(meshing.setdefault(a, []), partial(_closed_mesh, shape, a))
 
 
-def kernel_verdict(pair: tuple[Placement, Placement], made: Prepared) -> str:
+def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
+    from tactcad.solids.mesh_overlap import closed
+    from tactcad.solids.triangles import triangles
+
+    return closed(triangles(shape, LINEAR, angular))
+
+
+def kernel_verdict(pair: Placed, made: Prepared) -> str:
     """As `tactcad check` finds it: the kernel's distance, and its common solid where that is none."""
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting, placed_box
 
-    boxes = tuple(placed_box(p, made.boxes[p.part.part_no]) for p in pair)
-    found = meeting(pair, boxes, made.shapes, made.faces)
+    a, b = (placed_box(p, made.boxes[p.part.part_no]) for p in pair)
+    found = meeting(pair, (a, b), made.shapes, made.faces)
     return "overlap" if found.overlap > OVERLAP_MM3 else "touch" if found.distance < TOUCH_MM else "clear"
 
 
-def mesh_verdict(pair: tuple[Placement, Placement], made: Prepared, angular: float) -> str:
+def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
     """By the same limits from what the triangles share, and from their distance."""
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM
     from tactcad.solids.mesh_overlap import meeting, placed
@@ -144,11 +139,12 @@ def mesh_verdict(pair: tuple[Placement, Placement], made: Prepared, angular: flo
 
 
 def _compared(
-    plan: Plan, name: str, pairs: list[tuple[tuple, str | None]], angular: tuple[float, ...]
+    plan: Plan, name: str, pairs: Sequence[tuple[Placed, str | None]], angular: tuple[float, ...]
 ) -> list[dict]:
     """A row by the kernel and one by each tolerance; on every pair all of them in turn."""
     ways: list[float | None] = [None, *angular]  # None: the kernel
-    verdicts, seconds = {w: [] for w in ways}, {w: [] for w in ways}
+    verdicts: dict[float | None, list[str]] = {w: [] for w in ways}
+    seconds: dict[float | None, list[float]] = {w: [] for w in ways}
     meshing: dict[float, list[float]] = {}
     made, true = Prepared(), []
     for n, (pair, verdict) in enumerate(pairs):
@@ -164,7 +160,7 @@ def _compared(
         true.append(verdict or verdicts[None][-1])
     rows = []
     for w in ways:
-        row = {
+        row: dict[str, Any] = {
             "pairs": name,
             "by": "kernel" if w is None else f"meshes, {w:g} rad",
             "angular": w,
@@ -179,7 +175,7 @@ def _compared(
     return rows
 
 
-def _timed(into: list[float], action: Callable):
+def _timed(into: list[float], action: Callable[[], T]) -> T:
     start = time.perf_counter()
     result = action()
     into.append(time.perf_counter() - start)
@@ -201,7 +197,8 @@ def _situations(plan: Plan) -> list[dict]:
     for elements in plan.of((2,), (10,), (10, 100, 1000)):
         scene = replace(make_scene(arrays.of(elements), "array"), contacts=())
         shapes = {part.part_no: build(part).wrapped for part in scene.parts}
-        ours, theirs = [], []
+        ours: list[float] = []
+        theirs: list[float] = []
         plan.say(f"{elements} elements: each situation once")
         mine = _timed(ours, lambda: check_interference(scene, shapes))  # noqa: B023
         plan.say(f"{elements} elements: every near pair by the kernel")
@@ -233,11 +230,9 @@ def findings(rows: list[dict], situations: list[dict]) -> list[str]:
         f"{finest['by']} {finest['wrong']} times: "
         f"{finest['missed']} overlaps missed, {finest['false']} seen where there are none.",
         f"At {coarsest['angular']:g} rad meshes, once made, take {coarsest['time ratio']:.2g} of the "
-        f"kernel's time a pair, at {finest['angular']:g} rad "
-        f"{finest['time ratio']:.2g}; making one takes {1e3 * coarsest['meshing']:.0f} and "
-        f"{1e3 * finest['meshing']:.0f} ms.",
+        f"kernel's time a pair, at {finest['angular']:g} rad {finest['time ratio']:.2g}; making one takes "
+        f"{1e3 * coarsest['meshing']:.0f} and {1e3 * finest['meshing']:.0f} ms.",
         f"{last['elements']} elements: the check judges {last['findings']} contacts in {last['seconds']:.1f} "
-        "s, every near pair by the kernel takes "
-        f"{last['kernel seconds']:.1f} s, {last['time ratio']:.1f} times as long; "
-        f"{'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
+        f"s, every near pair by the kernel takes {last['kernel seconds']:.1f} s, {last['time ratio']:.1f} "
+        f"times as long; {'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
     ]

@@ -7,19 +7,22 @@ import logging
 import re
 import subprocess
 from collections.abc import Callable
-from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
+from scipy.sparse import csc_matrix
 
 from tactcad.design.messages import CheckFailure
+from tactcad.design.present import present
 from tactcad.fem import calculix, elasticity
 from tactcad.fem.convergence import RATE, richardson
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 
 from . import tables, truth
 from .front import efficient, told
@@ -31,6 +34,8 @@ QUESTION = "Which mesh is fine enough, and how does it compare with CalculiX?"
 ASKED = 1e-3  # error at which the codes are compared
 GOAL_SOLVE = 0.1  # of CalculiX's time for a plane problem at that error
 
+Answer = tuple[float, int]
+
 
 @dataclass(frozen=True)
 class Case:
@@ -39,23 +44,26 @@ class Case:
     code: str
     elements: str
     density: int
-    solve: Callable[[ElementShape, float, float], tuple[float, int]]
+    solve: Callable[[ElementShape, float, float], Answer]
 
 
 def cases(plan: Plan) -> list[Case]:
     plane, solid = plan.of((1, 2), (1, 2, 3, 4, 6), (1, 2, 3, 4, 6, 8)), plan.of((1,), (1, 2), (1, 2, 3))
-    found = [Case("tactcad", "plane", d, _plane(d)) for d in plane]
-    found += [Case("tactcad", "plane, two meshes", d, _extrapolated(d)) for d in plane if d % 2 == 0]
-    found += [Case("tactcad", "solid", d, _solid(d)) for d in solid]
-    found += [Case("tactcad", "solid, corrected", d, _corrected(d)) for d in solid]
+    found = [Case("tactcad", "plane", d, partial(_plane, d)) for d in plane]
+    found += [Case("tactcad", "plane, two meshes", d, partial(_extrapolated, d)) for d in plane if d % 2 == 0]
+    found += [Case("tactcad", "solid", d, partial(_solid, d)) for d in solid]
+    found += [Case("tactcad", "solid, corrected", d, partial(_corrected, d)) for d in solid]
     if calculix.executable():
         found += [
-            Case("CalculiX", "plane", d, _ccx_plane(d, plan.folder))
+            Case("CalculiX", "plane", d, partial(_ccx_plane, d, plan.folder))
             for d in plan.of((1,), (1, 2, 3, 4), (1, 2, 3, 4, 6))
         ]
-        found += [Case("CalculiX", "solid", d, _ccx_solid(d, plan.folder)) for d in plan.of((), (1,), (1, 2))]
+        found += [
+            Case("CalculiX", "solid", d, partial(_ccx_solid, d, plan.folder))
+            for d in plan.of((), (1,), (1, 2))
+        ]
     if _cholmod():
-        found += [Case("CHOLMOD", "solid", d, _with_cholmod(_solid(d))) for d in solid]
+        found += [Case("CHOLMOD", "solid", d, partial(_with_cholmod, d)) for d in solid]
     return found
 
 
@@ -75,12 +83,10 @@ def measure(plan: Plan) -> dict:
         rows.append(_error(case, designs))
     plan.say("times, in turns")
     shape, nu, width = designs[0][:3]
-    timed = interleaved(
-        {i: (lambda c=case: c.solve(shape, nu, width)) for i, case in enumerate(cases(plan))},
-        plan.of(1, 2, 5),
-    )
+    actions = {i: partial(case.solve, shape, nu, width) for i, case in enumerate(cases(plan))}
+    timed = interleaved(actions, plan.of(1, 2, 5))
     for i, row in enumerate(rows):
-        row |= {"seconds": timed[i].least, "median": timed[i].median, "runs": timed[i].runs}
+        row |= vars(timed[i])
     for against in ("plane", "solid"):
         group = [row for row in rows if row["against"] == against]
         best = efficient([(row["seconds"], row["worst"]) for row in group])
@@ -89,18 +95,10 @@ def measure(plan: Plan) -> dict:
     if calculix.executable():
         for row, own in zip(rows, [_own_clock(case, designs[0], plan.folder) for case in cases(plan)]):
             row["own clock"] = own
-    columns = [
-        ("code", "code", tables.PLAIN),
-        ("elements", "elements", tables.PLAIN),
-        ("density", "density", tables.PLAIN),
-        ("unknowns", "unknowns", tables.PLAIN),
-        ("mean", "mean error", tables.PER_CENT),
-        ("worst", "worst error", tables.PER_CENT),
-        ("seconds", "time", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("own clock", "its own clock", tables.MILLI),
-        ("front", "on the front", tables.PLAIN),
-    ]
+    columns = (
+        "code; elements; density; unknowns; mean: mean error [%]; worst: worst error [%]; "
+        "seconds: time [ms]; median [ms]; own clock: its own clock [ms]; front: on the front"
+    )
     note = (
         f"Errors over {len(designs)} designs against converged elements of their own kind; unknowns and "
         "times of the two-sided reference "
@@ -144,15 +142,13 @@ def findings(rows: list[dict]) -> list[str]:
             for r in group
         ]
         lines.append(f"{title}. " + told(names, [(r["seconds"], r["worst"]) for r in group]))
-    chosen = [_cheapest(rows, code) for code in ("tactcad", "CalculiX")]
-    if all(chosen):
-        ours, theirs = chosen
+    ours, theirs = (_cheapest(rows, code) for code in ("tactcad", "CalculiX"))
+    if ours and theirs:
         ratio = ours["seconds"] / theirs["own clock"]
         lines.append(
             f"{'met' if ratio <= GOAL_SOLVE else 'MISSED'}: plane elements within {100 * ASKED:g} %: "
-            f"{1e3 * ours['seconds']:.1f} ms (density "
-            f"{ours['density']}) against CalculiX's own {1e3 * theirs['own clock']:.0f} ms (density "
-            f"{theirs['density']}), {ratio:.2f} of its time "
+            f"{1e3 * ours['seconds']:.1f} ms (density {ours['density']}) against CalculiX's own "
+            f"{1e3 * theirs['own clock']:.0f} ms (density {theirs['density']}), {ratio:.2f} of its time "
             f"(goal {GOAL_SOLVE:g}); {1e3 * theirs['seconds']:.0f} ms as a process."
         )
     return lines
@@ -164,58 +160,38 @@ def _cheapest(rows: list[dict], code: str) -> dict | None:
     return min(fit, key=lambda r: r["seconds"], default=None)
 
 
-def _plane(density: int):
-    def solve(shape, nu, width):
-        found = solve_plane(shape, 1.0, nu, width, density=density)
-        return found.stiffness, found.unknowns
-
-    return solve
+def _plane(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
+    solution = solve_plane(shape, 1.0, nu, width, density=density)
+    return solution.stiffness, solution.unknowns
 
 
-def _extrapolated(density: int):
+def _extrapolated(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
     """Richardson's limit from this density and half of it, as fem-plane takes it from 6 and 3."""
-
-    def solve(shape, nu, width):
-        pair = [solve_plane(shape, 1.0, nu, width, density=d) for d in (density // 2, density)]
-        limit = richardson((pair[0].compliance, pair[1].compliance), (density // 2, density), RATE)
-        return 1.0 / limit, pair[1].unknowns
-
-    return solve
+    coarse, fine = (solve_plane(shape, 1.0, nu, width, density=d) for d in (density // 2, density))
+    limit = richardson((coarse.compliance, fine.compliance), (density // 2, density), RATE)
+    return 1.0 / limit, fine.unknowns
 
 
-def _solid(density: int):
-    def solve(shape, nu, width):
-        found = solve_solid(shape, 1.0, nu, width, density=density, across=1)
-        return found.stiffness, found.unknowns
-
-    return solve
+def _solid(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
+    solution = solve_solid(shape, 1.0, nu, width, density=density, across=1)
+    return solution.stiffness, solution.unknowns
 
 
-def _corrected(density: int):
+def _corrected(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
     """With the plane problem's error on the same mesh taken off, as fem-solid does."""
-
-    def solve(shape, nu, width):
-        stiffness, unknowns = _solid(density)(shape, nu, width)
-        limit, _ = _extrapolated(6)(shape, nu, width)
-        return stiffness * limit / _plane(density)(shape, nu, width)[0], unknowns
-
-    return solve
+    stiffness, unknowns = _solid(density, shape, nu, width)
+    limit, _ = _extrapolated(6, shape, nu, width)
+    return stiffness * limit / _plane(density, shape, nu, width)[0], unknowns
 
 
-def _ccx_plane(density: int, folder: Path):
-    def solve(shape, nu, width):
-        stiffness = calculix.plane_stiffness(plane_mesh(shape, density), 1.0, nu, width, folder)
-        return stiffness, 2 * _nodes(folder / "plane.inp")
-
-    return solve
+def _ccx_plane(density: int, folder: Path, shape: ElementShape, nu: float, width: float) -> Answer:
+    stiffness = calculix.plane_stiffness(plane_mesh(shape, density), 1.0, nu, width, folder)
+    return stiffness, 2 * _nodes(folder / "plane.inp")
 
 
-def _ccx_solid(density: int, folder: Path):
-    def solve(shape, nu, width):
-        stiffness = calculix.solid_stiffness(plane_mesh(shape, density), 1.0, nu, width, 1, folder)
-        return stiffness, 3 * _nodes(folder / "solid.inp")
-
-    return solve
+def _ccx_solid(density: int, folder: Path, shape: ElementShape, nu: float, width: float) -> Answer:
+    stiffness = calculix.solid_stiffness(plane_mesh(shape, density), 1.0, nu, width, 1, folder)
+    return stiffness, 3 * _nodes(folder / "solid.inp")
 
 
 def _nodes(path: Path) -> int:
@@ -228,7 +204,11 @@ def _own_clock(case: Case, design: tuple, folder: Path) -> float | None:
         return None
     case.solve(*design[:3])  # its input file lies in the folder now
     run = subprocess.run(
-        [calculix.executable(), "-i", case.elements], cwd=folder, capture_output=True, text=True, check=True
+        [str(calculix.executable()), "-i", case.elements],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     found = re.search(r"Total CalculiX Time:\s*([0-9.]+)", run.stdout)
     if not found:
@@ -236,7 +216,7 @@ def _own_clock(case: Case, design: tuple, folder: Path) -> float | None:
     return float(found[1])
 
 
-def _cholmod():
+def _cholmod() -> Callable | None:
     try:
         from sksparse.cholmod import cholesky
     except ImportError:
@@ -244,26 +224,15 @@ def _cholmod():
     return cholesky
 
 
-def _with_cholmod(solve):
-    def with_it(shape, nu, width):
-        with _solver(_cholmod()):
-            return solve(shape, nu, width)
+def _with_cholmod(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
+    """Solid elements with every system solved by CHOLMOD."""
+    cholesky = present(_cholmod())
 
-    return with_it
-
-
-@contextmanager
-def _solver(cholesky):
-    """Systems solved by another factorisation while it is open."""
-
-    def other(A, f, fixed):
+    def other(A: csc_matrix, f: np.ndarray, fixed: np.ndarray) -> np.ndarray:
         free = np.setdiff1d(np.arange(len(f)), fixed)
         u = np.zeros_like(f)
         u[free] = cholesky(A[free][:, free].tocsc())(f[free])
         return u
 
-    usual, elasticity.solve = elasticity.solve, other
-    try:
-        yield
-    finally:
-        elasticity.solve = usual
+    with patch.object(elasticity, "solve", other):
+        return _solid(density, shape, nu, width)

@@ -14,8 +14,8 @@ from math import acos, hypot, pi, sqrt
 import numpy as np
 
 from tactcad.contour import circle, rectangle
-from tactcad.parts.description import Extrusion, Material, Part
-from tactcad.scenes.scene import Placement, Rotation, Scene
+from tactcad.parts.description import Extrusion, Material, Part, vector
+from tactcad.scenes.scene import Placement, Rotation, Scene, rotation
 
 STEEL = Material("steel", 7850.0)
 GAPS = (-0.1, -0.01, -0.001, -0.0001, 0.0, 0.0001, 0.001, 0.01, 0.1)  # mm; negative: they overlap by so much
@@ -50,7 +50,7 @@ def known_pairs(rounds: int, seed: int) -> Iterator[Pair]:
                 yield Pair(kind, gap, overlap, _thrown((first, second), rng))
 
 
-def box_on_box(gap: float, rng: np.random.Generator):
+def box_on_box(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
     """Two blocks face to face, shifted sideways."""
     a, b, shift = rng.uniform(3, 10, 3), rng.uniform(3, 10, 3), rng.uniform(-2, 2, 2)
     common = np.minimum(a[:2] / 2, shift + b[:2] / 2) - np.maximum(-a[:2] / 2, shift - b[:2] / 2)
@@ -62,7 +62,7 @@ def box_on_box(gap: float, rng: np.random.Generator):
     )
 
 
-def pin_in_hole(gap: float, rng: np.random.Generator):
+def pin_in_hole(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
     """A pin in a bore, out of the middle by some of the play: the least gap is at one side."""
     bore, height = rng.uniform(1.0, 3.0), rng.uniform(2.0, 6.0)
     off = rng.choice([0.0, 0.02])
@@ -76,7 +76,7 @@ def pin_in_hole(gap: float, rng: np.random.Generator):
     )
 
 
-def pin_beside_pin(gap: float, rng: np.random.Generator):
+def pin_beside_pin(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
     """Two pins with parallel axes."""
     r, s, height = *rng.uniform(0.8, 3.0, 2), rng.uniform(2.0, 6.0)
     overlap = lens(r, s, r + s + gap) * height
@@ -87,12 +87,12 @@ def pin_beside_pin(gap: float, rng: np.random.Generator):
     )
 
 
-def pin_on_plate(gap: float, rng: np.random.Generator):
+def pin_on_plate(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
     """A pin that lies on a plate's face."""
     r, length = rng.uniform(0.8, 3.0), rng.uniform(2.0, 6.0)
     sunk = max(-gap, 0.0)
     segment = r * r * acos((r - sunk) / r) - (r - sunk) * sqrt(max(2 * r * sunk - sunk * sunk, 0.0))
-    turn = tuple(map(tuple, np.array(ALONG_X) @ np.array(_spun(rng))))
+    turn = rotation(np.array(ALONG_X) @ np.array(_spun(rng)))
     return (
         segment * length,
         Placement("A", _block("A", 16.0, 16.0, 3.0)),
@@ -148,12 +148,13 @@ def _thrown(pair: tuple[Placement, Placement], rng: np.random.Generator) -> tupl
     q *= np.sign(np.diag(r))
     q[:, 2] *= np.linalg.det(q)
     shift = rng.uniform(-50, 50, 3)
-    return tuple(
+    first, second = (
         Placement(
             p.designator,
             p.part,
-            tuple(map(float, q @ np.array(p.origin) + shift)),
-            tuple(map(tuple, (q @ np.array(p.rotation)).tolist())),
+            vector((q @ np.array(p.origin) + shift).tolist()),
+            rotation(q @ np.array(p.rotation)),
         )
         for p in pair
     )
+    return first, second

@@ -6,15 +6,19 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import tactcad
+from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure
 
+from .timing import of_samples
+
 METER = Path(__file__).with_name("meter.py")
+K = TypeVar("K", bound=Hashable)
 
 
 @dataclass(frozen=True)
@@ -28,15 +32,36 @@ class Run:
 
 def measured(command: Sequence[str], environment: Mapping[str, str] | None = None) -> Run:
     """Run a command to its end, on one thread. Raises CheckFailure with its last words where it fails."""
-    with tempfile.TemporaryDirectory() as folder:
-        result = Path(folder) / "meter.json"
+    with scratch_folder("bench-run") as folder:
+        result = folder / "meter.json"
         meter = [sys.executable, "-I", "-S", str(METER), str(result), *command]
-        environment = {**os.environ, **surroundings(), **(environment or {})}
+        here = {"TMPDIR": str(folder)}  # what a killed one leaves there goes with it
+        environment = {**os.environ, **surroundings(), **here, **(environment or {})}
         run = subprocess.run(meter, env=environment, capture_output=True, text=True, check=False)
         if run.returncode:
             words = (run.stderr or run.stdout).strip().splitlines() or ["it said nothing"]
             raise CheckFailure(f"{' '.join(command)[:200]} ended with status {run.returncode}: {words[-1]}")
         return Run(**json.loads(result.read_text("utf-8")), output=run.stdout)
+
+
+def in_turns(
+    commands: Mapping[K, Sequence[str]], turns: int, say: Callable[[str], None]
+) -> dict[K, list[Run]]:
+    """Each command once a turn, so that what else the machine does meets all alike."""
+    runs: dict[K, list[Run]] = {name: [] for name in commands}
+    for turn in range(turns):
+        for name, command in commands.items():
+            say(f"{name}, run {turn + 1}")
+            runs[name].append(measured(command))
+    return runs
+
+
+def cost(runs: Sequence[Run], seconds: Sequence[float] = ()) -> dict[str, float]:
+    """Shortest and median time (s), as the processes themselves tell it or else whole, and the least of their
+    largest memories (bytes)."""
+    timed = of_samples(list(seconds) or [run.seconds for run in runs])
+    peak = min(run.peak_bytes for run in runs)
+    return {"seconds": timed.seconds, "median": timed.median, "peak_bytes": peak}
 
 
 def surroundings() -> dict[str, str]:

@@ -10,8 +10,7 @@ from tactcad.scenes.scene import Scene
 
 from . import tables
 from .plan import Plan
-from .process import child, last_line, measured
-from .timing import of_samples
+from .process import child, cost, in_turns, last_line
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -38,47 +37,23 @@ def unshared(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> tuple[Scene, d
 def measure(plan: Plan) -> dict:
     rows = []
     for elements in plan.of((2,), (10, 40), (10, 100, 400)):
-        runs: dict[str, list] = {name: [] for name in FORMS}
-        for turn in range(plan.of(1, 1, 3)):
-            for name, shared in FORMS.items():
-                plan.say(f"{elements} elements, {name}, run {turn + 1}")
-                runs[name].append(measured(child("step", elements=elements, shared=shared)))
-        for name, made in runs.items():
-            found = [last_line(run) for run in made]
-            timed = of_samples([f["seconds"]["step"] for f in found])
-            rows.append(
-                {
-                    "elements": elements,
-                    "solids": found[0]["solids"],
-                    "form": name,
-                    "bytes": found[0]["bytes"],
-                    "seconds": timed.least,
-                    "median": timed.median,
-                    "peak_bytes": min(run.peak_bytes for run in made),
-                }
-            )
-    for shared, copies in zip(rows[::2], rows[1::2]):
-        copies["size ratio"] = copies["bytes"] / shared["bytes"]
-        copies["time ratio"] = copies["seconds"] / shared["seconds"]
-    columns = [
-        ("elements", "elements", tables.PLAIN),
-        ("solids", "solids", tables.PLAIN),
-        ("form", "prototypes", tables.PLAIN),
-        ("bytes", "file", tables.KILO),
-        ("size ratio", "over shared", tables.PLAIN),
-        ("seconds", "written and read back", tables.SECONDS),
-        ("median", "median", tables.SECONDS),
-        ("time ratio", "over shared", tables.PLAIN),
-        ("peak_bytes", "peak memory", tables.MEGA),
-    ]
+        commands = {name: child("step", elements=elements, shared=shared) for name, shared in FORMS.items()}
+        plan.say(f"{elements} elements")
+        for name, runs in in_turns(commands, plan.of(1, 1, 3), plan.say).items():
+            told = [last_line(run) for run in runs]
+            row = {"elements": elements, "solids": told[0]["solids"], "form": name, "bytes": told[0]["bytes"]}
+            rows.append(row | cost(runs, [t["seconds"]["step"] for t in told]))
+    for original, copies in zip(rows[::2], rows[1::2]):
+        copies["size ratio"] = copies["bytes"] / original["bytes"]
+        copies["time ratio"] = copies["seconds"] / original["seconds"]
+    columns = (
+        "elements; solids; form: prototypes; bytes: file [kB]; size ratio: over shared; seconds: written and "
+        "read back [s]; median [s]; time ratio: over shared; peak_bytes: peak memory [MB]"
+    )
     last = rows[-1]
     finding = (
         f"{last['elements']} elements, {last['solids']} solids: copies make the file "
         f"{last['size ratio']:.1f} times as large, and "
         f"writing it and reading it back {last['time ratio']:.1f} times as long."
     )
-    return {
-        "tables": {"prototypes": tables.table(TITLE, columns, rows)},
-        "findings": [finding],
-        "missing": [],
-    }
+    return {"tables": {"prototypes": tables.table(TITLE, columns, rows)}, "findings": [finding]}

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 from tactcad.design.messages import CheckFailure
 
@@ -35,7 +36,7 @@ BENCHMARKS = {
 def run(plan: Plan, names: Sequence[str], say: Callable[[int, int, str], None]) -> dict:
     """Measure. A benchmark that fails is recorded with its reason under "failed", and the others go on."""
     started = time.perf_counter()
-    result = {
+    result: dict[str, Any] = {
         "schema": SCHEMA,
         "mode": plan.mode,
         "date": date.today().isoformat(),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable, Hashable
 
 import numpy as np
 
@@ -34,32 +35,19 @@ def measure(plan: Plan) -> dict:
     for row in rows:
         row |= seconds[row["rung"]] | {"when": BY_NAME[row["rung"]].when}
         row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
-    columns = [
-        ("rung", "rung", tables.PLAIN),
-        ("solid mean", "solid: mean error", tables.PER_CENT),
-        ("solid worst", "worst", tables.PER_CENT),
-        ("solid designs", "designs", tables.PLAIN),
-        ("plane mean", "plane stress: mean error", tables.PER_CENT),
-        ("plane worst", "worst", tables.PER_CENT),
-        ("plane designs", "designs", tables.PLAIN),
-        ("seconds", "time per element", tables.MICRO),
-        ("median", "median", tables.MICRO),
-        ("alone", "one element alone", tables.MICRO),
-        ("time ratio", "time over solid's", tables.PLAIN),
-    ]
+    columns = (
+        "rung; solid mean: solid: mean error [%]; solid worst: worst [%]; solid designs: designs; plane "
+        "mean: plane stress: mean error [%]; plane worst: worst [%]; plane designs: designs; seconds: time "
+        "per element [us]; median [us]; alone: one element alone [us]; time ratio: time over solid's"
+    )
     worst = max(float(np.nanmax(fine["plane_error"])), float(np.nanmax(fine["width_error"])))
     note = (
         "Errors of stiffness against converged elements, in three dimensions and in plane stress. These are "
-        "themselves "
-        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), "
-        "within 1e-4 on the held-out ones; "
-        "no error of finite elements smaller than that estimate is claimed."
+        f"themselves within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest "
+        "estimate), within 1e-4 on the held-out ones; no error of finite elements smaller than that estimate "
+        "is claimed."
     )
-    return {
-        "tables": {"rungs": tables.table(TITLE, columns, rows, note)},
-        "findings": findings(rows),
-        "missing": [],
-    }
+    return {"tables": {"rungs": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
 def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
@@ -67,13 +55,8 @@ def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray
     `own` estimated error of what it is measured against."""
     error = np.maximum(np.abs(stiffness / exact - 1.0), own)
     error = error[np.isfinite(error)]
-    if not len(error):
-        return {f"{label} mean": None, f"{label} worst": None, f"{label} designs": 0}
-    return {
-        f"{label} mean": float(error.mean()),
-        f"{label} worst": float(error.max()),
-        f"{label} designs": len(error),
-    }
+    mean, worst = (float(error.mean()), float(error.max())) if len(error) else (None, None)
+    return {f"{label} mean": mean, f"{label} worst": worst, f"{label} designs": len(error)}
 
 
 def _closed_form(rung: str, *samples: Columns) -> dict:
@@ -86,7 +69,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
 
 
 def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     found = np.full(len(fine["width"]), np.nan)
     for i, one in enumerate(truth.sections(fine)[:count]):
@@ -101,23 +84,27 @@ def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
 
 def _times(plan: Plan) -> dict[str, dict]:
     """Seconds per element: closed forms among many, element rungs one after the other."""
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     many = section(draw_box(plan.of(1_000, 20_000, 200_000), plan.seed))
     count = many.shape[0]
     few = [many.rows(i) for i in range(plan.of(1, 3, 10))]
     plan.say("times, in turns")
-    batch = {r: lambda r=r: ladder.stiffness(many, r) for r in ladder.CLOSED_FORMS}
-    alone = {("alone", r): lambda r=r: ladder.stiffness(few[0], r) for r in ladder.CLOSED_FORMS}
-    elements = {r: lambda r=r: [stiffness(one, r) for one in few] for r in ladder.FINITE_ELEMENTS}
-    per = dict.fromkeys(batch, count) | dict.fromkeys(elements, len(few))
-    timed = interleaved(batch | alone, plan.of(1, 5, 9)) | interleaved(elements, plan.of(1, 2, 3))
+    batch: dict[Hashable, Callable] = {r: lambda r=r: ladder.stiffness(many, r) for r in ladder.CLOSED_FORMS}
+    alone: dict[Hashable, Callable] = {
+        ("alone", r): lambda r=r: ladder.stiffness(few[0], r) for r in ladder.CLOSED_FORMS
+    }
+    elements: dict[Hashable, Callable] = {
+        r: lambda r=r: [stiffness(one, r) for one in few] for r in ladder.FINITE_ELEMENTS
+    }
+    per = dict.fromkeys(ladder.CLOSED_FORMS, count) | dict.fromkeys(ladder.FINITE_ELEMENTS, len(few))
+    timed = interleaved({**batch, **alone}, plan.of(1, 5, 9)) | interleaved(elements, plan.of(1, 2, 3))
     return {
         r: {
-            "seconds": timed[r].least / n,
+            "seconds": timed[r].seconds / n,
             "median": timed[r].median / n,
             "runs": timed[r].runs,
-            "alone": timed["alone", r].least if ("alone", r) in timed else timed[r].least / n,
+            "alone": timed["alone", r].seconds if ("alone", r) in timed else timed[r].seconds / n,
         }
         for r, n in per.items()
     }
@@ -133,9 +120,8 @@ def findings(rows: list[dict]) -> list[str]:
         f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in "
         f"{slowest:.2f} s (goal {GOAL_MILLION} s).",
         f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by "
-        f"{100 * plane['solid worst']:.0f} % at "
-        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements "
-        "are dominated by a closed form.",
+        f"{100 * plane['solid worst']:.0f} % at {sig(plane['seconds'] / default['seconds'], 2)} times the "
+        "time: for a real sheet plane elements are dominated by a closed form.",
         f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at "
         f"{sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from functools import partial
 
 import numpy as np
 
@@ -13,8 +14,8 @@ from tactcad.mechanics import ladder
 from . import tables
 from .exponent import fit
 from .plan import Plan
-from .process import child, command, last_line, measured
-from .timing import interleaved
+from .process import child, command, cost, last_line, measured
+from .timing import interleaved, of_samples
 
 TITLE = "Scaling with the number of elements"
 QUESTION = "Does any cost grow faster than the array?"
@@ -22,8 +23,7 @@ QUESTION = "Does any cost grow faster than the array?"
 # Why a stage may grow faster than its array; what is not named here is reported as unexplained.
 _PICTURES = (
     "hidden lines: up to 300 shapes exactly, every edge against every face near it; beyond, strip by strip "
-    "on triangles, but "
-    "plates as long as the picture reach into every strip with all their holes"
+    "on triangles, but plates as long as the picture reach into every strip with all their holes"
 )
 EXPLAINED = {"picture, above": _PICTURES, "picture, open": _PICTURES, "all of these, process": "its pictures"}
 NOISE = 0.15  # by which the exponent between two single times of a linear cost may be off
@@ -33,29 +33,16 @@ def measure(plan: Plan) -> dict:
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     rows = _estimates(plan) + _elements(plan) + _batches(plan) + _geometry(plan)
     exponents = _exponents(rows)
-    columns = [
-        ("what", "what", tables.PLAIN),
-        ("elements", "elements", tables.PLAIN),
-        ("seconds", "time", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("each", "time an element", tables.MICRO),
-        ("peak_bytes", "peak memory", tables.MEGA),
-    ]
-    fitted = [
-        ("what", "what", tables.PLAIN),
-        ("from", "from", tables.PLAIN),
-        ("to", "to elements", tables.PLAIN),
-        ("exponent", "exponent", tables.PLAIN),
-        ("low", "95 % from", tables.PLAIN),
-        ("high", "to", tables.PLAIN),
-        ("last", "last two sizes", tables.PLAIN),
-        ("verdict", "verdict", tables.PLAIN),
-        ("why", "why", tables.PLAIN),
-    ]
+    columns = (
+        "what; elements; seconds: time [ms]; median [ms]; each: time an element [us]; "
+        "peak_bytes: peak memory [MB]"
+    )
+    fitted = (
+        "what; from; to: to elements; exponent; low: 95 % from; high: to; last: last two sizes; verdict; why"
+    )
     note = (
         "cost = a n^p by least squares of the logarithms, Student's interval. Fixed costs hide growth at "
-        "small sizes: the last two "
-        "sizes alone stand beside it."
+        "small sizes: the last two sizes alone stand beside it."
     )
     return {
         "tables": {
@@ -65,7 +52,6 @@ def measure(plan: Plan) -> dict:
             ),
         },
         "findings": findings(exponents),
-        "missing": [],
     }
 
 
@@ -74,12 +60,13 @@ def _estimates(plan: Plan) -> list[dict]:
     sizes = plan.of((10, 100), (10, 100, 1000, 10_000), (10, 30, 100, 300, 1000, 3000, 10_000))
     plan.say("estimates by the default rung")
     many = {n: section(draw_box(n, plan.seed)) for n in sizes}
-    timed = interleaved({n: lambda s=s: ladder.evaluate(s) for n, s in many.items()}, plan.of(1, 5, 15))
-    return [_row("estimate, rung solid", n, t.least, t.median) for n, t in timed.items()]
+    actions = {n: partial(ladder.evaluate, s) for n, s in many.items()}
+    timed = interleaved(actions, plan.of(1, 5, 15))
+    return [_row("estimate, rung solid", n, t.seconds, t.median) for n, t in timed.items()]
 
 
 def _elements(plan: Plan) -> list[dict]:
-    from tactcad.fem.plane import solve_plane
+    from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape
 
     sizes = plan.of((1, 2), (3, 10, 30), (10, 30, 100, 300))
@@ -88,7 +75,7 @@ def _elements(plan: Plan) -> list[dict]:
     shapes = [reference_shape(designs.rows(i)) for i in range(max(sizes))]
     actions = {n: lambda n=n: [solve_plane(s, 1.0, 0.33, 1.0) for s in shapes[:n]] for n in sizes}
     timed = interleaved(actions, plan.of(1, 1, 3))
-    return [_row("plane elements, density 3", n, t.least, t.median) for n, t in timed.items()]
+    return [_row("plane elements, density 3", n, t.seconds, t.median) for n, t in timed.items()]
 
 
 def _batches(plan: Plan) -> list[dict]:
@@ -103,52 +90,26 @@ def _batches(plan: Plan) -> list[dict]:
         )
         run = command("estimate", "--batch", str(source), "--out", str(plan.folder / "stiffness.csv"))
         runs = [measured(run) for _ in range(plan.of(1, 2, 5))]
-        seconds = [r.seconds for r in runs]
-        rows.append(
-            _row(
-                "estimate --batch, process",
-                n,
-                min(seconds),
-                float(np.median(seconds)),
-                min(r.peak_bytes for r in runs),
-            )
-        )
+        rows.append(_row("estimate --batch, process", n, **cost(runs)))
     return rows
 
 
 def _geometry(plan: Plan) -> list[dict]:
     rows = []
     for n in plan.of((2,), (10, 20, 40, 100), (10, 30, 100, 300, 1000)):
-        runs = []
-        for turn in range(plan.of(1, 1, 2)):
-            plan.say(f"geometry of {n} elements, run {turn + 1}")
-            runs.append(measured(child("stages", elements=n)))
-        found = [last_line(run)["seconds"] for run in runs]
-        for stage in found[0]:
-            seconds = [f[stage] for f in found]
-            rows.append(_row(stage, n, min(seconds), float(np.median(seconds))))
-        whole = [run.seconds for run in runs]
-        rows.append(
-            _row(
-                "all of these, process",
-                n,
-                min(whole),
-                float(np.median(whole)),
-                min(r.peak_bytes for r in runs),
-            )
-        )
+        plan.say(f"geometry of {n} elements")
+        runs = [measured(child("stages", elements=n)) for _ in range(plan.of(1, 1, 2))]
+        stages = [last_line(run)["seconds"] for run in runs]
+        for stage in stages[0]:
+            timed = of_samples([seconds[stage] for seconds in stages])
+            rows.append(_row(stage, n, timed.seconds, timed.median))
+        rows.append(_row("all of these, process", n, **cost(runs)))
     return rows
 
 
-def _row(what: str, n: int, least: float, median: float, peak: int | None = None) -> dict:
-    return {
-        "what": what,
-        "elements": n,
-        "seconds": least,
-        "median": median,
-        "each": least / n,
-        "peak_bytes": peak,
-    }
+def _row(what: str, n: int, seconds: float, median: float, peak_bytes: float | None = None) -> dict:
+    row = {"what": what, "elements": n, "seconds": seconds, "median": median, "each": seconds / n}
+    return row | {"peak_bytes": peak_bytes}
 
 
 def _exponents(rows: list[dict]) -> list[dict]:

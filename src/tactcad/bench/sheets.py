@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import shutil
+from typing import Any
 
 from . import arrays, tables
 from .plan import Plan
-from .process import command, measured
-from .timing import of_samples
+from .process import Run, command, cost, measured
 
 TITLE = "Drawing sheets"
 QUESTION = "What do dimensioned sheets of every part add to an export?"
@@ -24,7 +24,7 @@ def measure(plan: Plan) -> dict:
     )
     if plan.mode == "smoke":
         kinds = {"sheets, all cores": kinds["sheets, all cores"]}
-    runs: dict[str, list] = {kind: [] for kind in (*kinds, "sheets, unchanged")}
+    runs: dict[str, list[Run]] = {kind: [] for kind in (*kinds, "sheets, unchanged")}
     for turn in range(plan.of(1, 1, 3)):
         for kind, options in kinds.items():
             plan.say(f"{kind}, run {turn + 1}")
@@ -35,32 +35,18 @@ def measure(plan: Plan) -> dict:
             if kind == "sheets, all cores":
                 runs["sheets, unchanged"].append(measured(export, cache))
                 count = len(list((folder / "out" / "drawings").glob("*.pdf")))
-    rows = []
     without = min((run.seconds for run in runs.get("without sheets", ())), default=None)
+    rows = []
     for kind, made in runs.items():
-        timed = of_samples([run.seconds for run in made])
-        row = {
-            "what": kind,
-            "seconds": timed.least,
-            "median": timed.median,
-            "peak_bytes": min(run.peak_bytes for run in made),
-        }
+        row: dict[str, Any] = {"what": kind} | cost(made)
         drawn = kind != "without sheets"
-        rows.append(
-            row
-            | {
-                "sheets": count if drawn else 0,
-                "added": timed.least - without if kind in kinds and drawn and without else None,
-            }
-        )
-    columns = [
-        ("what", "export", tables.PLAIN),
-        ("sheets", "sheets", tables.PLAIN),
-        ("seconds", "time", tables.SECONDS),
-        ("median", "median", tables.SECONDS),
-        ("added", "over without", tables.SECONDS),
-        ("peak_bytes", "peak memory", tables.MEGA),
-    ]
+        row["sheets"] = count if drawn else 0
+        row["added"] = row["seconds"] - without if kind in kinds and drawn and without else None
+        rows.append(row)
+    columns = (
+        "what: export; sheets; seconds: time [s]; median [s]; added: over without [s]; "
+        "peak_bytes: peak memory [MB]"
+    )
     note = (
         f"`tactcad export {' '.join(scenes)}` of the published design, empty cache but for the unchanged "
         "one; one core keeps the whole export on it."

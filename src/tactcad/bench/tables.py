@@ -9,22 +9,31 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
 
 from tactcad.paper.report import sig
 
-PER_CENT = ("%", 100.0)
-SECONDS, MILLI, MICRO = ("s", 1.0), ("ms", 1e3), ("us", 1e6)
-KILO, MEGA = ("kB", 1e-3), ("MB", 1e-6)
-PLAIN = ("", 1.0)
+# How a value is shown by its unit: the value is in s, mm, rad, bytes, or a ratio.
+SCALES = {"": 1.0, "s": 1.0, "ms": 1e3, "us": 1e6, "kB": 1e-3, "MB": 1e-6, "%": 100.0, "ppm": 1e6}
+SCALES |= {"mm": 1.0, "rad": 1.0}
 
 
-def table(
-    title: str, columns: Sequence[tuple[str, str, tuple[str, float]]], rows: list[dict], note: str = ""
-) -> dict:
-    """columns: (key, heading, (unit, scale))."""
-    described = [{"key": k, "heading": h, "unit": u, "scale": s} for k, h, (u, s) in columns]
+def table(title: str, columns: str, rows: list[dict], note: str = "") -> dict:
+    """A table as data.
+
+    Parameters
+    ----------
+    columns : "key", "key [unit]", "key: heading" or "key: heading [unit]" of each, a semicolon between two;
+        without heading the key stands above; units are those of SCALES.
+    rows : a value by key for each row.
+    """
+    described = [_column(text.strip()) for text in columns.split(";")]
     return {"title": title, "columns": described, "rows": rows, "note": note}
+
+
+def _column(text: str) -> dict:
+    name, _, unit = text.removesuffix("]").partition(" [")
+    key, _, heading = name.partition(": ")
+    return {"key": key, "heading": heading or key, "unit": unit, "scale": SCALES[unit]}
 
 
 def cell(column: dict, row: dict) -> str:

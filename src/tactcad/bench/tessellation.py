@@ -21,8 +21,8 @@ STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
 
 def measure(plan: Plan) -> dict:
     from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import volume
+    from tactcad.solids.triangles import triangles
 
     scene = make_scene(arrays.published(), "array")
     plan.say(f"{len(scene.parts)} parts built")
@@ -51,33 +51,21 @@ def measure(plan: Plan) -> dict:
     actions = {pair: (lambda pair=pair: [triangles(shape, *pair) for _, shape in shapes]) for pair in pairs}
     timed = interleaved(actions, plan.of(1, 2, 3))
     for row, pair in zip(rows, pairs):
-        row |= {"seconds": timed[pair].least, "median": timed[pair].median, "runs": timed[pair].runs}
-        row["time ratio"] = row["seconds"] / timed[LINEAR, 0.2].least
+        row |= vars(timed[pair])
+        row["time ratio"] = row["seconds"] / timed[LINEAR, 0.2].seconds
     front = efficient([(row["seconds"], row["worst"]) for row in rows])
     for i, row in enumerate(rows):
         row["front"] = i in front
-    columns = [
-        ("linear", "linear", ("mm", 1.0)),
-        ("angular", "angular", ("rad", 1.0)),
-        ("triangles", "triangles", tables.PLAIN),
-        ("volume error", "volume error", ("ppm", 1e6)),
-        ("worst", "worst part", ("ppm", 1e6)),
-        ("stl_bytes", "STL", tables.KILO),
-        ("mesh_bytes", "in memory", tables.KILO),
-        ("seconds", "time", tables.MILLI),
-        ("median", "median", tables.MILLI),
-        ("time ratio", "over 0.2 rad", tables.PLAIN),
-        ("front", "on the front", tables.PLAIN),
-    ]
+    columns = (
+        "linear [mm]; angular [rad]; triangles; volume error [ppm]; worst: worst part [ppm]; "
+        "stl_bytes: STL [kB]; mesh_bytes: in memory [kB]; seconds: time [ms]; median [ms]; "
+        "time ratio: over 0.2 rad; front: on the front"
+    )
     note = (
         f"All {len(shapes)} parts of the array, each once; volume error against the closed form. STL: "
         "binary, 84 + 50 n bytes a part."
     )
-    return {
-        "tables": {"tessellation": tables.table(TITLE, columns, rows, note)},
-        "findings": findings(rows),
-        "missing": [],
-    }
+    return {"tables": {"tessellation": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
 def findings(rows: list[dict]) -> list[str]:
@@ -85,9 +73,8 @@ def findings(rows: list[dict]) -> list[str]:
     coarse, fine = main[0], main[-1]
     lines = [
         f"From {coarse['angular']:g} to {fine['angular']:g} rad the volume error falls from "
-        f"{1e6 * coarse['volume error']:.0f} to "
-        f"{1e6 * fine['volume error']:.1f} ppm, for {fine['triangles'] / coarse['triangles']:.0f} times the "
-        "triangles and "
+        f"{1e6 * coarse['volume error']:.0f} to {1e6 * fine['volume error']:.1f} ppm, for "
+        f"{fine['triangles'] / coarse['triangles']:.0f} times the triangles and "
         f"{fine['seconds'] / coarse['seconds']:.1f} times the time."
     ]
     same = [row for row in rows if row["angular"] == 0.2]

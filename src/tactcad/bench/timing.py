@@ -18,7 +18,7 @@ class Timed:
     """Seconds of one action: shortest and median of `runs` samples. The shortest counts: disturbance only
     adds."""
 
-    least: float
+    seconds: float
     median: float
     runs: int
 
@@ -29,12 +29,13 @@ def interleaved(actions: Mapping[K, Callable[[], object]], repeats: int) -> dict
     loops = {
         name: max(1, ceil(LEAST_SAMPLE / max(_seconds(action, 1), 1e-9))) for name, action in actions.items()
     }
-    order, samples = list(actions), {name: [] for name in actions}
+    order = list(actions)
+    samples: dict[K, list[float]] = {name: [] for name in actions}
     for turn in range(repeats):
         first = turn % len(order)
         for name in order[first:] + order[:first]:
             samples[name].append(_seconds(actions[name], loops[name]) / loops[name])
-    return {name: Timed(min(s), median(s), repeats) for name, s in samples.items()}
+    return {name: of_samples(s) for name, s in samples.items()}
 
 
 def of_samples(seconds: list[float]) -> Timed:

@@ -1,4 +1,5 @@
-"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their report."""
+"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their
+report."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ import argparse
 import json
 import os
 import sys
+from collections.abc import Callable
 from datetime import UTC, date, datetime
 from pathlib import Path
 
@@ -72,12 +74,8 @@ def run(args: argparse.Namespace) -> int:
 
     for option, least in LEAST.items():
         if getattr(args, option) < least:
-            raise InputError(
-                f"--{option.replace('_', '-')}",
-                "too few",
-                value=getattr(args, option),
-                legal=f"at least {least}",
-            )
+            name = f"--{option.replace('_', '-')}"
+            raise InputError(name, "too few", value=getattr(args, option), legal=f"at least {least}")
     out = Path(args.out)
     make_folder(out)
     results = [out / name for name in ("ladder.json", "accuracy.json")]
@@ -113,24 +111,28 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
     from tactcad.fit.accuracy_samples import compute_range, draw_range, draw_refined, meshes_of
 
     plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
+
+    def said_of(kind: str) -> Callable[[str], None]:
+        return lambda line: print(f"{kind}: {line}", file=sys.stderr, flush=True)
+
     for kind, (count, solids) in plan.items():
-        report = lambda line, kind=kind: print(f"{kind}: {line}", file=sys.stderr, flush=True)  # noqa: E731
+        report = said_of(kind)
         inside, edges = fit_samples.designs(kind, count)
         tables = [
             fit_samples.compute(inside, solids, report),
             fit_samples.compute(edges, solids // 5, report),
         ]
         fit_samples.write(fit_samples.joined(tables), out / FILES[kind])
-    report = lambda line: print(f"range: {line}", file=sys.stderr, flush=True)  # noqa: E731
-    whole = compute_range(draw_range(args.range), report, meshes_of)
-    refined = compute_range(draw_refined(), report, lambda i: (2, 3, 4))
+    whole = compute_range(draw_range(args.range), said_of("range"), meshes_of)
+    refined = compute_range(draw_refined(), said_of("range"), lambda i: (2, 3, 4))
     fit_samples.write(fit_samples.joined([whole, refined]), out / RANGE_FILE)
     # read back: the fit sees the digits that the files hold
     return {kind: fit_samples.load(out / name) for kind, name in (FILES | {"range": RANGE_FILE}).items()}
 
 
 def _today() -> date:
-    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no time."""
+    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no
+    time."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         return datetime.fromtimestamp(as_whole(epoch), UTC).date() if epoch else date.today()

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .mesh import PlaneMesh, merged
-from .plane import parabola
+from .mapped_mesh import PlaneMesh, merged
+from .plane_elements import parabola
 from .space import AcrossSpace, line_load
 
 Array = NDArray[np.float64]

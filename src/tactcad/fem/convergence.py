@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .plane import PlaneSolution, solve_plane
+from .plane_elements import PlaneSolution, solve_plane
 from .shape import ElementShape
-from .solid import SolidSolution, solve_solid
+from .solid_elements import SolidSolution, solve_solid
 
 ORDER = 4  # of the elements that fem-plane is solved with
 PLANE_DENSITIES = (1, 2)
-# Rate of the energy on these meshes, observed: 3.3 to 4.4, held back by the clamp's corners and the fillets' ends
-# where the faces' curvature jumps (tests/fem).
+# Rate of the energy on these meshes, observed: 3.3 to 4.4, held back by the clamp's corners and the fillets'
+# ends where the faces' curvature jumps (tests/fem).
 RATE = 4.0
 SOLID_MESH = 2  # of fem-solid, where none is asked for
 ACROSS = 2  # order of the elements over the width beside the finest in the plane
-# By how much elements of twice the order err less in the solid's share between plane stress and plane strain: observed
-# 37 or more over the range's corners (tests/fem).
+# By how much elements of twice the order err less in the solid's share between plane stress and plane strain:
+# observed 37 or more over the range's corners (tests/fem).
 GAIN = 16.0
 NO_POISSON = 1e-9  # relative: plane stress and plane strain are one problem, and so is the solid
 
@@ -32,8 +32,8 @@ class Converged:
     """Compliance (mm/N), its estimated relative error, and the solutions that it is made of.
 
     plane     plane stress, on the finest mesh
-    solids    of a solid: the finest in the plane, then on the plane's coarsest mesh with finer and with the finest's
-              elements across
+    solids    of a solid: the finest in the plane, then on the plane's coarsest mesh with finer and with the
+              finest's elements across
     """
 
     compliance: float
@@ -66,9 +66,9 @@ def converged_solid(
 
     On one mesh of the plane the solid stands between plane stress and plane strain, at the share
     chi = (C_stress - C_solid)/(C_stress - C_strain), which converges faster than the compliances: the three
-    problems miss the fillets by nearly the same share. Three steps: chi by the finest elements in the plane; what elements
-    of a higher order across the width add to it, found with quadratic ones in the plane, where it is cheap; and the
-    limits of plane stress and plane strain between which it stands.
+    problems miss the fillets by nearly the same share. Three steps: chi by the finest elements in the plane;
+    what elements of a higher order across the width add to it, found with quadratic ones in the plane, where
+    it is cheap; and the limits of plane stress and plane strain between which it stands.
     """
     stress, strain = (converged_plane(shape, E, nu, width, plane_strain=p) for p in (False, True))
 
@@ -83,6 +83,7 @@ def converged_solid(
 
 
 def _share(solid: SolidSolution) -> float:
-    """Where the solid stands between plane stress (0) and plane strain (1) by the same elements of the plane."""
+    """Where the solid stands between plane stress (0) and plane strain (1) by the same elements of the
+    plane."""
     stress, strain = (solid.flat(plane_strain).compliance for plane_strain in (False, True))
     return (stress - solid.compliance) / (stress - strain)

@@ -13,6 +13,7 @@ from typing import Literal
 from tactcad.contour import Arc, Contour, Corner, Line, rounded_polygon
 from tactcad.contour.cut import ON_LINE_MM, between, crossings, cut
 from tactcad.design.messages import CheckFailure
+from tactcad.design.plain_numbers import filling_radius
 from tactcad.mechanics.section import HingeSection
 
 ANGLE = 1e-7  # rad: tangents this near to an axis are along it
@@ -113,7 +114,8 @@ def _renamed(corners: list[Corner]) -> list[Corner]:
 
 def reference_shape(s: HingeSection) -> ElementShape:
     """One reference element (scalars): arm cut off at the load line, hinge centre at x = 0, arm to +x."""
-    t, half, r = float(s.hinge_thickness), float(s.hinge_length) / 2.0, float(s.fillet_radius)
+    t, half = float(s.hinge_thickness), float(s.hinge_length) / 2.0
+    r = filling_radius(float(s.fillet_radius), 2.0 * half)
     h, Hb = float(s.arm_height), float(s.body_height)
     if bool(s.two_sided):
         low, high = -t / 2.0, t / 2.0

@@ -1,7 +1,8 @@
 """Lagrange elements of any order on a mapped mesh of the plane, and swept over half the width.
 
-A swept mesh's functions are products a(x, z) f(y), so that every integral of two of them is a product of one over the
-plane and one over the width: the solid's matrix is put together from six of the plane's and three of the width's.
+A swept mesh's functions are products a(x, z) f(y), so that every integral of two of them is a product of one
+over the plane and one over the width: the solid's matrix is put together from six of the plane's and three of
+the width's.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import bmat, coo_matrix, csc_matrix, csr_matrix, kron
 
-from .mesh import PlaneMesh, layers, merged
+from .mapped_mesh import PlaneMesh, layers, merged
 
 Array = NDArray[np.float64]
 
@@ -39,7 +40,8 @@ def gauss(count: int) -> tuple[tuple[float, ...], Array]:
 
 @dataclass(frozen=True)
 class PlaneSpace:
-    """`nodes` (2, nodes): x and z in mm. `elements` (n, order + 1, order + 1): their nodes by local (x, z) index."""
+    """`nodes` (2, nodes): x and z in mm. `elements` (n, order + 1, order + 1): their nodes by local (x, z)
+    index."""
 
     nodes: Array
     elements: NDArray[np.int64]
@@ -79,7 +81,8 @@ class PlaneSpace:
         return _joined([[q["xx"], q["xz"]], [q["xz"].T, q["zz"]]], lam, mu)
 
     def swept_stiffness(self, across: AcrossSpace, lam: float, mu: float) -> csc_matrix:
-        """Of the solid; unknown 3 (n m + k) + i is component i (x, z, y) of node n at the k-th of m places across."""
+        """Of the solid; unknown 3 (n m + k) + i is component i (x, z, y) of node n at the k-th of m places
+        across."""
         q = {name: csr_matrix(matrix) for name, matrix in self._integrals.items()}
         mass, stretch, slope = (csr_matrix(m) for m in across.integrals)
         xy, zy = kron(q["x"], slope, "csr"), kron(q["z"], slope, "csr")

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data
@@ -28,8 +28,8 @@ REFINED_EDGES = 12
 REFINED_LENGTH = 5.0  # hinge thicknesses
 THICKNESS = 0.25  # mm; all else goes with it, and stiffness is free of size
 LONGEST_BODY = 141.0  # thicknesses: of the fit's samples; a longer one is a beam and only costs elements
-# Most elements in the plane, on its coarsest mesh, for which meshes 3 and 4 are still affordable. Where there are more the
-# hinge is long and thin, and mesh 2 errs less.
+# Most elements in the plane, on its coarsest mesh, for which meshes 3 and 4 are still affordable. Where there
+# are more the hinge is long and thin, and mesh 2 errs less.
 MOST_CELLS = {2: 1000, 3: 80, 4: 45}
 
 
@@ -38,7 +38,7 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
     solid."""
     rng = np.random.default_rng(seed)
     groups = ladder_data()["range"]["groups"]
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         g = {k: math.exp(rng.uniform(math.log(low), math.log(high))) for k, (low, high) in groups.items()}
         row = design(g, full_round=rng.random() < FULL_ROUND_SHARE) | {"two_sided": float(len(rows) % 2)}

@@ -15,6 +15,7 @@ from tactcad.mechanics import accuracy, ladder, validity
 from tactcad.mechanics.accuracy import CANDIDATES, Candidate
 from tactcad.mechanics.plane import compliance_by
 from tactcad.mechanics.register import REGISTER
+from tactcad.mechanics.section import HingeSection
 
 from .accuracy_samples import SECONDS, SEED
 from .fit_samples import Columns, joined, section
@@ -57,8 +58,7 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
         "margin": {"usual": MARGIN, f"of fewer than {FEW} designs": MARGIN_OF_FEW},
         "date": today.isoformat(),
         "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}, numpy "
-        f"{np.__version__}, "
-        f"{os.cpu_count()} cores, one used",
+        f"{np.__version__}, {os.cpu_count()} cores, one used",
         "samples": {name: len(c["poisson"]) for name, c in samples.items()} | {"seed of range": SEED},
         "seconds a call": {c.name: clock.get(c.name, (0.0, 0.0))[0] for c in CANDIDATES},
         "zones": zones,
@@ -105,10 +105,10 @@ def closed_form_seconds(repeats: int = 7) -> dict[str, tuple[float, float]]:
     for rung in ladder.CLOSED_FORMS:
         call, table = (min(_seconds(rung, s) for _ in range(repeats)) for s in (one, many))
         found[rung] = (call, table / TIMED)
-    return {rung: tuple(float(f"{x:.2g}") for x in pair) for rung, pair in found.items()}
+    return {rung: (float(f"{alone:.2g}"), float(f"{each:.2g}")) for rung, (alone, each) in found.items()}
 
 
-def _seconds(rung: str, s) -> float:
+def _seconds(rung: str, s: HingeSection) -> float:
     start = time.perf_counter()
     ladder.stiffness(s, rung)
     return time.perf_counter() - start

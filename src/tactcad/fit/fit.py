@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Callable
 from datetime import date
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,9 +152,15 @@ def _fit_factor(rows: Columns, factor: Callable, column: str, start: Constants) 
     return _search(lambda k: factor(s, k) / rows[column] - 1.0, start, _weights(rows), worst_case=False)
 
 
+def _mean_root(s: HingeSection, root: Constants) -> Array:
+    """Mean length (in thicknesses) that the leaf's two roots add."""
+    to_arm, to_body = plane.root_lengths(s, root)
+    return (to_arm + to_body) / 2.0
+
+
 def _fit_grid(rows: Columns, root: Constants, side: str) -> Constants:
     cases = _grid_cases(rows, side)
-    lengths = {grid: sum(plane.root_lengths(section(r), root)) / 2.0 for grid, r in cases.items()}
+    lengths = {grid: _mean_root(section(r), root) for grid, r in cases.items()}
     form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
 
     def error(k: Constants) -> Array:
@@ -241,7 +248,7 @@ def _report(data: dict, samples: Columns, held_out: Columns, today: date) -> dic
     }
 
 
-def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]:
+def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float | None]]:
     """rms, worst and number of each quantity's relative error over the rows."""
     s, root = section(rows), data["root"][side]
     flat, K2 = plane.compliance(s, root), rows["plane_stiffness"] * rows["width"]
@@ -267,12 +274,7 @@ def _errors(data: dict, rows: Columns, side: str) -> dict[str, dict[str, float]]
     found["mean strain under a grid"] = np.concatenate(
         [np.empty(0)]
         + [
-            form(
-                section(r),
-                grid * r["hinge_length"],
-                data["grid"][side],
-                sum(plane.root_lengths(section(r), root)) / 2.0,
-            )
+            form(section(r), grid * r["hinge_length"], data["grid"][side], _mean_root(section(r), root))
             / r[f"grid_{grid:g}"]
             - 1.0
             for grid, r in _grid_cases(rows, side).items()
@@ -301,7 +303,7 @@ def _rows(columns: Columns, mask: NDArray[np.bool_]) -> Columns:
     return {k: v[mask] for k, v in columns.items()}
 
 
-def _rounded(data):
+def _rounded(data: Any) -> Any:
     """Constants to six digits: far below what the samples determine."""
     return {k: _rounded(v) for k, v in data.items()} if isinstance(data, dict) else _digits(data, 6)
 

@@ -1,4 +1,5 @@
-"""Designs over the whole range of the closed forms, and the strains and stresses that elements find at mid-width."""
+"""Designs over the whole range of the closed forms, and the strains and stresses that elements find at
+mid-width."""
 
 from __future__ import annotations
 
@@ -8,10 +9,10 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import ACROSS, ORDER
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.face_strain import Readings, readings
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid import solve_solid
-from tactcad.fem.surface import Readings, readings
+from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import HingeSection
@@ -21,7 +22,8 @@ from .fit_samples import FULL_ROUND_SHARE, Columns, as_written, draw_edges, join
 
 SEED = 20261122
 END_SHARE = 0.5  # of a corner design's groups stand at an end of their range
-# Grid lengths that are read, in lengths of the slot (one-sided) or of its flat part and one fillet (two-sided).
+# Grid lengths that are read, in lengths of the slot (one-sided) or of its flat part and one fillet (two-
+# sided).
 GRIDS = (0.1, 0.4, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0)
 PLANE_DENSITY = 2
 SOLID_ORDER = 3  # an order less than fem-solid's: more designs in the same time
@@ -34,8 +36,9 @@ COLUMNS = tuple(
 
 
 def draw(count: int, seed: int = SEED) -> Columns:
-    """`count` designs (mm), half of them two-sided: a quarter on the box's edges, a quarter inside the range, and half with
-    groups at the ends of their ranges; those of a kind in turn, so that any first part of them is like the whole."""
+    """`count` designs (mm), half of them two-sided: a quarter on the box's edges, a quarter inside the range,
+    and half with groups at the ends of their ranges; those of a kind in turn, so that any first part of them
+    is like the whole."""
     quarter = count // 4
     parts = [
         draw_edges(quarter, seed),
@@ -92,7 +95,8 @@ def _named(model: str, found: Readings) -> dict[str, float]:
 
 
 def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Columns:
-    """Elements' results of every design beside its parameters; solids for the first `solids` of them, else NaN."""
+    """Elements' results of every design beside its parameters; solids for the first `solids` of them, else
+    NaN."""
     s, count = section(columns), len(columns["two_sided"])
     found = {name: np.full(count, math.nan) for name in COLUMNS}
     for i in range(count):

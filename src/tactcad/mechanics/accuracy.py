@@ -30,8 +30,8 @@ MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is wh
 
 @dataclass(frozen=True)
 class Candidate:
-    """A rung as it can be chosen; `mesh` is half the order of fem-solid's elements in the plane, None for rungs
-    without that choice."""
+    """A rung as it can be chosen; `mesh` is half the order of fem-solid's elements in the plane, None for
+    rungs without that choice."""
 
     rung: str
     mesh: int | None = None
@@ -41,8 +41,8 @@ class Candidate:
         return self.rung if self.mesh is None else f"{self.rung}, mesh {self.mesh}"
 
 
-# By how much work an element is: operations of the closed forms, unknowns of the finite elements. What was measured on a
-# clock would put the finer of two meshes first whenever one run was disturbed.
+# By how much work an element is: operations of the closed forms, unknowns of the finite elements. What was
+# measured on a clock would put the finer of two meshes first whenever one run was disturbed.
 CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in rung.meshes)
 
 

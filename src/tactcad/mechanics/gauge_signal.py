@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import ladder, strain
+from .derivative import elasticity
 from .section import Array, HingeSection
 
 
@@ -64,10 +65,7 @@ def composite(s: HingeSection, gauge: Gauge) -> Composite:
 
 def leaf_share(s: HingeSection, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """How much of the element's compliance goes with the leaf's bending stiffness: dlnK/dln t / 3."""
-    step = 1e-4
-    up = ladder.stiffness(s.with_(hinge_thickness=s.hinge_thickness * (1 + step)), rung)
-    down = ladder.stiffness(s.with_(hinge_thickness=s.hinge_thickness * (1 - step)), rung)
-    return np.log(up / down) / (2 * step) / 3
+    return elasticity(s, "hinge_thickness", rung) / 3
 
 
 def stiffness(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFAULT_RUNG) -> Array:

@@ -7,6 +7,7 @@ profile is (radius, z) and turns about z. All lengths in mm.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi, radians, tan
 from typing import Literal
@@ -15,6 +16,12 @@ from tactcad.contour import Contour
 
 Vector = tuple[float, float, float]
 Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought"]
+
+
+def vector(values: Iterable[float]) -> Vector:
+    """Three numbers as a Vector."""
+    x, y, z = values
+    return (x, y, z)
 
 
 @dataclass(frozen=True)
@@ -146,7 +153,7 @@ class Pocket:
         mx, my = (sum(sign * c.area * c.centroid[i] for c, sign in sections) * self.depth for i in (0, 1))
         y_axis = _cross(self.axis, self.x_axis)
         base = _along(self.at, self.axis, self.volume, self.volume * self.depth / 2)
-        return tuple(b + mx * u + my * v for b, u, v in zip(base, self.x_axis, y_axis))
+        return vector(b + mx * u + my * v for b, u, v in zip(base, self.x_axis, y_axis))
 
 
 Feature = Hole | Pocket
@@ -154,7 +161,7 @@ Feature = Hole | Pocket
 
 def _along(at: Vector, axis: Vector, volume: float, depth_moment: float) -> Vector:
     """Moment of a body on the axis from `at`: volume x at + depth_moment x axis."""
-    return tuple(volume * p + depth_moment * a for p, a in zip(at, axis))
+    return vector(volume * p + depth_moment * a for p, a in zip(at, axis))
 
 
 def _cross(a: Vector, b: Vector) -> Vector:
@@ -234,15 +241,24 @@ class Part:
     spares: int = 0
 
     @property
+    def extrusion(self) -> Extrusion:
+        """The body of a part that is cut from a sheet, a plate or a bar. Raises TypeError for any other."""
+        if not isinstance(self.body, Extrusion):
+            raise TypeError(f"{self.part_no} is no extrusion")
+        return self.body
+
+    @property
     def volume(self) -> float:
         """Closed-form volume, mm3: the stock less its features, which may not overlap."""
         return self.body.volume - sum(f.volume for f in self.features)
 
     @property
     def centre(self) -> Vector:
-        """Centre of mass in the part's own frame, mm, in closed form. A model file has none."""
+        """Centre of mass in the part's own frame, mm, in closed form. A model file has none: TypeError."""
+        if isinstance(self.body, ModelFile):
+            raise TypeError(f"{self.part_no} is read from a model file, which has no closed form")
         taken = [f.moment for f in self.features]
-        return tuple((m - sum(t[i] for t in taken)) / self.volume for i, m in enumerate(self.body.moment))
+        return vector((m - sum(t[i] for t in taken)) / self.volume for i, m in enumerate(self.body.moment))
 
     @property
     def mass(self) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from tactcad.design.plain_numbers import filling_radius
 from tactcad.design.tree import Design
 
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
@@ -33,12 +34,18 @@ CARRIER_EDGE = 1.0
 
 @dataclass(frozen=True)
 class HingeShape:
-    """One element's hinge and arm (mm): thickness t, slot length l, fillet radius r, arm height h."""
+    """One element's hinge and arm (mm): thickness t, slot length l, fillet radius r, arm height h.
+
+    A radius that is half the slot to nine digits is made just that.
+    """
 
     t: float
     l: float
     r: float
     h: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "r", filling_radius(self.r, self.l))
 
 
 @dataclass(frozen=True)

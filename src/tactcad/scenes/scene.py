@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 from tactcad.parts.consumables import Supply
-from tactcad.parts.description import Part, Vector
+from tactcad.parts.description import Part, Vector, vector
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
+
+
+def rotation(rows: Iterable[Iterable[float]]) -> Rotation:
+    """Three rows of three numbers as a Rotation."""
+    x, y, z = (vector(map(float, row)) for row in rows)
+    return (x, y, z)
+
 
 UPRIGHT: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 ALONG_Y: Rotation = ((-1, 0, 0), (0, 0, 1), (0, 1, 0))  # local z runs along +y
@@ -56,9 +64,9 @@ class Motion:
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
-    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from what
-    stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before. `unit` names the
-    sub-assembly of the scene that the step belongs to; none where the scene is one.
+    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from
+    what stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before.
+    `unit` names the sub-assembly of the scene that the step belongs to; none where the scene is one.
     """
 
     title: str
@@ -98,8 +106,8 @@ class Scene:
     """Placements with designators that are unique, meant contacts, and what has no solid.
 
     `cover` names what is taken off to look inside. `groups` are what moves as one, each with its
-    designators; what is in none stands still. `steps` place every designator once. `ready` are the scenes, in their own
-    places, that were put together before and whose parts stand in this one.
+    designators; what is in none stands still. `steps` place every designator once. `ready` are the scenes, in
+    their own places, that were put together before and whose parts stand in this one.
     """
 
     name: str
@@ -119,7 +127,7 @@ class Scene:
         stepped = [d for step in self.steps for d in step.designators]
         if self.steps and sorted(stepped) != sorted(names):
             raise ValueError(f"scene {self.name}: the assembly's steps do not place every part once")
-        known = {}
+        known: dict[str, Part] = {}
         for p in self.placements:
             if known.setdefault(p.part.part_no, p.part) != p.part:
                 raise ValueError(f"scene {self.name}: two parts share the number {p.part.part_no}")

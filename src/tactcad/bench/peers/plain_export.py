@@ -1,8 +1,8 @@
 """The same kinds of files by a plain script, without tactcad: what an export has to measure itself against.
 
-Every distinct shape goes through the kernel once; every file is written once and read back once: STEP a part and of
-the assembly (shared prototypes in one document), DXF a sheet part, hidden-line SVG, bill of materials, manifest.
-No cache, no lock, no repeatable bytes; what is read back is compared by count and volume only.
+Every distinct shape goes through the kernel once; every file is written once and read back once: STEP a part
+and of the assembly (shared prototypes in one document), DXF a sheet part, hidden-line SVG, bill of materials,
+manifest. No cache, no lock, no repeatable bytes; what is read back is compared by count and volume only.
 
 usage: plain_export.py NUMBER_OF_ELEMENTS FOLDER
 """
@@ -15,6 +15,7 @@ import json
 import math
 import sys
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -26,11 +27,14 @@ from build123d import (
     Cylinder,
     ExportDXF,
     ExportSVG,
+    Face,
     Location,
+    Part,
     Plane,
     Polyline,
     Pos,
     RegularPolygon,
+    Shape,
     Solid,
     Unit,
     Vector,
@@ -63,10 +67,11 @@ COVER = ("CA", "ST", "HS", "SS")  # taken off in the picture "open"
 
 EXACT_UP_TO = 64  # solids in a picture; above, the same triangles that tactcad takes
 
+Point = tuple[float, float, float]
 Placed = tuple[str, str, Location]  # reference designator, part, place
 
 
-def element_profile(arm: float):
+def element_profile(arm: float) -> Face:
     """Outline of an element in its plane, holes included (mm)."""
     body, tip_arm = 1 + arm + 0.44, 1 + arm - 0.44
     land = 3 - (0.13 + 0.03 * (arm - 4))
@@ -94,7 +99,7 @@ def element_profile(arm: float):
     return fillet(corners, 0.3) - mounting_holes()
 
 
-def spacer_profile():
+def spacer_profile() -> Face:
     points = [(CLAMP, 0.9), (REAR, 0.9), (REAR, 7.9), (CLAMP, 7.9)]
     return make_face(Polyline(*points, close=True)) - mounting_holes()
 
@@ -103,7 +108,7 @@ def mounting_holes() -> list:
     return [Pos(x, HOLE_Z) * Circle(1.7) for x in SCREW_X] + [Pos(DOWEL_X, HOLE_Z) * Circle(1.5075)]
 
 
-def end_plate(head: bool):
+def end_plate(head: bool) -> Part:
     bores = [Pos(s * x, -5.8, 4) * Cylinder(1.7 if head else 1.25, 8) for x in SCREW_X for s in (1, -1)]
     bores += [Pos(s * DOWEL_X, -5.8, 4) * Cylinder(1.5025, 8) for s in (1, -1)]
     if head:
@@ -111,27 +116,29 @@ def end_plate(head: bool):
     return Pos(0, 0, 4) * Box(60, 21, 8) - bores
 
 
-def carrier(stack: float, tapped: list[tuple[float, float]], clear: list[tuple[float, float]]):
+def carrier(
+    stack: float, tapped: Sequence[tuple[float, float]], clear: Sequence[tuple[float, float]]
+) -> Part:
     bores = [Pos(x, y, 3) * Cylinder(1.25, 6) for x, y in tapped] + [
         Pos(x, y, 3) * Cylinder(1.7, 6) for x, y in clear
     ]
     return Pos(0, 0, 3) * Box(64, stack + 16, 6) - bores
 
 
-def cap_screw(length: float):
+def cap_screw(length: float) -> Part:
     head = Pos(0, 0, -1.5) * Cylinder(2.75, 3) - Pos(0, 0, -3) * extrude(RegularPolygon(1.443, 6), 1.3)
     return head + Pos(0, 0, length / 2) * Cylinder(1.5, length)
 
 
-def set_screw(length: float):
+def set_screw(length: float) -> Part:
     return Pos(0, 0, length / 2) * Cylinder(1.5, length) - extrude(RegularPolygon(0.866, 6), 2)
 
 
-def rod(diameter: float, length: float):
+def rod(diameter: float, length: float) -> Part:
     return Pos(0, 0, length / 2) * Cylinder(diameter / 2, length)
 
 
-def scene(elements: int) -> tuple[dict[str, Solid], dict[str, object], list[Placed]]:
+def scene(elements: int) -> tuple[dict[str, Solid], dict[str, Face], list[Placed]]:
     """Distinct solids and sheet profiles by part number, and the placements."""
     row = elements // 2
     stack = 4 * row + 1
@@ -159,7 +166,7 @@ def scene(elements: int) -> tuple[dict[str, Solid], dict[str, object], list[Plac
     places: list[Placed] = []
 
     def place(
-        designator: str, part: str, at: tuple[float, float, float], z_dir=(0, 0, 1), x_dir=(1, 0, 0)
+        designator: str, part: str, at: Point, z_dir: Point = (0, 0, 1), x_dir: Point = (1, 0, 0)
     ) -> None:
         places.append((designator, part, Plane(at, x_dir, z_dir).location))
 
@@ -226,7 +233,7 @@ def named(label: TDF_Label, name: str) -> TDF_Label:
     return label
 
 
-def write_dxf(folder: Path, name: str, profile) -> Path:
+def write_dxf(folder: Path, name: str, profile: Face) -> Path:
     path = folder / f"{name}.dxf"
     drawing, edges = ExportDXF(unit=Unit.MM), profile.edges()
     drawing.add_shape(edges)
@@ -235,7 +242,7 @@ def write_dxf(folder: Path, name: str, profile) -> Path:
     return path
 
 
-def write_picture(folder: Path, name: str, shape, eye: tuple[float, float, float]) -> Path:
+def write_picture(folder: Path, name: str, shape: Shape, eye: Point) -> Path:
     path = folder / f"{name}.svg"
     drawing = ExportSVG(unit=Unit.MM, margin=2)
     drawing.add_shape(visible_edges(shape, eye))
@@ -244,7 +251,7 @@ def write_picture(folder: Path, name: str, shape, eye: tuple[float, float, float
     return path
 
 
-def visible_edges(shape, eye: tuple[float, float, float]) -> list:
+def visible_edges(shape: Shape, eye: Point) -> list:
     """Exact hidden-line removal, or on triangles where that would take minutes and gigabytes."""
     if len(shape.solids()) <= EXACT_UP_TO:
         box = shape.bounding_box()

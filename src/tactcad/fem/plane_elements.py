@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tactcad.account import making
 
 from . import elasticity
-from .mesh import PlaneMesh, plane_mesh
+from .mapped_mesh import PlaneMesh, plane_mesh
 from .shape import ElementShape
 from .space import PlaneSpace, line_load
 

@@ -1,4 +1,5 @@
-"""Strain and stress along the faces of the hinge at mid-width, from the displacements of the nodes on them."""
+"""Strain and stress along the faces of the hinge at mid-width, from the displacements of the nodes on
+them."""
 
 from __future__ import annotations
 
@@ -9,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .plane import PlaneSolution
+from .plane_elements import PlaneSolution
 from .shape import ElementShape
-from .solid import SolidSolution
+from .solid_elements import SolidSolution
 from .space import PlaneSpace, gauss, lagrange
 
 Array = NDArray[np.float64]
@@ -26,7 +27,8 @@ class FaceStrain:
     along        length along the face from its end at the body, mm
     x            from the hinge's centre towards the arm, mm
     strain       tangential, 1/N; positive in tension, for a force that bends this face convex
-    stress       tangential, MPa/N: the largest principal stress, of which the others are at most half, and so Tresca's too
+    stress       tangential, MPa/N: the largest principal stress, of which the others are at most half, and so
+                 Tresca's too
 
     Points are those of Gauss, where elements' strains err least; in between cubic splines.
     """
@@ -76,8 +78,8 @@ class FaceStrain:
 
 @dataclass(frozen=True)
 class Readings:
-    """What is read off a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge face, the largest
-    strain (1/N) and principal stress (MPa/N) of the gauge face and of the slot's."""
+    """What is read off a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge face,
+    the largest strain (1/N) and principal stress (MPa/N) of the gauge face and of the slot's."""
 
     gauge: Array
     face_strain: float
@@ -100,11 +102,12 @@ def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float
 def solid_readings(
     plane: PlaneSolution, solids: tuple[SolidSolution, ...], grid_length: Array | float
 ) -> Readings:
-    """Of the solid, on the mesh of the plane that `plane` (in plane stress) is solved on: its readings times how much the
-    solid differs from plane stress by the same, coarser elements, times what a higher order across changes.
+    """Of the solid, on the mesh of the plane that `plane` (in plane stress) is solved on: its readings times
+    how much the solid differs from plane stress by the same, coarser elements, times what a higher order
+    across changes.
 
-    `solids`: the finest in the plane, then two of one coarser order there, the first of a higher order across, the second
-    of the finest's.
+    `solids`: the finest in the plane, then two of one coarser order there, the first of a higher order
+    across, the second of the finest's.
     """
     fine, across, coarse = (readings(s, grid_length) for s in solids)
     flat = readings(solids[0].flat(), grid_length)
@@ -145,8 +148,8 @@ def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrai
 def _strain_across(solution: SolidSolution) -> Array:
     """d u_y/dy at mid-width at the plane's nodes.
 
-    u_y is odd in y: the odd powers through the nodes of the first element know its slope at y = 0 better than that
-    element's own.
+    u_y is odd in y: the odd powers through the nodes of the first element know its slope at y = 0 better than
+    that element's own.
     """
     first = slice(1, solution.across.order + 1)
     y = solution.across.nodes[first]

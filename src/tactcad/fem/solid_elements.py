@@ -9,16 +9,16 @@ import numpy as np
 from tactcad.account import making
 
 from . import elasticity
-from .mesh import PlaneMesh, plane_mesh
-from .plane import Array, PlaneSolution, end_load, fixed_unknowns, solved
+from .mapped_mesh import PlaneMesh, plane_mesh
+from .plane_elements import Array, PlaneSolution, end_load, fixed_unknowns, solved
 from .shape import ElementShape
 from .space import AcrossSpace, PlaneSpace, line_load
 
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Under unit force at the load line: compliance (mm/N), displacements (3, plane's nodes, places across: x, z, y)
-    in mm."""
+    """Under unit force at the load line: compliance (mm/N), displacements (3, plane's nodes, places across:
+    x, z, y) in mm."""
 
     compliance: float
     displacement: Array
@@ -53,7 +53,8 @@ def solve_solid(
 ) -> SolidSolution:
     """Clamped at the body's end, shear of 1 N on the arm's end, parabolic in z and even in y.
 
-    `across` is the density over the width, by default the same as in the plane; `order` that of the elements both ways.
+    `across` is the density over the width, by default the same as in the plane; `order` that of the elements
+    both ways.
     """
     across = across or density
     with making("elements", f"solid, density {density} and {across} across, order {order}"):

@@ -33,9 +33,12 @@ GROWTH = 1.8  # of successive rings on the coarsest mesh
 SAME_POINT = 1e-10  # of the mesh's size: rounding, far below any element
 SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
-NEAR = 1.0  # fillet radii: height of the row of elements at a slot's floor, and twice that its length, on the coarsest mesh
+# Fillet radii: height of the row of elements at a slot's floor, and twice that its length, on the coarsest
+# mesh.
+NEAR = 1.0
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
-COLUMN = 0.6  # longest element beside a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh
+# Longest element beside a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh.
+COLUMN = 0.6
 LONGEST = 10.0  # columns: of an element between the fillets
 # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
 STEEP = 4.0
@@ -68,7 +71,8 @@ class PlaneMesh:
 
 
 def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order: int = 2) -> PlaneMesh:
-    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way, of that order.
+    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way, of
+    that order.
 
     A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
     slots from both faces differ in length or radius.
@@ -206,8 +210,8 @@ class _Root:
     column: float  # longest element along the fillet
 
     def grids(self, steps: int, rows: Array) -> list[Grid]:
-        """`steps`: from node to node over the length of an element of the coarsest mesh; `rows`: shares of the strip's
-        height at which its rows of nodes stand, 1/2 among them."""
+        """`steps`: from node to node over the length of an element of the coarsest mesh; `rows`: shares of
+        the strip's height at which its rows of nodes stand, 1/2 among them."""
         reach = self.end - self.wall
         inner = self.strip_height + self.radius
         mouth = min(inner, 0.7 * reach)
