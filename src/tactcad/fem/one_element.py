@@ -17,11 +17,13 @@ from .shape import ElementShape, reference_shape
 @dataclass(frozen=True)
 class ElementResult:
     """Of one element: stiffness (N/mm, friction at the pad included), its estimated relative error from
-    the mesh, and strains and stresses per newton at mid-width."""
+    the mesh, and strains and stresses per newton: at mid-width, and in plane stress, whose stress is what
+    equilibrium leaves for the mean over a solid's width."""
 
     stiffness: float
     error: float
     readings: Readings
+    flat: Readings
 
 
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
@@ -57,9 +59,6 @@ def solve(
     Raises CheckFailure where the design is impossible or the mesh cannot follow it.
     """
     found = converged(s, rung, shape, mesh)
-    read = (
-        solid_readings(found.plane, found.solids, grid_length)
-        if found.solids
-        else readings(found.plane, grid_length)
-    )
-    return ElementResult(found.stiffness * float(friction.factor(s)), found.error, read)
+    flat = readings(found.plane, grid_length)
+    read = solid_readings(found.plane, found.solids, grid_length) if found.solids else flat
+    return ElementResult(found.stiffness * float(friction.factor(s)), found.error, read, flat)

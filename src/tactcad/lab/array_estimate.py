@@ -84,7 +84,8 @@ class _PerNewton:
 
     gauge: Array
     fillet: Array
-    fillet_stress: Array
+    largest_stress: Array  # principal, at mid-width
+    fillet_stress: Array  # means over the width
     face_stress: Array
 
 
@@ -98,7 +99,7 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, stress, face)))
 
 
 def _by_elements(
@@ -123,9 +124,14 @@ def _by_elements(
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
             solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
         found.append(solved[key])
-    names = "gauge", "fillet_strain", "fillet_stress", "face_stress"
-    read = (np.array([float(getattr(r.readings, name)) for r in found]) for name in names)
-    return np.array([r.stiffness for r in found]), _PerNewton(*read)
+    read, flat = [r.readings for r in found], [r.flat for r in found]
+    return np.array([r.stiffness for r in found]), _PerNewton(
+        np.array([float(r.gauge) for r in read]),
+        np.array([r.fillet_strain for r in read]),
+        np.array([r.fillet_stress for r in read]),
+        np.array([r.fillet_stress for r in flat]),
+        np.array([r.face_stress for r in flat]),
+    )
 
 
 def _estimates(
@@ -141,7 +147,7 @@ def _estimates(
         def at(value: float, elastic: bool = elastic) -> float | None:
             return float(value) * force if elastic and np.isfinite(value) else None
 
-        stress = float(per_newton.fillet_stress[i])
+        stress = float(per_newton.largest_stress[i])
         rows.append(
             ElementEstimate(
                 number=place.number,
