@@ -173,8 +173,7 @@ def _attempt(
         for callout in d.view.callouts:
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
                 return None, [f"callout {callout.lines[0]!r} finds no place"]
-    keys = tuple(d.text(plan.values) for d in plan.dimensions if d.key)
-    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
+    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items))
     return sheet, layout_faults(sheet)
 
 

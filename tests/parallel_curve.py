@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import dist
 
-from .contour import Contour
-from .intersect import self_intersections
-from .nearest import meeting_points
-from .necks import direction
-from .rounded import ROUNDING_MM
-from .segment import Arc, Line, Point, Segment
+from tactcad.contour.contour import Contour
+from tactcad.contour.intersect import self_intersections
+from tactcad.contour.nearest import meeting_points
+from tactcad.contour.necks import direction
+from tactcad.contour.rounded import ROUNDING_MM
+from tactcad.contour.segment import Arc, Line, Point, Segment
 
 
 @dataclass(frozen=True)
