@@ -33,9 +33,9 @@ def weights(readings: list[np.ndarray]) -> list[np.ndarray]:
     ids=["even", "of the stage", "all three", "grows"],
 )
 def test_the_law_gives_the_variances_that_made_the_readings(sd):
-    """400 elements: each reading's standard deviation within 10 % of the one it was drawn with; where noise grows,
-    that of the first displacement, whose reading nearly makes its run's intercept, is taken for up to 1.4 times
-    as much.
+    """400 elements: each reading's standard deviation within 10 % of the one it was drawn with; where noise
+    grows, that of the first displacement, whose reading nearly makes its run's intercept, is taken for up to
+    1.4 times as much.
     """
     slopes = np.repeat(SLOPES, 80)
     most = np.where((X == STEPS[0]) & (sd[2] > 0), 1.4, 1.1)

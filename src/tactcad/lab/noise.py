@@ -16,8 +16,8 @@ from scipy.optimize import nnls
 
 from tactcad.lab.regression import fit_lines
 
-# A squared residual counts up to so many times its variance (three standard deviations), so that a bad reading
-# is no noise that grows; of normal noise that takes away 1 % of the squares' mean.
+# A squared residual counts up to so many times its variance (three standard deviations), so that a bad
+# reading is no noise that grows; of normal noise that takes away 1 % of the squares' mean.
 STRANGE = 9.0
 FITS = 2  # of the lines: by equal weights, then by those found, since noisy readings turn a line off the rest
 ROUNDS = 6  # fits of the law, each weighted by and held against the one before; after five nothing moves

@@ -137,8 +137,8 @@ def extreme_deviates(
 ) -> list[int]:
     """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
 
-    x, y, run, weight: as fit_lines, one response. alpha is the chance of naming any reading where all are good. The
-    search ends after PATIENCE readings in a row that the line does explain.
+    x, y, run, weight: as fit_lines, one response. alpha is the chance of naming any reading where all are
+    good. The search ends after PATIENCE readings in a row that the line does explain.
     """
     n = len(x)
     left = _Left(x, y, run, weight)

@@ -90,8 +90,8 @@ def approach(
 def coupled_deflection(
     load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
 ) -> np.ndarray:
-    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j does
-    there; 1 on the diagonal.
+    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j
+    does there; 1 on the diagonal.
     """
     force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
     return np.outer(force / stiffness, load / force.sum())
