@@ -522,7 +522,7 @@ def test_what_the_inversion_is_worth_is_counted_again_by_hand(paper):
         f"and {np.median(np.where(positive, inverted(best) / x, np.inf)):.2f} times the sample's",
         f"({np.median((inverted(best) / x)[positive]):.2f} the latter without it)",
         "element and sample, 26 are within the factor; 19 with either end",
-        f"answering {mean:.2f} N/mm, the samples' geometric mean, without any reading is within the factor for 36",
+        f"{mean:.2f} N/mm, the samples' geometric mean, without any reading is within the factor for 36,",
         f"below 5 22 of 24 are within the factor ({near(apart)[well].sum()} with the K_r that",
         f"{near(mean)[well].sum()} without any reading), above it {near(inverted(best))[~well].sum()} of 24.",
     ):

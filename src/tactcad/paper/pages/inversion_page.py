@@ -87,10 +87,11 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     least = np.abs(v.supported.condition).min()
     return (
         f"The condition number says beforehand which readings count: below {WELL:g} "
-        f"{supported[well].sum()} of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others support, "
-        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. "
-        f"The typical error is {inside} below and {outside} above; rank correlation of condition number and "
-        f"error {v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
+        f"{supported[well].sum()} of {well.sum()} are within the factor "
+        f"({left_out[well].sum()} with the K_r that the others support, {mean[well].sum()} without any "
+        f"reading), above it {supported[~well].sum()} of {(~well).sum()}. The typical error is {inside} "
+        f"below and {outside} above; rank correlation of condition number and error "
+        f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
         f"{percent(v.ratio_error * least)} in K_obj."
     )
 
