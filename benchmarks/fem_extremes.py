@@ -14,7 +14,7 @@ import numpy as np
 
 from tactcad.fem.convergence import ORDER, PLANE_DENSITIES, richardson
 from tactcad.fem.health import corner_angles, plane_health
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.fit.accuracy_samples import draw_range
 from tactcad.fit.fit_samples import section

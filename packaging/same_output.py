@@ -62,8 +62,6 @@ def prepare(folder: Path) -> None:
 
 def produce(tree: Path, folder: Path, words: Sequence[str]) -> None:
     """Run the commands that `folder` has no result of yet; a refusal is a result too."""
-    if not folder.exists():
-        prepare(folder)
     designs = [path.relative_to(folder) for path in sorted((folder / "hardware").glob("*.toml"))]
     runs = dict.fromkeys(run.format(file=d, name=d.stem) for d in designs for run in RUNS.splitlines())
     fixed = {"OMP_NUM_THREADS": "1", "SOURCE_DATE_EPOCH": "0", "TACTCAD_CACHE": str(folder / ".cache")}
@@ -112,6 +110,10 @@ def main(other: str, *words: str) -> int:
     tree, ours = Path(other).resolve(), KEPT / "here"
     theirs = KEPT / subprocess.check_output(["git", "-C", tree, "rev-parse", "HEAD"], text=True).strip()
     shutil.rmtree(ours, ignore_errors=True)
+    if not theirs.exists():
+        prepare(theirs)
+    for inputs in ("hardware", "examples"):
+        shutil.copytree(theirs / inputs, ours / inputs)
     produce(tree, theirs, words)
     produce(HERE, ours, words)
     a, b = contents(ours), contents(theirs)

@@ -11,10 +11,10 @@ import pytest
 from hinges import scaled
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import ladder as elements
+from tactcad.fem import one_element as elements
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.health import corner_angles, plane_health
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.fit.accuracy_samples import draw_range
 from tactcad.fit.fit_samples import section

@@ -16,7 +16,7 @@ from tactcad.design.fields import Number, NumberRows, Numbers
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.dxf import check_dxf, dxf_bytes
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import cut_element
 from tactcad.parts.description import Extrusion, Revolution
 from tactcad.parts.element import element

@@ -12,7 +12,7 @@ import pytest
 
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE

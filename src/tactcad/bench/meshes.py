@@ -19,10 +19,10 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.present import present
 from tactcad.fem import calculix, elasticity
 from tactcad.fem.convergence import ORDER, richardson
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 
 from . import tables, truth
 from .front import efficient, told

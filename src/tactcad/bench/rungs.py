@@ -69,7 +69,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
 
 
 def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     found = np.full(len(fine["width"]), np.nan)
     for i, one in enumerate(truth.sections(fine)[:count]):
@@ -84,7 +84,7 @@ def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
 
 def _times(plan: Plan) -> dict[str, dict]:
     """Seconds per element: closed forms among many, element rungs one after the other."""
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     many = section(draw_box(plan.of(1_000, 20_000, 200_000), plan.seed))
     count = many.shape[0]

@@ -66,7 +66,7 @@ def _estimates(plan: Plan) -> list[dict]:
 
 
 def _elements(plan: Plan) -> list[dict]:
-    from tactcad.fem.plane import solve_plane
+    from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape
 
     sizes = plan.of((1, 2), (3, 10, 30), (10, 30, 100, 300))

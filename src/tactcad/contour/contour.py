@@ -35,10 +35,10 @@ class Contour:
 
     def named(self, name: str) -> Segment:
         """The one segment of that name. Raises KeyError where there is none or more than one."""
-        found = [s for s in self.segments if s.name == name]
-        if len(found) != 1:
-            raise KeyError(f"{len(found)} segments are named {name!r}")
-        return found[0]
+        matches = [s for s in self.segments if s.name == name]
+        if len(matches) != 1:
+            raise KeyError(f"{len(matches)} segments are named {name!r}")
+        return matches[0]
 
     @property
     def length(self) -> float:

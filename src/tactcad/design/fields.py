@@ -114,8 +114,8 @@ def shown_text(value: Any, where: str, legal: str) -> str:
     characters."""
     if not isinstance(value, str) or not visible(value):
         raise InputError(where, "not text", value=value, legal=legal)
-    if found := hidden(value):
-        raise InputError(where, f"not usable text: it holds {found}", value=value, legal=legal)
+    if fault := hidden(value):
+        raise InputError(where, f"not usable text: it holds {fault}", value=value, legal=legal)
     return value
 
 

@@ -43,7 +43,7 @@ class Identity:
 
 
 @dataclass(frozen=True)
-class Material:
+class SheetMaterial:
     """[material]: the sheet that the elements are cut from."""
 
     alloy: str = given(OneOf(tuple(ALLOYS), "alloy and temper of the sheet"))
@@ -176,7 +176,7 @@ class Clamp:
 
 
 @dataclass(frozen=True)
-class Gauge:
+class StrainGauge:
     """[gauge]: the strain gauge at each hinge."""
 
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
@@ -355,13 +355,13 @@ class Design:
     """A whole design file."""
 
     design: Identity
-    material: Material
+    material: SheetMaterial
     sheet: Sheet
     array: Array
     element: Element
     holes: Holes = Holes()
     clamp: Clamp = Clamp()
-    gauge: Gauge = Gauge()
+    gauge: StrainGauge = StrainGauge()
     stop: Stop = Stop()
     rating: Rating = Rating()
     readout: Readout = Readout()

@@ -177,14 +177,16 @@ def _hole(hole: Hole) -> Record:
 def _round_openings(part: Part) -> list[Record]:
     if not isinstance(part.body, Extrusion):
         return []
-    found = []
+    round_ones = []
     for opening in part.body.openings:
         circle = opening.as_circle()
         if circle:
             (x, y), radius = circle
             name = opening.segments[0].name or "opening"
-            found.append({"name": name, "at_mm": (x, y, 0.0), "diameter_mm": 2 * radius, "through": True})
-    return found
+            round_ones.append(
+                {"name": name, "at_mm": (x, y, 0.0), "diameter_mm": 2 * radius, "through": True}
+            )
+    return round_ones
 
 
 def _numbered(features: list[Record]) -> Record:

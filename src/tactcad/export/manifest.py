@@ -128,9 +128,9 @@ def check_manifest(folder: Path) -> list[str]:
     except ValueError as error:
         return [str(error)]
     named = [file.path for file in manifest.files]
-    there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
+    present = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
     wrong = [f"{path}: listed twice" for path in sorted(set(named)) if named.count(path) > 1]
-    wrong += [f"{path}: not in the manifest" for path in sorted(there - set(named) - {NAME})]
+    wrong += [f"{path}: not in the manifest" for path in sorted(present - set(named) - {NAME})]
     parts = {part.part_no for part in manifest.parts}
     for file in manifest.files:
         wrong += _file_faults(folder, file, parts)

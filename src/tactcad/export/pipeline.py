@@ -86,14 +86,14 @@ def export(
     inputs = inputs_of(
         {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())
     )
-    there = looked_at(out, manifests.SCHEMA, others)
-    why = _reasons(there, inputs)
+    earlier = looked_at(out, manifests.SCHEMA, others)
+    why = _reasons(earlier, inputs)
     if why:
         _refuse_broken(design)  # before anything appears on the disk
         if options.drawings:
             _refuse_unprintable(design)
     elif not left_unfinished(out):
-        return _unchanged(out, there, progress)
+        return _unchanged(out, earlier, progress)
     cache = Cache(default_root(), progress.line)
     with turn(out, manifests.SCHEMA, others, progress.line) as work:
         why = _reasons(work.earlier, inputs)
@@ -104,9 +104,9 @@ def export(
         return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
 
 
-def _unchanged(out: str | Path, there: Contents, progress: Progress) -> Exported:
-    assert there.record  # or there would have been reasons
-    count = len(there.record["files"]) + 1
+def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Exported:
+    assert earlier.record  # or there would have been reasons
+    count = len(earlier.record["files"]) + 1
     progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
     return Exported(Path(out), count, (), (), ())
 
@@ -126,15 +126,15 @@ def _refuse_unprintable(design: Design) -> None:
     )
 
 
-def _reasons(there: Contents, now: Inputs) -> list[str]:
+def _reasons(earlier: Contents, now: Inputs) -> list[str]:
     """Why the export has to be made anew; empty: it need not."""
-    wrong = [f"{path}: {why}" for path, why in there.foreign.items()]
-    wrong += [f"{path}: missing" for path in there.missing]
+    wrong = [f"{path}: {why}" for path, why in earlier.foreign.items()]
+    wrong += [f"{path}: missing" for path in earlier.missing]
     if wrong:
         return [f"the earlier export was altered: {wrong[0]}"]
-    if there.record is None:
+    if earlier.record is None:
         return ["there is no earlier export"]
-    return reasons(inputs_from_json(there.record.get("inputs")), now)
+    return reasons(inputs_from_json(earlier.record.get("inputs")), now)
 
 
 def _rebuild(

@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data

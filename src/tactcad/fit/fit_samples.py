@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from tactcad.design.files import read_text, write_whole
 from tactcad.design.messages import InputError
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.face_strain import face_strain
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.surface import face_strain
 from tactcad.mechanics.section import HingeSection
 
 MOST_BYTES = 20_000_000  # the shipped samples take a quarter of one

@@ -42,8 +42,8 @@ def calibration_rows(
     rng: np.random.Generator,
     gap: float = 0.0,
 ) -> np.ndarray:
-    """Rows of element, run, displacement (mm), force (N), signal (V): the stage presses cell and
-    element in series, in each run after a way of up to `gap` (mm) through air.
+    """Rows of element, run, displacement (mm), force (N), signal (V): the stage presses cell and element in
+    series, in each run after a way of up to `gap` (mm) through air.
     """
     share = load_cell / (load_cell + truth.stiffness)
     shape = (len(truth.element), runs, len(displacement))

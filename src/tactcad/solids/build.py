@@ -72,22 +72,22 @@ def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
     by memory address, and files then differ in their last digits from run to run.)
     """
 
-    def there(point: Point) -> gp_Pnt:
+    def in_space(point: Point) -> gp_Pnt:
         return plane.from_local_coords(Vector(*point, 0)).to_pnt()
 
     circle = contour.as_circle()
     if circle:
         centre, radius = circle
-        axes = gp_Ax2(there(centre), plane.z_dir.to_dir(), plane.x_dir.to_dir())
+        axes = gp_Ax2(in_space(centre), plane.z_dir.to_dir(), plane.x_dir.to_dir())
         return Wire([Edge(BRepBuilderAPI_MakeEdge(gp_Circ(axes, radius)).Edge())])
-    corners = [BRepBuilderAPI_MakeVertex(there(s.start)).Vertex() for s in contour]
+    corners = [BRepBuilderAPI_MakeVertex(in_space(s.start)).Vertex() for s in contour]
     maker = BRepBuilderAPI_MakeWire()
     for s, first, last in zip(contour, corners, corners[1:] + corners[:1]):
         if isinstance(s, Line):
             edge = BRepBuilderAPI_MakeEdge(first, last)
         else:
             up = plane.z_dir.to_dir() if s.ccw else (-plane.z_dir).to_dir()
-            edge = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(there(s.centre), up), s.radius), first, last)
+            edge = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(in_space(s.centre), up), s.radius), first, last)
         maker.Add(edge.Edge())
     return Wire(maker.Wire())
 

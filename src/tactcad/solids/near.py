@@ -47,9 +47,9 @@ def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[fl
     """Distance in mm, infinite where one has nothing, and a point of the first where it is taken."""
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)
-    found = BRepExtrema_DistShapeShape(first, second)
-    point = found.PointOnShape1(1)
-    return found.Value(), (point.X(), point.Y(), point.Z())
+    nearest_points = BRepExtrema_DistShapeShape(first, second)
+    point = nearest_points.PointOnShape1(1)
+    return nearest_points.Value(), (point.X(), point.Y(), point.Z())
 
 
 def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
@@ -59,8 +59,8 @@ def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndar
     """
     ends = np.asarray(boxes)
     middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2
-    there, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
-    return np.stack([there - reach, there + reach], axis=-2)
+    centre, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
+    return np.stack([centre - reach, centre + reach], axis=-2)
 
 
 def _box(face: TopoDS_Shape) -> list[list[float]]:

@@ -61,7 +61,8 @@ def _without_its_own(v: Inversion) -> str:
     same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
     return (
         "That K_r is fitted to these very readings: with the one that all others support, without the "
-        f"reading's own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
+        "reading's "
+        f"own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
     )
 
 
@@ -86,11 +87,12 @@ def _by_condition(v: Inversion, well: np.ndarray) -> str:
     mean = np.broadcast_to(_near(np.exp(np.log(x).mean()), x), well.shape)
     least = np.abs(v.supported.condition).min()
     return (
-        f"The condition number says beforehand which readings count: below {WELL:g} "
-        f"{supported[well].sum()} of {well.sum()} are within the factor "
-        f"({left_out[well].sum()} with the K_r that the others support, {mean[well].sum()} without any "
-        f"reading), above it {supported[~well].sum()} of {(~well).sum()}. The typical error is {inside} "
-        f"below and {outside} above; rank correlation of condition number and error "
+        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
+        f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others "
+        f"support, "
+        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The "
+        f"typical error is {inside} below and {outside} above; rank correlation of condition number and "
+        f"error "
         f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
         f"{percent(v.ratio_error * least)} in K_obj."
     )
