@@ -19,7 +19,7 @@ from tactcad.fem.solid_elements import solve_solid
 from tactcad.fit.fit_samples import BOX, Columns, draw_box, draw_edges, joined, load, section, write
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
-from .plan import Plan
+from .run_plan import RunPlan
 
 DENSITIES = (6, 12)
 SOLID_DENSITIES = (2, 3)
@@ -92,7 +92,7 @@ def shipped() -> Columns:
     return load(resources.files("tactcad.bench") / "data" / SHIPPED)
 
 
-def of_run(plan: Plan) -> Columns:
+def of_run(plan: RunPlan) -> Columns:
     """full: solved anew on designs of this run's seed, once, into the scratch folder; else the shipped
     ones."""
     if plan.mode != "full":

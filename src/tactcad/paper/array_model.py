@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Tolerance:
+class ModelTolerance:
     """Half-widths, taken as two standard deviations; mm, tilt in degrees."""
 
     hinge_thickness: float
@@ -66,7 +66,7 @@ class ArrayModel:
     gauge: Gauge
     readout: ReadOut
     power: Power
-    tolerance: Tolerance
+    tolerance: ModelTolerance
     rig: Rig
 
     def rows(self, number: np.ndarray) -> np.ndarray:
@@ -105,7 +105,7 @@ def from_design(design: Design) -> ArrayModel:
             readout.on_time,
             readout.period,
         ),
-        _pick(Tolerance, design.tolerance),
+        _pick(ModelTolerance, design.tolerance),
         Rig(
             calibration.load_cell_stiffness,
             calibration.load_cell_resolution,

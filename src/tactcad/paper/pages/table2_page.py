@@ -13,8 +13,8 @@ from tactcad.paper.reference_stiffness import UNITS, Fit, Table2Study
 from tactcad.paper.report import (
     Figure,
     Marked,
-    Section,
-    Table,
+    ReportSection,
+    ReportTable,
     interval,
     listed,
     percent,
@@ -37,10 +37,10 @@ class Witness:
     high: float
 
 
-def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> Section:
+def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> ReportSection:
     who = witnesses(s, r, e)
     found = findings(s, data, who)
-    return Section(
+    return ReportSection(
         "table2",
         "Table 2: which reference stiffness do the measured ratios support?",
         "Equation (2) predicts R from three stiffnesses. Measured R is far from it. Which stiffness, or "
@@ -264,7 +264,7 @@ def _consequences(s: Table2Study, data: Published) -> list[str]:
     return [text, other]
 
 
-def _objects(s: Table2Study) -> Table:
+def _objects(s: Table2Study) -> ReportTable:
     off = s.object_implied / s.object_printed - 1
     rows = (
         ("header", *(f"{v:g}" for v in s.object_printed)),
@@ -278,7 +278,7 @@ def _objects(s: Table2Study) -> Table:
             ),
         ),
     )
-    return Table(
+    return ReportTable(
         "Object stiffness of Table 2's columns, N/mm",
         (("", ""), *((f"sample {j + 1}", "") for j in range(len(off)))),
         rows,
@@ -286,7 +286,7 @@ def _objects(s: Table2Study) -> Table:
     )
 
 
-def _models(s: Table2Study) -> Table:
+def _models(s: Table2Study) -> ReportTable:
     rows = []
     for f, g in zip(s.fits, s.without_stiffest):
         value = (
@@ -298,7 +298,7 @@ def _models(s: Table2Study) -> Table:
         )
         again = ", ".join(f"{sig(v)} ({_range(a, b)})" for v, a, b in zip(g.value, g.low, g.high)) or "–"
         rows.append((f.model, value, percent(f.rms), percent(f.left_out_rms), again, percent(g.rms)))
-    return Table(
+    return ReportTable(
         "Equation (2) with one thing freed at a time",
         (
             ("model", ""),
@@ -318,11 +318,11 @@ def _range(low: float, high: float) -> str:
     return "not determined" if high / low > USABLE**2 else interval(low, high)
 
 
-def _witnesses(s: Table2Study, who: tuple[Witness, ...]) -> Table:
+def _witnesses(s: Table2Study, who: tuple[Witness, ...]) -> ReportTable:
     rows = tuple(
         (w.name, w.value, interval(w.low, w.high) if w.high > w.low else "one printed value") for w in who
     )
-    return Table(
+    return ReportTable(
         f"How stiff is the reference element? (printed: {s.reference_printed:g} N/mm)",
         (("source", ""), ("K_r", "N/mm"), ("95 % interval", "N/mm")),
         rows,
@@ -331,22 +331,22 @@ def _witnesses(s: Table2Study, who: tuple[Witness, ...]) -> Table:
     )
 
 
-def _ratios(s: Table2Study) -> Table:
+def _ratios(s: Table2Study) -> ReportTable:
     K = s.supported
     rows = tuple(
         (f"{k:g}", s.reference_printed / k, K.value[0] / k, interval(K.low[0] / k, K.high[0] / k))
         for k in s.measuring
     )
-    return Table(
+    return ReportTable(
         "K_r/K_m of the six pairs",
         (("K_m, N/mm", ""), ("printed", ""), ("supported by Table 2", ""), ("95 % interval", "")),
         rows,
     )
 
 
-def _readings(s: Table2Study) -> Table:
+def _readings(s: Table2Study) -> ReportTable:
     rows = tuple((f"{k:g}", *row) for k, row in zip(s.measuring, s.reference_by_reading))
-    return Table(
+    return ReportTable(
         "K_r that each single reading implies, R(K_m + K_obj) − K_obj, N/mm",
         (("K_m", "N/mm"), *((f"K_obj = {x:g}", "") for x in s.object_printed)),
         rows,
