@@ -59,10 +59,20 @@ def _by_law(elements: Sequence[Readings], weight: list[np.ndarray]) -> list[np.n
     for _ in range(ROUNDS):
         variance = np.maximum(variance, smallest)
         held = np.minimum(measured / variance, STRANGE)
-        q, r = np.linalg.qr(terms / variance[:, None])
-        law = nnls(r, q.T @ held)[0]
+        least = variance.min()
+        law = least * nnls(*_normal_form(terms * (least / variance)[:, None], held))[0]
         variance = np.concatenate([_in_range(v) for v in np.split(terms @ law, ends)])
     return np.split(1 / np.maximum(variance, smallest), ends)
+
+
+def _normal_form(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Square r and c with |r v - c|^2 = |a v - b|^2 but for a constant, from one pass over the readings.
+
+    By the eigenvalues of a^T a, since columns may be equal (one element: read-out and stage look alike).
+    """
+    eigenvalue, vector = np.linalg.eigh(a.T @ a)
+    root = np.sqrt(np.maximum(eigenvalue, np.finfo(float).eps * eigenvalue[-1]))
+    return root[:, None] * vector.T, vector.T @ (a.T @ b) / root
 
 
 def _start(square: np.ndarray) -> float:
