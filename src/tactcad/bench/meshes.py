@@ -18,7 +18,7 @@ from scipy.sparse import csc_matrix
 from tactcad.design.messages import CheckFailure
 from tactcad.design.present import present
 from tactcad.fem import calculix, elasticity
-from tactcad.fem.convergence import ORDER, richardson
+from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
@@ -171,7 +171,7 @@ def _plane(density: int, shape: ElementShape, nu: float, width: float) -> Answer
 def _extrapolated(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
     """Richardson's limit from this density and half of it, as fem-plane takes it from 6 and 3."""
     coarse, fine = (solve_plane(shape, 1.0, nu, width, density=d) for d in (density // 2, density))
-    limit = richardson((coarse.compliance, fine.compliance), (density // 2, density), ORDER)
+    limit = richardson((coarse.compliance, fine.compliance), (density // 2, density), RATE)
     return 1.0 / limit, fine.unknowns
 
 
