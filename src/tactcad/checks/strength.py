@@ -3,7 +3,6 @@ one element."""
 
 from __future__ import annotations
 
-from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
 from tactcad.parts.finding import Finding
@@ -40,10 +39,10 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
         "tolerance included"
     )
-    stress = present(design.material.yield_strength) / design.rating.deflection_factor
-    found = []
+    stress = design.material.yield_strength / design.rating.deflection_factor
+    findings = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -56,7 +55,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.stress > stress * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -69,7 +68,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.rated_force < design.rating.force:
-        found.append(
+        findings.append(
             Finding(
                 "rated-force",
                 "flag",
@@ -81,4 +80,4 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )
-    return found
+    return findings

@@ -13,7 +13,7 @@ from .contours import contours, in_part
 from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
-from .measures import Difference, Offset, Radius, Slope, Span, Width, halfway, level, size
+from .measures import MeasureDifference, Offset, Radius, Slope, Span, Width, halfway, level, size
 from .sheet_plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 
@@ -99,7 +99,7 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
         if min(abs(a - b) for a, b in zip(contour.segments[i].start, contour.segments[i].end)) > ALIKE:
             sketch.convention(Slope(offset.start, offset.end))
         if offset is not offsets[0]:
-            sketch.convention(Difference(offset, offsets[0]))
+            sketch.convention(MeasureDifference(offset, offsets[0]))
     half = len(sides) // 2
     return Dimension(f"{part.features[k].name} across flats", (Width(offsets[0], offsets[half]),))
 
@@ -119,8 +119,11 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
     return callouts
 
 
-def equal_radii(sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]]) -> list[Callout]:
-    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout."""
+def equal_radii(
+    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], tolerance: float | None = None
+) -> list[Callout]:
+    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout, with plus and
+    minus `tolerance` mm or the general one."""
     kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
     for name, row, arc in arcs:
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
@@ -128,7 +131,8 @@ def equal_radii(sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Ar
     for some in kinds.values():
         if new := [one for one in some if sketch.account.takes(one[1])]:
             name = " and ".join(dict.fromkeys(name for name, _, _ in new))
-            d = Dimension(name, tuple(row for _, row, _ in new), "R")
+            limits = (tolerance, -tolerance) if tolerance else None
+            d = Dimension(name, tuple(row for _, row, _ in new), "R", limits=limits)
             callouts.append(_radius_callout(sketch, view, d, [arc for _, _, arc in new]))
     return callouts
 
