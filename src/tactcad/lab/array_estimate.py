@@ -121,16 +121,16 @@ def _by_elements(
     from tactcad.fem.shape import cut_element
 
     solved: dict[tuple, elements.ElementResult] = {}
-    found = []
+    solutions = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
             contour = element(layout, place).extrusion.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
             solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
-        found.append(solved[key])
-    read, flat = [r.readings for r in found], [r.flat for r in found]
-    return np.array([r.stiffness for r in found]), _PerNewton(
+        solutions.append(solved[key])
+    read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
+    return np.array([r.stiffness for r in solutions]), _PerNewton(
         np.array([float(r.gauge) for r in read]),
         np.array([r.fillet_strain for r in read]),
         np.array([r.fillet_stress for r in read]),
