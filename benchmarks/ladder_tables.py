@@ -99,7 +99,7 @@ def papers_strains_by_elements() -> str:
 
     def by_elements(s: HingeSection, rung: str) -> tuple[float, float]:
         found = solve(s, rung, GRID)
-        return found.gauge_strain * PAPER_FORCE, found.fillet_peak * PAPER_FORCE
+        return float(found.readings.gauge) * PAPER_FORCE, found.readings.fillet_strain * PAPER_FORCE
 
     return _strain_table(ladder.FINITE_ELEMENTS, by_elements)
 
