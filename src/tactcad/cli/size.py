@@ -112,6 +112,7 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
         strain.gauge(sized, force, design.gauge.grid_length, args.model),
     )
     yields_at = float(strength.yield_force(sized, alloy))
+    largest = strain.largest_stress if args.model == "solid" else strain.peak_stress
     return {
         "model": args.model,
         "solved": parameter,
@@ -128,7 +129,7 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
         "elastic": elastic,
         "peak_strain": float(per_cut[0]) if elastic else None,
         "gauge_strain": float(per_cut[1]) if elastic else None,
-        "stress": float(strain.peak_stress(sized, force)) if elastic else None,
+        "stress": float(largest(sized, force)) if elastic else None,
         "yield_force": yields_at,
         "yield_deflection": yields_at / args.stiffness,
         "rated_force": float(min(force, yields_at / design.rating.yield_factor)),
