@@ -1,8 +1,9 @@
-"""Before and after the site's generator: `docs.py stage DIR` writes its pages, `docs.py finish SITE OUT` takes a whole site.
+"""Before and after the site's generator: `docs.py stage DIR` writes its pages, `docs.py finish SITE OUT`
+takes a whole site.
 
-Staged are docs/, README as the first page, CONTRIBUTING and CHANGELOG, what pages link to outside docs/, and the
-reference made from the program: the design file's fields, the commands' parsers. Finishing follows every link,
-and refuses what a page would fetch from elsewhere.
+Staged are docs/, README as the first page, CONTRIBUTING and CHANGELOG, what pages link to outside docs/, and
+the reference made from the program: the design file's fields, the commands' parsers. Finishing follows every
+link, and refuses what a page would fetch from elsewhere.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ LINK = re.compile(r"\]\(([^)#\s]+)")
 
 
 def stage(folder: Path) -> None:
-    """Write the generator's configuration, every page, and every file that one of them links to; `folder` is made anew."""
+    """Write the generator's configuration, every page, and every file that one of them links to; `folder` is
+    made anew."""
     shutil.rmtree(folder, ignore_errors=True)
     out = folder / "pages"
     shutil.copytree(ROOT / "docs", out)
@@ -47,17 +49,22 @@ def stage(folder: Path) -> None:
 
 def schema_page() -> str:
     return (
-        "# The design file\n\nEvery field with its legal values; `tactcad schema` prints the same, `tactcad schema --json` as "
-        "JSON Schema. Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says otherwise.\n\n"
+        "# The design file\n\nEvery field with its legal values; `tactcad schema` prints the same, `tactcad "
+        "schema --json` as "
+        "JSON Schema. Lengths in mm, forces in N, stresses in MPa, density in kg/m3 unless a field says "
+        "otherwise.\n\n"
         f"{markdown_schema()}\n"
     )
 
 
 def commands_page() -> str:
     head = (
-        "# Commands\n\nDESIGN is a path, or the name of a design in `hardware/`. Exit status: 0 done; 1 a check failed or "
-        "a request cannot be met; 2 bad input, refused in one line. Every command has `--help`, which shows what "
-        "stands here, and `--profile`, which says at the end what was loaded and made, how long it took, and how "
+        "# Commands\n\nDESIGN is a path, or the name of a design in `hardware/`. Exit status: 0 done; 1 a "
+        "check failed or "
+        "a request cannot be met; 2 bad input, refused in one line. Every command has `--help`, which shows "
+        "what "
+        "stands here, and `--profile`, which says at the end what was loaded and made, how long it took, "
+        "and how "
         "much memory.\n"
     )
     return "\n".join([head, *(_command(name) for name in COMMANDS)])

@@ -2,10 +2,10 @@
 
     .venv/bin/python packaging/same_output.py OTHER_TREE [WORD]...
 
-Both trees, each with its .venv, work on the designs of hardware/ here and on three drawn by chance; with WORDs only the runs
-whose name contains one. Archives are compared by their members, JSON by its values; a difference that MUST_DIFFER explains is
-named, any other gives exit status 1. `bench`, which reports times, is left out. What the other tree wrote is kept under
-its commit in .cache/same-output, and used again.
+Both trees, each with its .venv, work on the designs of hardware/ here and on three drawn by chance; with
+WORDs only the runs whose name contains one. Archives are compared by their members, JSON by its values; a
+difference that MUST_DIFFER explains is named, any other gives exit status 1. `bench`, which reports times, is
+left out. What the other tree wrote is kept under its commit in .cache/same-output, and used again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from typing import Any
 HERE = Path(__file__).resolve().parents[1]
 KEPT = HERE / ".cache" / "same-output"
 MUST_DIFFER = {
-    r".*manifest\.json: /(inputs/sources/|inputs/libraries/|seal)": "digest of the source, and libraries named",
+    r".*manifest\.json: /(inputs/sources/|inputs/libraries/|seal)": "digest of the source, and libraries "
+    "named",
     r"(check|release) .*\.out: .*seconds": "time",
 }
 RUNS = """\
@@ -61,8 +62,6 @@ def prepare(folder: Path) -> None:
 
 def produce(tree: Path, folder: Path, words: Sequence[str]) -> None:
     """Run the commands that `folder` has no result of yet; a refusal is a result too."""
-    if not folder.exists():
-        prepare(folder)
     designs = [path.relative_to(folder) for path in sorted((folder / "hardware").glob("*.toml"))]
     runs = dict.fromkeys(run.format(file=d, name=d.stem) for d in designs for run in RUNS.splitlines())
     fixed = {"OMP_NUM_THREADS": "1", "SOURCE_DATE_EPOCH": "0", "TACTCAD_CACHE": str(folder / ".cache")}
@@ -111,6 +110,10 @@ def main(other: str, *words: str) -> int:
     tree, ours = Path(other).resolve(), KEPT / "here"
     theirs = KEPT / subprocess.check_output(["git", "-C", tree, "rev-parse", "HEAD"], text=True).strip()
     shutil.rmtree(ours, ignore_errors=True)
+    if not theirs.exists():
+        prepare(theirs)
+    for inputs in ("hardware", "examples"):
+        shutil.copytree(theirs / inputs, ours / inputs)
     produce(tree, theirs, words)
     produce(HERE, ours, words)
     a, b = contents(ours), contents(theirs)

@@ -1,7 +1,7 @@
 """For every check one deliberately bad part, from the tests of that check: what is wrong with it, and what is
 found.
 
-docs/checks.md is written from this (benchmarks/checks_table.py), and tests/checks/test_checks_table.py holds
+docs/checks.md is written from this (tests/checks_table.py), and tests/checks/test_checks_table.py holds
 it complete.
 """
 
@@ -224,7 +224,7 @@ def left_out() -> list[Finding]:
 
 
 def golden() -> list[Finding]:
-    from tactcad.export.golden import golden_record, judge
+    from tactcad.export.golden_file import golden_record, judge
 
     return judge(
         golden_record(variant()), golden_record(variant({"sheet.thickness": 2.9, "array.spacer": 1.1}))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from math import ceil, cos, pi
 
-from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table
+from sound_designs import DRILL_REACH, TAP_REACH, WALL, Draw, as_table, bends
 
 from tactcad.design.load import from_table
 from tactcad.parts.library.bearings import BEARINGS
@@ -15,9 +15,15 @@ from tactcad.parts.rigs.guide_layout import guide_layout
 from tactcad.scenes.moving_axis import ballast_range
 
 M3, M5 = METRIC["M3"], METRIC["M5"]
+# mm/N of the stand's softest part: a post of 52 x 20 mm, up to 250 mm high, turned by its load's lever of 68
+# mm.
+STAND = 1.1 * 68.0**2 * 250.0 / (69e3 * 52.0 * 20.0**3 / 12)
 # The stand: the post's front behind the sensor's axis, and the guide's front before it (mm, docs/rigs.md).
 POST_FRONT, GUIDE_FRONT = 58.0, 27.5
 CARRIAGE = 28.9
+# Heaviest that stands on the base plate: it bridges 200 mm, 168 wide and 12 thick, and bends by a tenth of
+# 0.02 mm.
+HEAVIEST = 0.9 * 0.002 / bends(200.0, 168.0, 12.0)
 
 
 def sound_rigs(d: Draw) -> None:
@@ -61,6 +67,8 @@ def _cart(d: Draw) -> None:
         ),
     )
     holes = 1 + 3 * rings * (rings + 1)
+    pitch = (across - 2 * hole) / 2 / rings
+    around_holes = pitch / (pitch - hole)
     vacuum = d.number("holder.vacuum")
     d.number("holder.pull", high=holes * pi * hole**2 / 4 * vacuum * 1e-3)
     plenum = d.number(
@@ -84,12 +92,25 @@ def _cart(d: Draw) -> None:
     apart = axle.clearance / 2 + M3.d / 2 + 0.51
     outside = side / 2 + 2
     inner = screw - apart
+    longest = (0.04 / HEAVIEST * 4 * 69e3 * d.table["cart.width"] * d.table["cart.thickness"] ** 3) ** (1 / 3)
     if inner > outside and d.once_in(2):
         base = d.number("cart.wheel_base", 2 * outside, 2 * inner)
     else:
-        base = d.number("cart.wheel_base", 2 * max(outside, screw + apart), 250.0)
-    d.number("cart.length", max(holder, base + 2 * around))
-    d.number("sample.travel", high=min(2.0, d.number("sample.thickness") / 2))
+        base = d.number("cart.wheel_base", 2 * max(outside, screw + apart), min(longest, 160.0))
+    length = d.number("cart.length", max(holder, base + 2 * around), 176.0)
+    d.number("cart.roll", high=(180.0 - length) / 2)  # over a base plate of 200 mm
+    travel = d.number("sample.travel", high=min(2.0, d.number("sample.thickness") / 2))
+
+    # what bends, mm/N: plate between its axles, two axles in it, the lid on its plenum, less its holes
+    plate = bends(base, d.table["cart.width"], d.table["cart.thickness"])
+    axles = (shim + bearing.B / 2) ** 3 / (3 * 2e5 * pi / 64 * bearing.d**4) + shim / (8e4 * bearing.d**2)
+    lid = (
+        0.55 * (across / 2 / cos(pi / 8)) ** 2 / (69e3 * d.table["holder.lid_thickness"] ** 3) * around_holes
+    )
+    d.on_cart = 1.1 * max(plate, axles, lid)
+    under_gauge = max(d.on_cart, STAND)
+    d.number("sample.stiffness", high=0.45 / under_gauge / travel)
+    d.number("sample.step", 10.5 * under_gauge * d.table["sample.stiffness"] * travel)
     for section in ("cart", "holder", "sample"):
         d.rest(section)
 
@@ -99,13 +120,22 @@ def _grasping(d: Draw) -> None:
     d.put("grasping.rail_length", 20.0 * d.choice(*range(ceil((lift + CARRIAGE + 13) / 20), 13)))
     diameter = d.number("grasping.weight_diameter", 20.0, 2 * (GUIDE_FRONT - 0.5))
     steel = 7.85e-3 * pi * (diameter**2 - 8.5**2) / 4  # g for a mm of disc
-    d.put("grasping.weights", float(d.choice(0, 1, 2, 3, 5, 10)))
-    d.number("grasping.weight", steel * 1.0 * 9.81e-3, steel * 8 * 9.81e-3)
+    weights = d.put("grasping.weights", float(d.choice(0, 1, 2, 3, 5, 10)))
+    d.number(
+        "grasping.weight",
+        steel * 1.0 * 9.81e-3,
+        min(steel * 8 * 9.81e-3, (HEAVIEST - 6.0) / max(weights, 1.0)),
+    )
     # the array's own weight takes the parts to tell
     d.put("grasping.moving_weight", 10.0)
+    added = weights * d.table["grasping.weight"]
     if not d.once_in(10):
         low, high = ballast_range(guide_layout(from_table(as_table(d.table))))
-        d.number("grasping.moving_weight", low, high)
+        d.number("grasping.moving_weight", low, max(low, min(high, HEAVIEST - added)))
+    heavy = added + d.table["grasping.moving_weight"]
+    d.number("tolerance.pad_height", max(d.table["tolerance.pad_height"], 10.5 * d.on_cart * heavy))
+    # bar, 30 mm between foot and carriage, 23 x 8, turned by its load's 20 mm; foot and platform are stiffer
+    d.number("tolerance.tilt", 10.5 * heavy * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 180 / pi)
 
 
 def _calibration(d: Draw, into_sample: float) -> None:
@@ -117,4 +147,14 @@ def _calibration(d: Draw, into_sample: float) -> None:
     d.number("calibration.axis_travel", max(retract, travel, into_sample) + 5.0)
     d.number("calibration.stage_travel", max(d.far_x, d.far_y))
     d.put("calibration.roller", d.choice("2", "2.5", "3"))
+    # the carrier from its middle to an end plate, which stands at half the stack and its own half
+    stack = 2 * d.far_y + 2 * d.table["array.spacer"]
+    reach = (stack + d.table["clamp.end_plate_thickness"]) / 2
+    width, thick = 2 * d.far_x, d.table["clamp.carrier_thickness"]
+    give = max(STAND, 16 * bends(reach, width, thick))
+    most = min(
+        d.number("calibration.load_cell_range", high=0.09 / give),
+        travel * d.number("calibration.load_cell_stiffness"),
+    )
+    d.number("calibration.step", 10.5 * give * most)
     d.rest("calibration")

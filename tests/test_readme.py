@@ -1,4 +1,5 @@
-"""What README and the findings in docs/validation.md say is true: its commands exist, its outputs are the program's, its pictures are generated."""
+"""What README and the findings in docs/validation.md say is true: its commands exist, its outputs are the
+program's, its pictures are generated."""
 
 from __future__ import annotations
 

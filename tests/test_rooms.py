@@ -37,10 +37,10 @@ NEED_SOLIDS = {
     "tactcad.checks.run",
     "tactcad.checks.tools",
     "tactcad.drawing.assembly_lines",
-    "tactcad.drawing.cut",
+    "tactcad.drawing.section_cut",
     "tactcad.drawing.hidden_lines",
     "tactcad.drawing.picture",
-    "tactcad.export.step",
+    "tactcad.export.step_file",
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.

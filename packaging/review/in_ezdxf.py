@@ -1,6 +1,8 @@
-"""ezdxf reads every cut file of an export: closed chains, entity types, area, and the hinge as it stands in the file.
+"""ezdxf reads every cut file of an export: closed chains, entity types, area, and the hinge as it stands in
+the file.
 
-No tactcad in here: areas and thicknesses are computed anew from the entities, the design is read from its TOML file.
+No tactcad in here: areas and thicknesses are computed anew from the entities, the design is read from its
+TOML file.
 
 usage: in_ezdxf.py FOLDER...    exit status 1 where something differs
 """

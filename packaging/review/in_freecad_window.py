@@ -1,7 +1,8 @@
-"""Runs inside FreeCAD's window program, without a screen: imports one assembly as a person would, with the user's settings.
+"""Runs inside FreeCAD's window program, without a screen: imports one assembly as a person would, with the
+user's settings.
 
-Takes REVIEW_FILE, writes what the tree shows to REVIEW_OUT as JSON: for each child of the assembly its label, the label of the
-part that it shows, and that part's colour.
+Takes REVIEW_FILE, writes what the tree shows to REVIEW_OUT as JSON: for each child of the assembly its label,
+the label of the part that it shows, and that part's colour.
 """
 
 import json

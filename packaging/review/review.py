@@ -1,6 +1,6 @@
 """make review: opens every exported STEP and DXF file in real FreeCAD, headless, and compares it with the
-bill of materials and the manifest; and every assembly in FreeCAD's window program, for the tree and the colours that a
-person sees. Installs nothing; says what is missing and how to get it.
+bill of materials and the manifest; and every assembly in FreeCAD's window program, for the tree and the
+colours that a person sees. Installs nothing; says what is missing and how to get it.
 
 usage: python review.py exports/NAME...
 """
@@ -81,7 +81,8 @@ def review(freecad: list[str], folder: Path) -> list[str]:
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
     solids = sum(len(found.get("solids", ())) for found in report["files"].values())
     print(
-        f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees too, {len(wrong)} findings"
+        f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees "
+        f"too, {len(wrong)} findings"
     )
     return wrong
 

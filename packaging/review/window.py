@@ -1,5 +1,5 @@
-"""The tree and the colours that a person sees: an assembly imported by FreeCAD's window program with the settings that
-docs/freecad.md tells to choose, in a profile of its own, without a screen.
+"""The tree and the colours that a person sees: an assembly imported by FreeCAD's window program with the
+settings that docs/freecad.md tells to choose, in a profile of its own, without a screen.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ INSIDE = Path(__file__).with_name("in_freecad_window.py")
 COMMANDS = ("freecad", "FreeCAD")
 SECONDS = 300
 
-# Label in Edit > Preferences > Import-Export > STEP -> group and name in FreeCAD's settings, and the value to choose.
+# Label in Edit > Preferences > Import-Export > STEP -> group and name in FreeCAD's settings, and the value to
+# choose.
 SETTINGS = {
     "Enable STEP Compound merge": ("hSTEP", "ReadShapeCompoundMode", False),
     "Use LinkGroup": ("", "UseLinkGroup", True),
@@ -75,7 +76,8 @@ def shown(program: str, path: Path) -> dict | None:
 
 
 def tree_faults(path: str, tree: dict | None, bill: list[dict]) -> list[str]:
-    """Every placed part stands in the tree once, under its reference designator, and shows its part, in colour."""
+    """Every placed part stands in the tree once, under its reference designator, and shows its part, in
+    colour."""
     if tree is None:
         return [f"{path}: FreeCAD's window program ended without a report"]
     if tree["groups"] != 1:

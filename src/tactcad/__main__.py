@@ -1,4 +1,5 @@
-"""`python -m tactcad`, and what the console script runs: signals have their way out before anything else is loaded."""
+"""`python -m tactcad`, and what the console script runs: signals have their way out before anything else is
+loaded."""
 
 import sys
 

@@ -1,8 +1,7 @@
 """What a run made, how often and how long it took, and what it loaded and held: for `--profile`.
 
 Makers of what is dear (solids, meshes, finite-element solutions, scenes) say so through `making`; where
-nobody
-has asked for an account that costs a comparison.
+nobody has asked for an account that costs a comparison.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """How a signal ends the program: at once, by one door, with nothing half made left behind.
 
-An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it into
-another error, native imports above all. So the handler itself puts away what is unfinished, says one line and exits.
-It waits only for the native call that is running. Nothing but what Python has loaded anyway is imported here:
-`tactcad.__main__` lets it stand before everything else.
+An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it
+into another error, native imports above all. So the handler itself puts away what is unfinished, says one
+line and exits. It waits only for the native call that is running. Nothing but what Python has loaded anyway
+is imported here: `tactcad.__main__` lets it stand before everything else.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ _owner = 0  # the process whose unfinished things they are: a forked helper has 
 
 
 def end_on_signals() -> None:
-    """From now on SIGINT, SIGTERM and SIGHUP end this process with 128 + their number; what it was started to ignore, as
-    nohup does, stays ignored."""
+    """From now on SIGINT, SIGTERM and SIGHUP end this process with 128 + their number; what it was started to
+    ignore, as nohup does, stays ignored."""
     global _owner
     _owner = os.getpid()
     for number in SAID:
@@ -42,7 +42,8 @@ def past_ending() -> None:
 
 
 class unfinished:
-    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends the program.
+    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends
+    the program.
 
     It may be called between any two steps of the block, and must tell by what lies on the disk what is to go.
     """
@@ -69,7 +70,7 @@ def _end(number: int, _frame: object) -> None:
             pass  # the next run does it
     for each in SAID:  # whoever presses Ctrl-C again does not wait for a reader that takes no line
         signal.signal(each, signal.SIG_DFL)
-    line = f"tactcad: {SAID[number]}; what was not finished is as it was before\n"
+    line = f"tactcad: {SAID[signal.Signals(number)]}; what was not finished is as it was before\n"
     try:
         os.write(2, (("\r\x1b[K" if os.isatty(2) else "") + line).encode())
     except OSError:
@@ -77,12 +78,15 @@ def _end(number: int, _frame: object) -> None:
     os._exit(128 + number)
 
 
-def _kill_helpers() -> None:
-    """The processes that this one started: they work for nobody now."""
+def _kill_helpers(of: str = "self") -> None:
+    """The processes that this one started, and theirs: they work for nobody now. Each stands still before it
+    is asked for its own, or it would start another meanwhile."""
     try:
-        for thread in os.listdir("/proc/self/task"):
-            with open(f"/proc/self/task/{thread}/children", encoding="ascii") as children:
+        for thread in os.listdir(f"/proc/{of}/task"):
+            with open(f"/proc/{of}/task/{thread}/children", encoding="ascii") as children:
                 for child in children.read().split():
+                    os.kill(int(child), signal.SIGSTOP)
+                    _kill_helpers(child)
                     os.kill(int(child), signal.SIGKILL)
     except OSError:
         pass  # no such list here, or one that ended by itself

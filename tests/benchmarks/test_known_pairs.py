@@ -136,8 +136,8 @@ def test_the_volume_of_triangles_is_the_mesh_librarys():
     import trimesh
 
     from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import volume
+    from tactcad.solids.triangles import triangles
 
     for pair in PAIRS[:9]:
         mesh = triangles(build(pair.placements[1].part).wrapped, 0.05, 0.5)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import publish
 import pytest
 from test_bench_command import follows_schema
 
-from tactcad.bench import publish, render
+from tactcad.bench import render
 from tactcad.bench.front import efficient
 from tactcad.bench.run import BENCHMARKS
 from tactcad.design.messages import InputError
@@ -39,7 +40,7 @@ def test_every_block_is_the_reference_results(document):
     found = BLOCK.findall((ROOT / document).read_text("utf-8"))
     assert found
     for name, text in found:
-        assert text == blocks[name], f"{document}: {name}; `python -m tactcad.bench.publish` writes it"
+        assert text == blocks[name], f"{document}: {name}; `python benchmarks/publish.py` writes it"
 
 
 def test_benchmarks_page_lets_one_choose():
@@ -62,7 +63,7 @@ def test_every_plot_is_made_from_the_reference_results():
     } == set(images)
     for name, data in images.items():
         assert (ROOT / "docs" / "images" / name).read_bytes() == data, (
-            f"{name}; `python -m tactcad.bench.publish` writes it"
+            f"{name}; `python benchmarks/publish.py` writes it"
         )
 
 

@@ -17,8 +17,8 @@ from tactcad.checks.run import run_checks
 from tactcad.contour import chain, circle, rectangle
 from tactcad.parts.description import Extrusion, Material, Part
 from tactcad.solids import build as builder
-from tactcad.solids.mesh import triangles
 from tactcad.solids.step import write_step
+from tactcad.solids.triangles import triangles
 
 pytestmark = pytest.mark.cad
 
@@ -85,7 +85,8 @@ def test_a_solid_that_passes_through_itself_is_seen():
 
 
 def bent_tube():
-    """A tube bent so tightly that its ends cross: each face is good, and two of them meet. And a part of its volume."""
+    """A tube bent so tightly that its ends cross: each face is good, and two of them meet. And a part of its
+    volume."""
     from build123d import Plane, Rectangle, Solid, Spline
 
     path = Spline((0, 0, 0), (20, 0, 0), (20, 20, 0.2), (10, 20, 0), (10, -10, 0))
@@ -197,7 +198,8 @@ def test_meshes_that_are_open_turned_or_doubled_are_seen(shape):
 
 
 def test_the_mesh_is_the_solid_within_its_tessellation(shape):
-    """Inscribed facets of a bore: the block keeps a little more than the circle would leave; within w^2/6 of the bore."""
+    """Inscribed facets of a bore: the block keeps a little more than the circle would leave; within w^2/6 of
+    the bore."""
     vertices, faces = soup(shape)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     bore = np.pi * 1.5**2 * 5
@@ -212,7 +214,8 @@ def test_a_mesh_of_another_size_is_seen(shape, monkeypatch):
 
 
 def test_run_reports_what_cannot_be_built(macro, monkeypatch):
-    """A part whose solid does not hold is a finding, not a crash, and its scene is not called free of overlap."""
+    """A part whose solid does not hold is a finding, not a crash, and its scene is not called free of
+    overlap."""
     from tactcad.checks import run
 
     def refuse(part: Part):

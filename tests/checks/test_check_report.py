@@ -72,7 +72,8 @@ def test_one_design_alone_that_is_refused_is_bad_input(tmp_path, capsys):
 
 
 def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypatch):
-    """Which checks `tactcad check` calls, and on what, with every check and the kernel's work replaced by a note of the call."""
+    """Which checks `tactcad check` calls, and on what, with every check and the kernel's work replaced by a
+    note of the call."""
     from tactcad.checks import run
     from tactcad.scenes import make_scene, scene_names
     from tactcad.scenes.poses import poses

@@ -11,7 +11,7 @@ import pytest
 from bad_parts import BAD
 
 ROOT = Path(__file__).parents[2]
-sys.path += [str(ROOT / "benchmarks"), str(ROOT / "tests" / "mutation")]
+sys.path.append(str(ROOT / "tests" / "mutation"))
 
 
 def names_in_code() -> set[str]:
@@ -26,7 +26,8 @@ def test_every_check_in_the_code_has_its_bad_part():
         assert (ROOT / bad.test).is_file(), name
 
 
-# Bad parts that are the shipped array with a value changed: its next revision changes the numbers, not the words.
+# Bad parts that are the shipped array with a value changed: its next revision changes the numbers, not the
+# words.
 OF_THE_SHIPPED = {
     "strength",
     "clearance",
@@ -40,7 +41,7 @@ OF_THE_SHIPPED = {
 
 @pytest.mark.cad
 def test_the_table_says_what_the_checks_say():
-    """Where this fails, run `python benchmarks/checks_table.py` and read what it changes."""
+    """Where this fails, run `python tests/checks_table.py` and read what it changes."""
     import checks_table
 
     text = checks_table.DOCUMENT.read_text(encoding="utf-8")
@@ -57,7 +58,8 @@ def test_the_table_says_what_the_checks_say():
 
 
 def test_every_timed_check_has_its_times():
-    """What `tactcad check` times stands in the table, with a time on the array, the rigs, or the largest scene."""
+    """What `tactcad check` times stands in the table, with a time on the array, the rigs, or the largest
+    scene."""
     import checks_table
 
     times = checks_table.known_times(checks_table.DOCUMENT.read_text(encoding="utf-8"))

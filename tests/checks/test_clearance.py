@@ -23,7 +23,8 @@ def test_what_ships_is_clear(name):
 
 
 def test_opposite_pads_come_nearer_by_what_their_height_turns():
-    """The pad's lower inner corner, 2 mm below the flat face: x = -a cos w - (2 + t/2) sin w from the hinge."""
+    """The pad's lower inner corner, 2 mm below the flat face: x = -a cos w - (2 + t/2) sin w from the
+    hinge."""
     design = variant({"stop.gaps": {"4": 0.12}, "array.row_arms": [[4], [4]]})
     layout = Layout(design)
     arms, (first, second) = _Arms(layout), layout.elements
@@ -50,7 +51,8 @@ def test_high_pads_that_meet_when_pressed_are_seen():
 
 
 def test_a_slot_that_closes_before_its_stop_is_seen():
-    """A slot as narrow as wire cutting makes it, and a gap that turns the arm by 0.15: 2.5 mm over the hinge it closes by 0.38."""
+    """A slot as narrow as wire cutting makes it, and a gap that turns the arm by 0.15: 2.5 mm over the hinge
+    it closes by 0.38."""
     design = variant(
         {
             "array.row_arms": [[4]],
@@ -77,7 +79,8 @@ def test_the_calibration_turns_an_arm_further_than_its_stop_would():
 
 
 def test_an_arm_that_would_meet_the_stop_plate_beside_its_land_is_seen():
-    """The land stands 0.13 mm over the arm, whose back, 2.6 of 4 mm out, comes 0.035 less high than the tip."""
+    """The land stands 0.13 mm over the arm, whose back, 2.6 of 4 mm out, comes 0.035 less high than the
+    tip."""
     (finding,) = check_clearance(
         variant(
             {

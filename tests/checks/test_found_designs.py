@@ -1,7 +1,7 @@
 """Designs that the random draws found: let pass once by every rule, and then not built, or caught by a check.
 
-Each is the shipped array with the fewest values changed that still show it, and is now refused by the rule named, or
-passes every check.
+Each is the shipped array with the fewest values changed that still show it, and is now refused by the rule
+named, or passes every check.
 """
 
 from __future__ import annotations
@@ -123,14 +123,16 @@ def test_passes_every_check(what):
 
 
 def test_the_derived_set_screw_leaves_the_stop_plate_its_gap():
-    """The shortest set screw that reaches came out 0.04 mm over the stop plate, which the rules refused: the next one."""
+    """The shortest set screw that reaches came out 0.04 mm over the stop plate, which the rules refused: the
+    next one."""
     for thickness in (3.0, 4.0, 5.0, 6.0, 6.001, 6.04, 6.1, 7.0):
         layout = Layout(variant({**TWO, "clamp.stop_plate_thickness": thickness}))
         assert layout.hold_down.reach >= 0.1
 
 
 def test_set_screws_stand_in_mirrored_places_to_the_last_digit():
-    """Two rows' places, rounded to a micrometre's thousandth, once differed in that digit: one hole counted as two."""
+    """Two rows' places, rounded to a micrometre's thousandth, once differed in that digit: one hole counted
+    as two."""
     for pitch in (29.917, 7.001, 5.123, 13.77777):
         for apart in (5.0, 6.321, 13.151, 17.0):
             changes = {
@@ -146,7 +148,8 @@ def test_set_screws_stand_in_mirrored_places_to_the_last_digit():
 @pytest.mark.parametrize("short", [0.001, 0.0010000001, 0.00099, 0.0011])
 @pytest.mark.parametrize("sides", ["one", "two"])
 def test_an_edge_at_the_limit_is_the_same_to_rule_and_check(short, sides):
-    """A slot floor of 0.001 mm between its fillets: the rule had taken it, the solid's edge was "under 0.001"."""
+    """A slot floor of 0.001 mm between its fillets: the rule had taken it, the solid's edge was "under
+    0.001"."""
     both = {
         "array.row_arms": [[4.0]],
         "element.sides": sides,

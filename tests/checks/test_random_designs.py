@@ -1,6 +1,7 @@
 """Designs drawn over the whole legal range: each is refused by a named rule, or passes every check.
 
-Seeds and counts stand at the end of pytest's output. A design is the number of its draw: `raw_table(number, ...)`.
+Seeds and counts stand at the end of pytest's output. A design is the number of its draw: `raw_table(number,
+...)`.
 """
 
 from __future__ import annotations
@@ -18,13 +19,12 @@ from sound_designs import LEGAL, sound_table
 pytestmark = pytest.mark.cad
 
 CI_SEED = 20261121
-# Open, and the only one of that seed: the pressed sample of this drawn rig overlaps an arm of 52 mm by 0.5 mm3.
-OPEN = "design 674: fail: SA1: overlap"
 NIGHTLY_SEED = int(os.environ.get("TACTCAD_SEED", SystemRandom().randrange(10**9)))
 
 
 def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> Counts:
-    """Judge that many designs; one that is neither refused nor passes does not keep the others from their turn."""
+    """Judge that many designs; one that is neither refused nor passes does not keep the others from their
+    turn."""
     counts = Counts()
 
     # no shrinking: each example is a whole check, and a failing one says itself what is wrong
@@ -47,7 +47,7 @@ def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> C
 def test_twenty_designs_drawn_over_the_whole_legal_range(record_property):
     counts = draw(20, CI_SEED, (1, 2, 3), rigs=0.15)
     record_property("random designs", f"seed {CI_SEED}, {counts}")
-    assert [line for line in counts.failed if not str(line).startswith(OPEN)] == []
+    assert counts.failed == []
     assert counts.drawn >= 20 and 2 * counts.accepted >= counts.drawn
 
 
@@ -61,8 +61,8 @@ def test_a_thousand_designs_drawn_over_the_whole_legal_range(record_property):
 
 
 def test_draws_reach_over_every_fields_range():
-    """Of 12000 draws on 100 sound designs, each field's least and largest value lie in its range's lowest and highest
-    tenth, by the logarithm where the range spans decades."""
+    """Of 12000 draws on 100 sound designs, each field's least and largest value lie in its range's lowest and
+    highest tenth, by the logarithm where the range spans decades."""
     seen: dict[str, list[float]] = {}
     sound = [sound_table(number, (1, 2, 3, 5), rigs=number % 2 == 0) for number in range(100)]
     for number in range(12000):

@@ -1,25 +1,35 @@
-"""What is taken as rigid: the table's loads and lines by hand, what fails where something is thin, and docs/rigs.md."""
+"""What is taken as rigid: the table's loads and lines by hand, what fails where something is thin, and
+docs/rigs.md."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from math import isclose, pi
+from operator import attrgetter
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_designs import raw_table
 from variants import variant
 
 from tactcad.checks.report import Report, as_record
 from tactcad.checks.rigidity import check_rigidity
-from tactcad.design.load import names
+from tactcad.design.load import from_table, names
+from tactcad.design.messages import InputError
 from tactcad.parts import seating
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import seating_force
+from tactcad.parts.rigs.calibration_loads import calibration_loads
+from tactcad.parts.rules import broken_rules
+from tactcad.parts.stiffness_remedy import remedy
 from tactcad.parts.stiffness_table import deflections
 from tactcad.parts.stop_give import carrier_beam, carrier_opens
-from tactcad.scenes import scene_names
+from tactcad.scenes import make_scene, scene_names
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "rigs.md"
 RIGS = ("array", "calibration", "sample-stiffness", "grasping")
@@ -61,10 +71,52 @@ def test_what_is_thin_or_loaded_is_found(changes, wrong):
     assert not {part for part, _ in wrong} & {part for part, _ in found({})}
 
 
+@pytest.mark.parametrize(
+    "changes, scene, path, words",
+    [
+        ({"tolerance.pad_height": 0.001}, "array", "clamp.end_plate_thickness", "at least"),
+        (LONG, "array", "clamp.carrier_thickness", "at least"),
+        ({"calibration.step": 0.01}, "calibration", "calibration.step", "at least"),
+        ({"cart.thickness": 3.0}, "grasping", "cart.thickness", "at least"),
+        ({"grasping.weights": 40}, "grasping", "grasping.weights", "at most"),
+        ({"tolerance.tilt": 0.0}, "grasping", "tolerance.tilt", "at least"),
+    ],
+)
+def test_what_is_said_to_help_helps_and_less_does_not(changes, scene, path, words):
+    line = next(s for s in deflections(variant(changes), [scene]) if s.too_much)
+    named, value, legal = remedy(variant(changes), line)
+    assert (named, value) == (path, attrgetter(path)(variant(changes)))
+    said = re.fullmatch(rf"{words} ([\d.]+)( mm| degree)?", legal)
+    enough = type(value)(said[1])
+    less = enough + 1 if isinstance(value, int) else enough * 0.998
+    for tried, bends in ((enough, False), (less, True)):
+        assert line_of(scene, line.part, line.model, {**changes, path: tried}).too_much is bends
+
+
+def test_what_no_field_helps_says_so():
+    line = next(s for s in deflections(load("macro-array"), ["array"]) if s.part == "end plate")
+    stuck = replace(line, fields=("clamp.carrier_margin",), gives=line.allowed * 2)
+    assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck)[2].startswith("no value alone")
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.integers(0, 2**48))
+def test_what_the_rules_accept_passes_the_check(number):
+    """Designs over the whole legal range, sound ones and others: what the rules take, with the scenes that
+    they leave it."""
+    try:
+        design = from_table(raw_table(number, (1, 2, 3, 8), rigs=0.7))
+    except InputError:
+        return
+    if not broken_rules(design):
+        assert [f for f in check_rigidity(design, scene_names(design), []) if f.severity == "fail"] == []
+
+
 def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
-    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, array mount, roller"
-    named += ", cart plate, cart's axles, holder's lid, bar, foot, platform, weight pin"
+    named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, "
+    named += "array mount, roller, all of these, cart plate, cart's axles, holder's lid, bar, foot, "
+    named += "platform, weight pin"
     assert parts == set(named.split(", "))
 
 
@@ -106,7 +158,8 @@ def test_lines_are_their_formulas_by_hand(scene, part, by_hand):
 
 
 def test_twice_as_thick_is_an_eighth():
-    """Of bending; shear, in which a cart plate of 20 mm gives way by a third as much as by bending, is a half."""
+    """Of bending; shear, in which a cart plate of 20 mm gives way by a third as much as by bending, is a
+    half."""
     for scene, part, model, field in (
         ("grasping", "cart plate", "", "cart.thickness"),
         ("grasping", "holder's lid", "evenly", "holder.lid_thickness"),
@@ -119,7 +172,8 @@ def test_twice_as_thick_is_an_eighth():
 @pytest.mark.parametrize("thickness", [3.0, 6.0, 20.0])
 @pytest.mark.parametrize("rows", [1, 10])
 def test_a_carrier_held_in_its_middle_opens_no_gap(thickness, rows):
-    """By integration of the bent and sheared carrier, ledges straight between its two ends; at most 0.01 um at 13.04 N."""
+    """By integration of the bent and sheared carrier, ledges straight between its two ends; at most 0.01 um
+    at 13.04 N."""
     arms = [[4, 7, 6, 8, 6] * rows, [8, 5, 4, 5, 7] * rows]
     layout = Layout(variant({"array.row_arms": arms, "clamp.carrier_thickness": thickness}))
     h = layout.end_plate_y
@@ -140,7 +194,8 @@ def test_a_carrier_held_in_its_middle_opens_no_gap(thickness, rows):
 
 
 def test_the_set_screws_seating_force_is_that_of_their_lead_and_friction():
-    """0.2 N m on M3: work of a turn is lift times force and friction times way, on the flanks and on the point."""
+    """0.2 N m on M3: work of a turn is lift times force and friction times way, on the flanks and on the
+    point."""
     force = seating_force("M3")
     flank, point = 2.675 * pi * 0.12 / np.cos(np.pi / 6), 2 / 3 * 2.0 * pi * 0.12
     assert force * (0.5 + flank + point) == pytest.approx(2 * pi * 200, rel=1e-3)
@@ -163,9 +218,29 @@ def test_set_screws_bow_neither_stack_nor_carrier(rows, thickness, torque):
         )
 
 
+def test_what_stands_in_series_with_the_gauge_adds_up_and_is_told_in_guide_and_document():
+    """By hand: base plate, post, gauge and axis plate, roller, mount and carrier, um/N of the table's lines
+    at 5 N; the stiffest arm's own compliance is that of the estimator."""
+    design = load("macro-array")
+    lines = [s for s in deflections(design, ["calibration"]) if s.part != "all of these"]
+    together = line_of("calibration", "all of these")
+    assert len(lines) == 7 and together.gives == pytest.approx(sum(s.gives for s in lines))
+    assert together.allowed == pytest.approx(0.1 * 5.0 / 57.04 * 1e3)
+    K = min(design.array.row_arms[0] + design.array.row_arms[1])
+    stiff = max(e.force / e.deflection for e in calibration_loads(design))
+    c = together.gives / 5.0
+    softer = 100 * (1 - 1 / (1 + c * stiff / 1e3))
+    assert 0.6 < c < 0.75 and 2.0 < softer < 3.0
+    guide = " ".join(step.text for step in make_scene(design, "calibration").steps)
+    assert f"{c:.2g} um/N in series" in guide and f"arm of {K:g} mm would seem {softer:.2g} % softer" in guide
+    document = " ".join(DOCUMENT.read_text("utf-8").split())
+    assert f"together {c:.2g} um/N" in document and f"seems {softer:.2g} % softer" in document
+
+
 def rows_of(design) -> list[str]:
     return [
-        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} | {s.why} |"
+        f"| {s.scene} | {s.part} | {s.model} | {s.load:.3g} | {s.origin} | {s.gives:.2g} | {s.allowed:.3g} "
+        f"| {s.why} |"
         for s in deflections(design, RIGS)
     ]
 

@@ -40,7 +40,8 @@ def test_a_gap_that_was_derived_holds_with_friction_and_without_whatever_frictio
 
 @pytest.mark.parametrize("name", names())
 def test_a_stop_one_step_wider_passes_the_rated_deflection(name):
-    """Gaps are no narrower than they must be, and the check and the rule see the next wider one, at every arm."""
+    """Gaps are no narrower than they must be, and the check and the rule see the next wider one, at every
+    arm."""
     layout = Layout(load(name))
     for state in overloads(layout):
         arm, gap = f"{state.place.arm:g}", state.gap - layout.design.stop.tolerance
@@ -70,8 +71,9 @@ def test_the_rated_deflection_is_that_at_yield_over_its_factor():
 
 
 def test_the_paper_s_grasps_stay_clear_of_the_stop_and_within_the_rated_force():
-    """13.04 N on all pads, each in series with its share of a rubber sample of Table 2: d_i = D K_s/(K_s + K_i). A
-    pad may stand 10 um proud of all others. No stop may close, at its gap's lower limit, and no rated force be passed."""
+    """13.04 N on all pads, each in series with its share of a rubber sample of Table 2: d_i = D K_s/(K_s +
+    K_i). A pad may stand 10 um proud of all others. No stop may close, at its gap's lower limit, and no rated
+    force be passed."""
     design = load("macro-array")
     layout = Layout(design)
     states = overloads(layout)
@@ -117,7 +119,8 @@ def test_a_rating_beyond_yield_is_flagged_with_what_it_bears():
 
 
 def test_the_gap_follows_the_overload_force():
-    """The gap is made for it: a larger force gets a narrower gap, and no hinge passes its rated deflection."""
+    """The gap is made for it: a larger force gets a narrower gap, and no hinge passes its rated
+    deflection."""
     gaps = [
         overloads(Layout(variant({"rating.overload_force": force})))[0].gap for force in (2.0, 13.0, 40.0)
     ]

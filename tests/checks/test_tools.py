@@ -1,4 +1,5 @@
-"""Screws and nuts that a tool reaches, or not: a plate under a bridge, and the shipped scenes with one thing moved."""
+"""Screws and nuts that a tool reaches, or not: a plate under a bridge, and the shipped scenes with one thing
+moved."""
 
 from __future__ import annotations
 
@@ -53,7 +54,8 @@ def found(scene: Scene):
 
 
 def test_what_stands_within_a_keys_reach_is_in_its_way():
-    # the key of 40 mm starts 0.05 mm over the socket, whose floor is 1.3 mm under the head's top, 3 mm over the plate
+    # the key of 40 mm starts 0.05 mm over the socket, whose floor is 1.3 mm under the head's top, 3 mm over
+    # the plate
     assert found(scene(bridge=43.1)) == []
     (finding,) = found(scene(bridge=42.9))
     assert (finding.check, finding.part, finding.severity) == ("tool-room", "SC1", "fail")
@@ -83,7 +85,8 @@ def test_set_screws_want_their_key_too():
 
 @pytest.mark.parametrize(("apart", "expected"), [(7.7, []), (7.5, ["NU1", "NU2"])])
 def test_a_socket_over_a_nut_wants_room_beside_it(apart, expected):
-    """Two M3 nuts: corners at 6.351/2, and a socket 1.25 mm wider: 7.60 mm between axes is enough, less is not."""
+    """Two M3 nuts: corners at 6.351/2, and a socket 1.25 mm wider: 7.60 mm between axes is enough, less is
+    not."""
     names = [("NU1", 0.0), ("NU2", apart)]
     nuts = tuple(Placement(name, nut("M3"), (x, 0, 10)) for name, x in names)
     rods = tuple(

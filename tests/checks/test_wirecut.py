@@ -153,7 +153,8 @@ def test_a_drilled_hole_counts_as_a_wall():
     [(s, r) for s in (0.25, 0.29, 0.31, 0.5, 0.8) for r in (0.05, 0.12, 0.14, 0.16) if 2 * r <= s],
 )
 def test_corner_and_slot_rules_are_what_the_wires_path_says(slot, radius):
-    """The wire's centre runs on the parallel curve: cuttable means that this exists and keeps every fillet."""
+    """The wire's centre runs on the parallel curve: cuttable means that this exists and keeps every
+    fillet."""
     outer = block(slot=slot, radius=radius)
     failed = {f.check for f in check_wirecut(part(outer), SHOP) if f.severity == "fail"}
     try:
@@ -237,7 +238,8 @@ def test_a_shop_may_say_only_in_what_its_machining_differs(tmp_path):
 
 @pytest.mark.cad
 def test_the_shop_s_machining_limits_reach_the_check(tmp_path, capsys):
-    """A shop that wants 1 mm flags the end plate; one that wants no less than that fails it; a broken file ends with 2."""
+    """A shop that wants 1 mm flags the end plate; one that wants no less than that fails it; a broken file
+    ends with 2."""
     path = tmp_path / "shop.toml"
     for least, status in (("0.5", 0), ("1.0", 1)):
         path.write_text(shop_text(wall=("wall = 0.8\nwall_least = 0.5", f"wall = 1.0\nwall_least = {least}")))

@@ -12,7 +12,10 @@ from tactcad.cli.main import main
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import accuracy_data
 
-HEADER = "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,poisson,youngs_modulus,width"
+HEADER = (
+    "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,"
+    "poisson,youngs_modulus,width"
+)
 ROW = "0.25,0.75,0.15,6,2,4,4,0.33,69000,3"
 
 
@@ -82,7 +85,7 @@ def test_report_names_rung_error_and_time(capsys):
 
 @pytest.mark.parametrize("model", [None, "plane", "short"])
 def test_every_stiffness_carries_its_expected_error(model, capsys, tmp_path):
-    """In text, in JSON (of every element, and the worst) and in a table: what the file of measured errors says."""
+    """In text, in JSON (of every element, and the worst) and in a table: what the measured errors promise."""
     args = ["--model", model] if model else []
     promised = {zone["promised"][model or "solid"] for zone in accuracy_data()["zones"]}
     found = document(capsys, *args)

@@ -15,7 +15,7 @@ from variants import DROP, HARDWARE, table
 
 from tactcad.cli.main import COMMANDS, main
 from tactcad.export.manifest import SCHEMA
-from tactcad.export.publish import turn
+from tactcad.export.publication import turn
 
 GOOD = (HARDWARE / "macro-array.toml").read_text()
 

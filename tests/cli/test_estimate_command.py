@@ -156,7 +156,8 @@ def test_absurd_options_are_refused_without_a_warning(capsys, value):
 
 
 ABSURD = (
-    "force tolerance hinge-length fillet-radius arm-height body-height body-length width youngs-modulus poisson"
+    "force tolerance hinge-length fillet-radius arm-height body-height body-length width youngs-modulus "
+    "poisson"
 ).split()
 
 
@@ -269,14 +270,16 @@ def test_size_refuses_bad_input(args, capsys):
 def test_estimates_load_neither_kernel_nor_scipy():
     code = (
         "import sys; from tactcad.cli.main import main; main(['estimate']); "
-        "heavy = {'OCP', 'build123d', 'cadquery', 'scipy', 'skfem', 'matplotlib', 'trimesh'} & set(sys.modules); "
+        "heavy = {'OCP', 'build123d', 'cadquery', 'scipy', 'skfem', 'matplotlib', 'trimesh'} & "
+        "set(sys.modules); "
         "sys.exit(f'loaded {heavy}' if heavy else 0)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 
 def test_estimate_starts_in_a_few_times_what_numpy_needs():
-    """The goal is 3; 4 here, on a machine that runs other tests beside it (`tactcad bench --only export` measures)."""
+    """The goal is 3; 4 here, on a machine that runs other tests beside it (`tactcad bench --only export`
+    measures)."""
 
     def best(*args):
         times = []

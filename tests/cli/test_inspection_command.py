@@ -1,4 +1,5 @@
-"""`tactcad estimate --inspection`: the sheet of an export, filled in as a shop would, and everything that can be wrong with it."""
+"""`tactcad estimate --inspection`: the sheet of an export, filled in as a shop would, and everything that can
+be wrong with it."""
 
 from __future__ import annotations
 
@@ -174,8 +175,8 @@ def test_verdicts(tmp_path, capsys):
     assert main(["estimate", "--inspection", str(tmp_path / "sheet.csv")]) == 0
     shown = capsys.readouterr().out
     assert (
-        f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line {line_of('E2', 'hinge thickness')})"
-        in shown
+        f"outside its tolerance: no. 2, hinge thickness 0.2551, 0.245 to 0.255 mm (line "
+        f"{line_of('E2', 'hinge thickness')})" in shown
     )
     assert "undecided" in shown and "not measured: arm height, every element: nominal" in shown
     assert "no uncertainty given: hinge thickness, no. 2, 5: taken as exact" in shown

@@ -1,4 +1,5 @@
-"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked for."""
+"""Only what a scene needs: what `--profile` counts, and that nothing is loaded or made that nobody asked
+for."""
 
 from __future__ import annotations
 
@@ -72,7 +73,7 @@ from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.lab.inspection_sheet import read_sheet
-import tactcad.lab.as_made, tactcad.export.strength, tactcad.scenes.bom
+import tactcad.lab.as_made, tactcad.export.strength_table, tactcad.scenes.bom
 design = load(sys.argv[1])
 for name in scene_names(design):
     for part in make_scene(design, name).parts:

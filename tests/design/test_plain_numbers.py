@@ -37,7 +37,7 @@ def test_a_cell_of_a_table_an_option_and_a_pose_are_read_by_it(capsys):
     parser = Parser(prog="tactcad")
     parser.add_argument("--force", type=float)
     with pytest.raises(SystemExit):
-        parser.parse_args(["--force", "4_0"])
+        parser.parse(["--force", "4_0"])
     assert "4_0" in capsys.readouterr().err
 
 

@@ -1,4 +1,5 @@
-"""Assembly drawings of shipped scenes: clean, complete, and what they say is the bill of materials and the solids."""
+"""Assembly drawings of shipped scenes: clean, complete, and what they say is the bill of materials and the
+solids."""
 
 from __future__ import annotations
 
@@ -15,8 +16,8 @@ from tactcad.drawing import parts_list
 from tactcad.drawing.assembly import assembly_sheets
 from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
 from tactcad.drawing.gate import pdf_runs
-from tactcad.drawing.ink import Arc, Fill, Stroke, Text, preliminary
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.page import MOST_DRAWN, fewer
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.parts.library.screws import METRIC
@@ -47,11 +48,12 @@ def assembly(request):
 
 
 def balloons(sheets) -> dict[int | str, tuple]:
-    """Item, or letter of another view -> its circle, the tip of its leader, and the sheet: read off the primitives."""
+    """Item, or letter of another view -> its circle, the tip of its leader, and the sheet: read off the
+    primitives."""
     found = {}
     for n, sheet in enumerate(sheets):
         for circle in (
-            i for i in sheet.items if isinstance(i, Arc) and i.role == "symbol" and i.radius == 4.5
+            i for i in sheet.items if isinstance(i, DrawnArc) and i.role == "symbol" and i.radius == 4.5
         ):
             (text,) = (t for t in sheet.texts if dist(t.at, circle.centre) < 2.0)
             leaders = [
@@ -112,7 +114,8 @@ def _away(p, a, b) -> float:
 
 
 def test_every_leader_ends_on_a_part_with_that_number(assembly):
-    """Around the end of the leader lie the lines of the part's own picture, drawn alone from the same eye and at the sheet's scale."""
+    """Around the end of the leader lie the lines of the part's own picture, drawn alone from the same eye and
+    at the sheet's scale."""
     from tactcad.drawing.picture import ABOVE, drawing
     from tactcad.solids.place import placed_shape
 
@@ -145,8 +148,8 @@ def test_every_leader_ends_on_a_part_with_that_number(assembly):
 
 
 def _found_again(own, f, tip, lines) -> float:
-    """The largest share of a part's corners that have the end of a drawn line at their place, with the part put so that one of
-    its edges is a drawn line and the leader ends on another or the same."""
+    """The largest share of a part's corners that have the end of a drawn line at their place, with the part
+    put so that one of its edges is a drawn line and the leader ends on another or the same."""
     chords = np.array([(np.array(a) * f, np.array(b) * f) for line in own for a, b in zip(line, line[1:])])
     whole = np.array([(line[0], line[-1]) for line in own]) * f
     corners = np.unique(whole.reshape(-1, 2), axis=0)
@@ -168,7 +171,8 @@ def _found_again(own, f, tip, lines) -> float:
 
 @pytest.mark.parametrize("assembly", SCENES[1:], ids=lambda pair: pair[1], indirect=True)
 def test_a_rig_is_taken_apart_sub_assembly_by_sub_assembly(assembly):
-    """Of the written file: which items a view has, in balloons or named as numbered elsewhere, and which views it points to."""
+    """Of the written file: which items a view has, in balloons or named as numbered elsewhere, and which
+    views it points to."""
     _, scene, rows, _, sheets = assembly
     item = {row.part_no: row.item for row in rows}
     at = {p.designator: item[p.part.part_no] for p in scene.placements}

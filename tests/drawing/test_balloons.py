@@ -1,4 +1,5 @@
-"""Balloons: one an item, outside the outlines, leaders that neither cross nor come close; on drawn-up and random views."""
+"""Balloons: one an item, outside the outlines, leaders that neither cross nor come close; on drawn-up and
+random views."""
 
 from __future__ import annotations
 

@@ -9,13 +9,13 @@ from variants import variant
 
 from tactcad.contour import rectangle
 from tactcad.drawing.gate import drawing_faults, pdf_runs
-from tactcad.drawing.ink import Arc, Stroke
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, Stroke
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.paper import A0, A1, A2, A3, A4, frame
+from tactcad.drawing.part_sheet import Order, part_sheet
 from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.plan import Breaks
-from tactcad.drawing.sheets import Order, part_sheet
+from tactcad.drawing.sheet_plan import Breaks
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 
@@ -88,12 +88,13 @@ def test_a_regular_row_is_said_by_its_ends_and_its_number(design, long_parts):
 
 
 def test_what_is_shown_of_a_broken_view_is_true_to_scale(design, long_parts):
-    """Holes near an end stand as far from it, by the scale, as on the part; between the breaks nothing is drawn."""
+    """Holes near an end stand as far from it, by the scale, as on the part; between the breaks nothing is
+    drawn."""
     part = long_parts["Carrier"]
     sheet, runs = sheet_of(design, part)
     up, down = (float(v) for v in next(r for r in runs if re.fullmatch(r"\d+:\d+", r)).split(":"))
     x0, y0, _, y1 = part.body.outer.box
-    circles = [i for i in sheet.items if isinstance(i, Arc) and i.role == "outline" and i.sweep == 360.0]
+    circles = [i for i in sheet.items if isinstance(i, DrawnArc) and i.role == "outline" and i.sweep == 360.0]
     ends = [f for f in part.features if f.name == "end_plate_screw"]
     bores = [c for c in circles if c.radius == pytest.approx(ends[0].diameter / 2 * up / down, abs=1e-6)]
     assert len(bores) == len(ends) == 4

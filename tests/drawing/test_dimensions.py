@@ -1,7 +1,8 @@
 """Dimensions determine the part: none missing, none given twice; what the sheets say is enough to make it.
 
-Two ways, neither of them the program's own account: the rank of the Jacobian over all coordinates, from singular values;
-and a reconstruction: coordinates are shaken, then solved for from the texts of the dimensions and the conventions.
+Two ways, neither of them the program's own account: the rank of the Jacobian over all coordinates, from
+singular values; and a reconstruction: coordinates are shaken, then solved for from the texts of the
+dimensions and the conventions.
 """
 
 from __future__ import annotations
@@ -16,11 +17,11 @@ from variants import variant
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing.keys import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot
-from tactcad.drawing.measure import Radius, Slope, Span, level, variables
+from tactcad.drawing.measures import Radius, Slope, Span, level, variables
 from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.plan import Dimension, number
+from tactcad.drawing.part_sheet import part_plan
 from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.sheets import part_plan
+from tactcad.drawing.sheet_plan import Dimension, number
 from tactcad.parts.description import Characteristic, Extrusion, Hole, Material, Part
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import make_scene, scene_names
@@ -59,7 +60,8 @@ LONG = {"array.row_arms": [[4] * 100, [8] * 100]}
 
 
 def plans(changes, base="macro-array", shortened=False):
-    """Of every part made here; of a changed array without its rigs. Or the broken views of those that are long enough."""
+    """Of every part made here; of a changed array without its rigs. Or the broken views of those that are
+    long enough."""
     design = variant(changes, base)
     refuse_broken(design)
     names = ("array",) if changes else scene_names(design)
@@ -131,7 +133,8 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits. H7 of 3 mm is +0.010/0 (ISO 286-2)."""
+    """The number that a dimension's text states, the middle of its limits. H7 of 3 mm is +0.010/0 (ISO
+    286-2)."""
     match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: \+([\d.]+)/0)?( H7)?", text)
     assert match, text
     assert not match[3] or match[1] == "3"
@@ -139,7 +142,8 @@ def told(text: str) -> float:
 
 
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):
-    """Gauss and Newton from shaken coordinates: texts and conventions lead back to the part, wherever it lies."""
+    """Gauss and Newton from shaken coordinates: texts and conventions lead back to the part, wherever it
+    lies."""
     rng = np.random.default_rng(7)
     for plan in some_plans:
         names = list(plan.values)

@@ -6,13 +6,13 @@ import re
 
 import pytest
 
-from tactcad.drawing.ink import THIN, VISIBLE, Arc, Hatch, Sheet, Text, arrow, segment
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import THIN, VISIBLE, DrawnArc, DrawnSheet, Hatch, Text, arrow, segment
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.paper import A4, frame
 
 
 def faults(*items) -> list[str]:
-    return layout_faults(Sheet("n", "t", A4.size, (*frame(A4), *items)))
+    return layout_faults(DrawnSheet("n", "t", A4.size, (*frame(A4), *items)))
 
 
 def square(x0: float, y0: float, x1: float, y1: float) -> tuple:
@@ -33,7 +33,7 @@ BAD = {
         segment((58, 95), (66, 108), THIN, "leader"),
         r"over a line \(leader\)",
     ),
-    "circle through a text": (Arc((60, 112), 11.0, line=VISIBLE), r"over a line \(outline\)"),
+    "circle through a text": (DrawnArc((60, 112), 11.0, line=VISIBLE), r"over a line \(outline\)"),
     "arrow head over a text": (arrow((61, 101), (70, 101)), "over a line"),
     "text outside the frame": (Text((195, 50), "12345"), "outside the frame"),
     "line outside the frame": (segment((30, 30), (10, 30)), "outside the frame"),
@@ -64,7 +64,7 @@ GOOD = {
     "texts a gap apart": (Text((60 + LENGTH + 1, 100), "7"),),
     "line under a text": (segment((50, 99.0), (90, 99.0)),),
     "turned text beside a text": (Text((58, 100), "7", angle=90),),
-    "text inside a circle": (Arc((60 + LENGTH / 2, 101.2), 7.0, line=VISIBLE),),
+    "text inside a circle": (DrawnArc((60 + LENGTH / 2, 101.2), 7.0, line=VISIBLE),),
     "dimension line that ends at an edge": (
         segment((30, 50), (40, 50)),
         segment((40, 40), (40, 60), VISIBLE, "outline"),

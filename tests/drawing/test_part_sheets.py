@@ -1,4 +1,5 @@
-"""Finished sheets: clean at paper size, read back, the same in any process, refused where they cannot be right."""
+"""Finished sheets: clean at paper size, read back, the same in any process, refused where they cannot be
+right."""
 
 from __future__ import annotations
 
@@ -18,17 +19,18 @@ from variants import HARDWARE, variant
 import tactcad
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import fonts, sheets
+from tactcad.drawing import fonts
+from tactcad.drawing import part_sheet as sheets
 from tactcad.drawing.compose import compose
 from tactcad.drawing.gate import drawing_faults, key_faults, pdf_runs
-from tactcad.drawing.ink import Arc, Stroke, Text
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, Stroke, Text
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.paper import A3, A4
+from tactcad.drawing.part_sheet import Order, part_sheet, title_of, written
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.scale import SERIES
-from tactcad.drawing.sheets import Order, part_sheet, title_of, written
 from tactcad.drawing.workers import all_written
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
 from tactcad.export.pipeline import ExportOptions, export
@@ -103,12 +105,15 @@ def test_the_hinge_is_shown_at_ten_to_one_or_larger(finished):
             assert int(label.removeprefix("Z (").split(":")[0]) >= 10
             # and its fillets are true arcs at that scale
             factor = int(label.removeprefix("Z (").split(":")[0])
-            radii = {round(i.radius, 3) for i in sheet.items if isinstance(i, Arc) and i.role == "outline"}
+            radii = {
+                round(i.radius, 3) for i in sheet.items if isinstance(i, DrawnArc) and i.role == "outline"
+            }
             assert round(0.3 * factor, 3) in radii
 
 
 def test_dimension_lines_stand_off_the_outline(finished):
-    """No dimension line is nearer than 7 mm to the part's box in its own direction: those across a web apart."""
+    """No dimension line is nearer than 7 mm to the part's box in its own direction: those across a web
+    apart."""
     for number in ("macro-array-stop-plate", "macro-array-carrier", "macro-array-spacer"):
         sheet = finished[number]
         outline = [i for i in sheet.items if isinstance(i, Stroke) and i.role == "outline"]
@@ -168,13 +173,14 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
 
 
 def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
-    """Five sheets from two processes of this one, and two of them from fresh processes with other hash seeds."""
+    """Five sheets from two processes of this one, and two of them from fresh processes with other hash
+    seeds."""
     some = list(orders.values())[:5]
     side_by_side = all_written(some, written)
     assert [written(order) for order in some[:2]] == side_by_side[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
         "done = [written(o) for o in reversed(pickle.load(open(sys.argv[1], 'rb')))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in reversed(done)))"
     )
@@ -246,8 +252,9 @@ print(json.dumps([status, sorted({m.split(".")[0] for m in sys.modules})]))
 
 
 def test_export_with_drawings(tmp_path):
-    """Every part made here has its PDF and SVG in the manifest, each names the file it is made from with the hash that
-    the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF library."""
+    """Every part made here has its PDF and SVG in the manifest, each names the file it is made from with the
+    hash that the manifest has for it; the same again rebuilds nothing and loads neither kernel nor PDF
+    library."""
     (tmp_path / "d.toml").write_text(
         (HARDWARE / "macro-array.toml").read_text().replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
     )

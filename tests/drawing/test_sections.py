@@ -1,4 +1,5 @@
-"""Sections: where one is cut, by features alone; what it shows, held against the part's description and its solid; its marks."""
+"""Sections: where one is cut, by features alone; what it shows, held against the part's description and its
+solid; its marks."""
 
 from __future__ import annotations
 
@@ -20,14 +21,14 @@ import tactcad
 from tactcad.contour import Arc as ArcSegment
 from tactcad.contour import circle, rectangle
 from tactcad.drawing import compose
+from tactcad.drawing.contours import in_part
 from tactcad.drawing.gate import pdf_runs
 from tactcad.drawing.ink import Fill, Hatch, Stroke, Text
-from tactcad.drawing.layout import layout_faults
-from tactcad.drawing.measure import in_part
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.notes import MadeFrom
+from tactcad.drawing.part_sheet import Order, part_sheet, written
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.sheets import Order, part_sheet, written
 from tactcad.drawing.svg import svg_bytes
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
 from tactcad.scenes import make_scene
@@ -166,7 +167,8 @@ def polygon(contour) -> list[tuple[float, float]]:
 
 
 def length_at(contour, k: int, x: float) -> float:
-    """How much of the line at x (k = 0) or y (k = 1) lies inside a contour: by its corners, none of which is on the line."""
+    """How much of the line at x (k = 0) or y (k = 1) lies inside a contour: by its corners, none of which is
+    on the line."""
     x += 1.234e-10
     points = [(p[k], p[1 - k]) for p in polygon(contour)]
     sides = zip(points, points[1:] + points[:1])
@@ -177,7 +179,8 @@ def length_at(contour, k: int, x: float) -> float:
 
 
 def area_at(part: Part, k: int, x: float) -> float:
-    """Of the part cut across axis k at x, mm2: the stock's rectangle less what pockets and the holes on the plane take off."""
+    """Of the part cut across axis k at x, mm2: the stock's rectangle less what pockets and the holes on the
+    plane take off."""
     body = part.body
     area = (length_at(body.outer, k, x) - sum(length_at(c, k, x) for c in body.openings)) * body.thickness
     for f in part.features:
@@ -201,8 +204,8 @@ def svg_hatching(sheet) -> list[tuple[float, float, float, float]]:
 
 @pytest.mark.parametrize("number", [*CUT, ACROSS_Y])
 def test_the_hatching_has_the_area_of_the_cut_part(number, orders, sheets):
-    """Of the written file: lines at 45 degrees, equally spaced, whose length times their spacing is the face's area as
-    the description gives it; and the face's polygons have that area to the last digits."""
+    """Of the written file: lines at 45 degrees, equally spaced, whose length times their spacing is the
+    face's area as the description gives it; and the face's polygons have that area to the last digits."""
     sheet, f = sheets[number], scale_of(sheets[number])
     meant = area_at(orders[number].part, number == ACROSS_Y, plane_of(orders[number]))
     loops = face_of(sheet).loops
@@ -224,7 +227,8 @@ def test_the_hatching_has_the_area_of_the_cut_part(number, orders, sheets):
 
 
 def test_the_hatching_lies_in_the_material_everywhere(orders, sheets):
-    """Points along the lines, taken back into the part, against the kernel's solid: inside the material, every one."""
+    """Points along the lines, taken back into the part, against the kernel's solid: inside the material,
+    every one."""
     from OCP.BRepClass3d import BRepClass3d_SolidClassifier
     from OCP.gp import gp_Pnt
     from OCP.TopAbs import TopAbs_IN
@@ -253,8 +257,8 @@ def test_the_hatching_lies_in_the_material_everywhere(orders, sheets):
 
 
 def test_a_cut_thread_is_drawn_as_iso_6410_says(sheets):
-    """M6, 10 deep, in the roller's tip at 5:1: thin lines 15 mm from the axis on hatched ground, 50 mm long; a thick line across at
-    their end; hatching up to the drilled hole, 12.5 mm from the axis."""
+    """M6, 10 deep, in the roller's tip at 5:1: thin lines 15 mm from the axis on hatched ground, 50 mm long;
+    a thick line across at their end; hatching up to the drilled hole, 12.5 mm from the axis."""
     sheet = sheets["tip-roller"]
     label = next(t for t in sheet.texts if t.text == "S-S")
     axis = label.at[0]
@@ -288,7 +292,8 @@ def test_letters_stand_once_at_each_end_and_once_over_the_section(orders, sheets
 
 
 def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
-    """Thick ends outside the front view's outline at the plane, arrows to the right: what is seen from the left stands there."""
+    """Thick ends outside the front view's outline at the plane, arrows to the right: what is seen from the
+    left stands there."""
     for number in CUT:
         order, sheet, f = orders[number], sheets[number], scale_of(sheets[number])
         ends = [
@@ -317,7 +322,8 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
 
 
 def test_a_plane_across_y_is_seen_from_the_free_side(orders, sheets):
-    """The bar has its end view below the front view: the section is seen from below, so it stands above (first angle)."""
+    """The bar has its end view below the front view: the section is seen from below, so it stands above
+    (first angle)."""
     sheet, f = sheets[ACROSS_Y], scale_of(sheets[ACROSS_Y])
     ends = [
         i.points for i in sheet.items if isinstance(i, Stroke) and i.role == "cutting" and i.line.width == 0.5
@@ -350,7 +356,7 @@ def test_equal_bytes_in_other_processes(orders, tmp_path):
     here = [hashlib.sha256(w.pdf + w.svg).hexdigest() for w in map(written, some)]
     (tmp_path / "orders").write_bytes(pickle.dumps(some))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.sheets import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
         "done = [written(o) for o in pickle.load(open(sys.argv[1], 'rb'))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in done))"
     )
@@ -369,7 +375,8 @@ def test_equal_bytes_in_other_processes(orders, tmp_path):
 
 
 def leaders_of(sheet) -> dict[str, list[tuple]]:
-    """Leader lines by their callout's first text, tip first: an arrow, an inclined line, a shelf, the texts."""
+    """Leader lines by their callout's first text, tip first: an arrow, an inclined line, a shelf, the
+    texts."""
     found, lines = {}, []
     for item in sheet.items:
         if isinstance(item, Stroke) and item.role == "leader" and len(item.points) == 2:

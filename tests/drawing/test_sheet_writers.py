@@ -15,12 +15,12 @@ from pypdf import PdfReader
 
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing import fonts
-from tactcad.drawing.ink import Arc, Sheet, Stroke, Text, arrow, preliminary
-from tactcad.drawing.layout import layout_faults
+from tactcad.drawing.ink import DrawnArc, DrawnSheet, Stroke, Text, arrow, preliminary
+from tactcad.drawing.layout_check import layout_faults
 from tactcad.drawing.paper import A3, A4, frame
 from tactcad.drawing.pdf import pdf_bytes
 from tactcad.drawing.svg import svg_bytes
-from tactcad.drawing.title import TitleBlock, notes, table, title_block, wrapped
+from tactcad.drawing.title import TitleBlock, notes, title_block, wrapped
 
 SIGNS = "0.25 ±0.005 ⌀3.4 ↧8 R0.3 Ra 0.8 µm 45° 4×"
 
@@ -46,7 +46,7 @@ def block(**changes) -> TitleBlock:
     return TitleBlock(**{**usual, **changes})
 
 
-def sheet(paper=A3, **changes) -> Sheet:
+def sheet(paper=A3, **changes) -> DrawnSheet:
     lines, _ = notes((30, 270), [SIGNS, "burr-free"], 90)
     items = (
         *frame(paper),
@@ -54,10 +54,10 @@ def sheet(paper=A3, **changes) -> Sheet:
         *lines,
         Text((30, 150), "upright 12.5", 3.5, angle=90),
         Stroke(((60, 150), (80, 150))),
-        Arc((150, 150), 20, 30, 120),
+        DrawnArc((150, 150), 20, 30, 120),
         arrow((60, 150), (70, 150)),
     )
-    return Sheet("x-element-a4mm", "Sensing element", paper.size, items)
+    return DrawnSheet("x-element-a4mm", "Sensing element", paper.size, items)
 
 
 def test_every_text_of_the_sheet_is_found_again_in_the_pdf():
@@ -87,9 +87,10 @@ def test_capitals_are_as_high_as_stated():
 
 
 def test_text_box_holds_the_ink_that_a_rasteriser_paints(tmp_path):
-    """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too much."""
+    """pdftoppm paints the text; every dark pixel lies in the box, and the box is no larger than a pixel too
+    much."""
     text = Text((40, 60), "Qg±⌀(12)", 10, angle=90)
-    bare = Sheet("n", "t", A4.size, (text,))
+    bare = DrawnSheet("n", "t", A4.size, (text,))
     (tmp_path / "a.pdf").write_bytes(pdf_bytes([bare], "t", "a", "2026-11-21"))
     subprocess.run(["pdftoppm", "-r", "127", "-gray", tmp_path / "a.pdf", tmp_path / "a"], check=True)
     data = next(tmp_path.glob("a*.pgm")).read_bytes()
@@ -162,7 +163,8 @@ def test_a_draft_says_so_and_stays_clean():
         {"mass": None},
         {"number": "a-rather-long-design-name-element-a12.345mm-t0.123mm"},
         {
-            "finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face around it Ra 0.8"
+            "finish": "Ra 1.6, clear anodised after machining; dowel holes masked; groove floor and face "
+            "around it Ra 0.8"
         },
     ],
 )
@@ -198,9 +200,3 @@ def test_wrapped_lines_fit_and_lose_nothing():
     lines = wrapped(text, 2.5, 60)
     assert all(fonts.width(line, 2.5) <= 60 for line in lines)
     assert "".join(lines).replace(" ", "") == text.replace(" ", "")
-
-
-def test_a_table_keeps_its_texts_off_its_lines():
-    items, w, h = table((30, 200), ["item", "qty"], [["1", "M3×10"], ["22", "g µ Q"]])
-    assert layout_faults(Sheet("n", "t", A4.size, (*frame(A4), *items))) == []
-    assert h == pytest.approx(15.0)

@@ -1,4 +1,5 @@
-"""Parts side by side, the last resort: each at a preferred scale that is stated, on a full sheet, clean and complete."""
+"""Parts side by side, the last resort: each at a preferred scale that is stated, on a full sheet, clean and
+complete."""
 
 from __future__ import annotations
 

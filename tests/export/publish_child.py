@@ -1,8 +1,9 @@
 """Run by test_publish.py: publishes a folder of three equal files, killed before its n-th file operation.
 
 usage: publish_child.py DIR CONTENT N [HOW]...    N = 0 lets it live
-HOW: keep or discard what others put there; "two-renames", as where names cannot be exchanged; "meddled", somebody
-writes a file into the earlier folder while the new one is made; "hanging", it says so and waits in the middle.
+HOW: keep or discard what others put there; "two-renames", as where names cannot be exchanged; "meddled",
+somebody writes a file into the earlier folder while the new one is made; "hanging", it says so and waits in
+the middle.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from tactcad.export import publish
+from tactcad.export import publication as publish
 
 CHANGES = {
     "os.rename",

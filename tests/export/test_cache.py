@@ -157,7 +157,8 @@ def test_reading_is_using(cache):
 
 
 def test_a_clock_that_was_set_back_costs_time_only(cache):
-    """Entries from the future count as used last; the bound holds all the same, and nothing wrong comes back."""
+    """Entries from the future count as used last; the bound holds all the same, and nothing wrong comes
+    back."""
     for key, year_from_now in (("old", 0), ("middle", 1), ("new", -50)):
         cache.put(key, key.encode() * 1000)
         used(cache, key, 1.8e9 + year_from_now * 3.15e7)

@@ -1,4 +1,5 @@
-"""Inspection sheet and strength summary: what stands in them, against the design, the contour and the closed forms."""
+"""Inspection sheet and strength summary: what stands in them, against the design, the contour and the closed
+forms."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import pytest
 from variants import HARDWARE, variant
 
 from tactcad.export.inspection import COLUMNS, inspection_bytes
-from tactcad.export.strength import strength_bytes
+from tactcad.export.strength_table import strength_bytes
 from tactcad.parts.designs import load
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout

@@ -18,7 +18,7 @@ from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
 from tactcad.export.difference import differences
 from tactcad.export.geometry import contour_record, contours
-from tactcad.export.golden import (
+from tactcad.export.golden_file import (
     accept,
     check_golden,
     golden_bytes,

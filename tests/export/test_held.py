@@ -1,4 +1,5 @@
-"""Unfinished files and folders: held while their process lives, gone when it was killed and the next one comes."""
+"""Unfinished files and folders: held while their process lives, gone when it was killed and the next one
+comes."""
 
 from __future__ import annotations
 

@@ -16,6 +16,7 @@ from tactcad.export import inputs
 from tactcad.export.inputs import (
     Inputs,
     digest,
+    first_installed,
     flattened,
     inputs_from_json,
     inputs_of,
@@ -134,6 +135,21 @@ def test_versions_of_what_is_installed_and_what_is_not():
     assert versions["numpy"] == numpy.__version__
     assert versions["no-such-library"] == "(absent)"
     assert versions["python"] == sys.version.split()[0]
+
+
+def test_of_bindings_that_stand_for_each_other_the_installed_one_is_named(monkeypatch):
+    def version(name):
+        if name != "cadquery-ocp-novtk":
+            raise inputs.metadata.PackageNotFoundError(name)
+        return "7.9.3.1"
+
+    assert (
+        first_installed("cadquery-ocp", "cadquery-ocp-novtk") == "cadquery-ocp"
+    )  # the stand-in comes second
+    monkeypatch.setattr(inputs.metadata, "version", version)
+    assert first_installed("cadquery-ocp", "cadquery-ocp-novtk") == "cadquery-ocp-novtk"
+    assert library_versions(["cadquery-ocp-novtk"])["cadquery-ocp-novtk"] == "7.9.3.1"
+    assert first_installed("no-such", "nor-this") == "no-such"
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""Pictures: hidden lines are hidden, extents are the descriptions', bytes do not depend on the order of shapes."""
+"""Pictures: hidden lines are hidden, extents are the descriptions', bytes do not depend on the order of
+shapes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Whole exports: equal bytes anywhere, nothing rebuilt without need, everything rebuilt with need, whole when killed."""
+"""Whole exports: equal bytes anywhere, nothing rebuilt without need, everything rebuilt with need, whole when
+killed."""
 
 from __future__ import annotations
 
@@ -114,7 +115,8 @@ def two_exports(tmp_path_factory):
             PYTHONHASHSEED=seed,
             TACTCAD_CACHE=str(home / "cache"),
         )
-        # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room apart)
+        # whatever of the code a cold export runs, the manifest's inputs watch (the command line's own room
+        # apart)
         assert "solids" in said["rooms"]
         assert set(said["rooms"]) - {"cli", "account", "ending"} <= set(
             pipeline.ROOMS

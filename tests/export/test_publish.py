@@ -1,4 +1,5 @@
-"""All or nothing, and nothing of somebody's lost: kills at every file operation, two writers, a machine that refuses."""
+"""All or nothing, and nothing of somebody's lost: kills at every file operation, two writers, a machine that
+refuses."""
 
 from __future__ import annotations
 
@@ -18,8 +19,8 @@ import publish_child
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import publish
-from tactcad.export.publish import DISCARD, KEEP, REFUSE, turn
+from tactcad.export import publication as publish
+from tactcad.export.publication import DISCARD, KEEP, REFUSE, turn
 
 CHILD = Path(__file__).with_name("publish_child.py")
 FILES = {"a.step", "b.dxf", "sub/c.svg"}
@@ -302,8 +303,8 @@ def test_a_folder_moved_away_meanwhile(tmp_path, way):
 def killed_everywhere(tmp_path: Path, *how: str, meddled: bool = False) -> tuple[int, int]:
     """One run dies before its first operation, the next before its second, until one has lived.
 
-    After each the next run settles what it left: DIR is whole, and what somebody wrote is in DIR or kept. Returns how many
-    died with the earlier folder standing and with the new one.
+    After each the next run settles what it left: DIR is whole, and what somebody wrote is in DIR or kept.
+    Returns how many died with the earlier folder standing and with the new one.
     """
     out, stood = tmp_path / "macro", []
     export(out, "old")
@@ -626,7 +627,7 @@ def test_a_name_that_is_too_long(tmp_path, length):
 READ_ONLY = """
 import os, sys
 from tactcad.design.messages import InputError
-from tactcad.export.publish import turn
+from tactcad.export.publication import turn
 if os.geteuid() == 0:
     os.seteuid(65534)  # root may write everywhere; nobody may not
 try:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.export import step
+from tactcad.export import step_file as step
 from tactcad.export.step_text import Header, canonical
 
 pytestmark = pytest.mark.cad
@@ -157,7 +157,8 @@ def test_the_header_says_who_and_when_in_ascii(assembly):
 
 
 def test_other_software_reads_the_assembly(macro_scene, assembly, tmp_path):
-    """build123d's importer, which knows nothing of how it was written: solids, volume and box of the whole."""
+    """build123d's importer, which knows nothing of how it was written: solids, volume and box of the
+    whole."""
     from build123d import import_step
 
     path = tmp_path / "a.step"
@@ -199,7 +200,8 @@ def test_canonical_text_does_not_depend_on_order_or_numbers(assembly):
 
 
 def test_canonical_text_does_not_depend_on_the_order_of_styles(macro_scene, assembly):
-    """The kernel writes one list of styled items a prototype, ordered by memory address: numbers change places."""
+    """The kernel writes one list of styled items a prototype, ordered by memory address: numbers change
+    places."""
     text = assembly.decode("ascii")
     pairs = entities(text)
     styles = [n for n, body in pairs if body.startswith("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION")]

@@ -5,17 +5,17 @@ from __future__ import annotations
 
 import warnings
 
+import fem_extremes
 import numpy as np
 import pytest
 from hinges import scaled
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import ladder as elements
+from tactcad.fem import one_element as elements
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.health import corner_angles, plane_health
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.fit import fem_extremes
 from tactcad.fit.accuracy_samples import draw_range
 from tactcad.fit.fit_samples import section
 from tactcad.mechanics import ladder

@@ -12,11 +12,11 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Contour
-from tactcad.design.fields import Number, Numbers, Rows
+from tactcad.design.fields import Number, NumberRows, Numbers
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.dxf import check_dxf, dxf_bytes
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import cut_element
 from tactcad.parts.description import Extrusion, Revolution
 from tactcad.parts.element import element
@@ -258,7 +258,7 @@ def shrunk(tree, factor: float):
             changes[f.name] = {k * factor: v * factor for k, v in value.items()}
         elif isinstance(spec, Numbers) and spec.unit == "mm":
             changes[f.name] = tuple(v * factor for v in value)
-        elif isinstance(spec, Rows):
+        elif isinstance(spec, NumberRows):
             changes[f.name] = tuple(tuple(v * factor for v in row) for row in value)
     return replace(tree, **changes)
 

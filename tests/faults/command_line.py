@@ -1,7 +1,7 @@
 """The real command in a process of its own, two small designs, and what an undisturbed export of each holds.
 
-Shared by the tests of this folder. Nothing here knows how an export is made: a folder is sound where its manifest,
-read with nothing but json and hashlib, agrees with every file below it.
+Shared by the tests of this folder. Nothing here knows how an export is made: a folder is sound where its
+manifest, read with nothing but json and hashlib, agrees with every file below it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,8 @@ def one_by_one(arm: float, revision: str) -> str:
 
 
 def environment(folder: Path, **changes: str) -> dict[str, str]:
-    """Nothing of this machine's but the way to programs and libraries; home, temporary files and cache of its own."""
+    """Nothing of this machine's but the way to programs and libraries; home, temporary files and cache of its
+    own."""
     for name in ("home", "tmp"):
         (folder / name).mkdir(exist_ok=True)
     kept = {k: v for k, v in os.environ.items() if k in ("PATH", "LD_LIBRARY_PATH")}
@@ -116,7 +117,8 @@ def assert_tidy(out: Path, work: Path) -> None:
 
 @dataclass(frozen=True)
 class Bench:
-    """Two designs by name, what each exports to, and a cache that holds all of it. `seconds`: a cold export."""
+    """Two designs by name, what each exports to, and a cache that holds all of it. `seconds`: a cold
+    export."""
 
     folder: Path
     texts: dict[str, str]
@@ -129,12 +131,14 @@ class Bench:
             (folder / f"{name}.toml").write_text(text, encoding="utf-8")
 
 
-# Runs many commands, each in a process of its own that is forked with the program loaded: what a shell would do, without
-# waiting for Python to start every time. Takes and gives JSON: argument lists; then status, output, messages of each.
+# Runs many commands, each in a process of its own that is forked with the program loaded: what a shell would
+# do, without waiting for Python to start every time. Takes and gives JSON: argument lists; then status,
+# output, messages of each.
 FORKS = """
 import importlib, json, os, signal, sys, tempfile
 from tactcad.cli.main import COMMANDS, main
-import tactcad.export.pipeline, tactcad.export.sides, tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
+import tactcad.export.pipeline, tactcad.export.sides
+import tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
 for name in COMMANDS:
     importlib.import_module("tactcad.cli." + name)
 found = []

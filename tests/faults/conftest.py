@@ -9,7 +9,8 @@ import time
 import pytest
 from command_line import Bench, assert_sound, assert_tidy, contents, environment, one_by_one, tactcad_run
 
-# A shell that starts the tests in the background has SIGINT ignored, nohup SIGHUP: what the tests start would inherit it.
+# A shell that starts the tests in the background has SIGINT ignored, nohup SIGHUP: what the tests start would
+# inherit it.
 for _number in (signal.SIGINT, signal.SIGHUP, signal.SIGTERM):
     if signal.getsignal(_number) is signal.SIG_IGN:
         signal.signal(_number, signal.SIG_DFL)

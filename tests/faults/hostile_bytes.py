@@ -1,4 +1,5 @@
-"""Files as strangers hand them in: a good one, changed here and there by chance, within its grammar and against it."""
+"""Files as strangers hand them in: a good one, changed here and there by chance, within its grammar and
+against it."""
 
 from __future__ import annotations
 

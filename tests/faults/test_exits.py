@@ -109,7 +109,8 @@ def test_a_terminal_that_hung_up_is_no_error(bench, work):
 
 # --- signals ---
 
-# Sends itself a signal at the n-th module that is imported after tactcad took its signals over; n = 0 counts them.
+# Sends itself a signal at the n-th module that is imported after tactcad took its signals over; n = 0 counts
+# them.
 AT_IMPORT = """
 import os, runpy, signal, sys
 number, turn = int(sys.argv[1]), int(sys.argv[2])
@@ -183,7 +184,8 @@ def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
 
 @pytest.mark.parametrize("name", STATUS)
 def test_helpers_end_with_what_they_help(bench, work, name):
-    """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them did."""
+    """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them
+    did."""
     arguments = ("export", "A.toml", "--drawings", "--out", "out")
     for group in (False, True):
         with subprocess.Popen(
@@ -209,3 +211,40 @@ def test_helpers_end_with_what_they_help(bench, work, name):
             time.sleep(0.02)
         assert not any(running(int(helper)) for helper in helpers)
         assert not (work / "out").exists() and not list((work / "tmp").iterdir())
+
+
+def descendants(process: int) -> set[int]:
+    """The processes that it started, and theirs; none of one that has ended."""
+    try:
+        tasks = list(Path(f"/proc/{process}/task").iterdir())
+        children = {int(child) for task in tasks for child in (task / "children").read_text().split()}
+    except OSError:
+        return set()
+    return children.union(*map(descendants, children))
+
+
+@pytest.mark.parametrize("name", STATUS)
+def test_a_benchmark_leaves_nobody_running(work, name):
+    """What it measures runs under a meter, two processes down; it alone gets the signal."""
+    with subprocess.Popen(
+        [*MODULE, "bench", "--smoke", "--only", "detail", "--out", "report"],
+        cwd=work,
+        env=environment(work),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as measuring:
+        below: set[int] = set()
+        until = time.monotonic() + 120
+        while len(below) < 2 and time.monotonic() < until and measuring.poll() is None:
+            time.sleep(0.02)
+            below = descendants(measuring.pid)
+        measuring.send_signal(getattr(signal, name))
+        said = measuring.stderr.read()
+    assert len(below) >= 2, said
+    assert_ended(subprocess.CompletedProcess([], measuring.returncode, b"", said.encode()), name)
+    until = time.monotonic() + 5
+    while any(map(running, below)) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not any(map(running, below))
+    assert not (work / "report").exists() and not list((work / "tmp").iterdir())

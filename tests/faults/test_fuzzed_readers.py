@@ -1,7 +1,8 @@
 """Every reader of a user's file, fed with files changed by chance: a result, or one line that names the file.
 
-Each reader is taken as far as a command takes what it read, printed text and JSON included, so that nothing it lets
-through breaks what follows. Numpy's warnings count as faults. Seeds come from hypothesis, the same ones every time.
+Each reader is taken as far as a command takes what it read, printed text and JSON included, so that nothing
+it lets through breaks what follows. Numpy's warnings count as faults. Seeds come from hypothesis, the same
+ones every time.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ from hypothesis import strategies as st
 
 from tactcad.checks.shop import load_shop
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export import golden, manifest, sides
+from tactcad.export import golden_file as golden
+from tactcad.export import manifest, sides
 from tactcad.export.cache import Cache
 from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
@@ -42,6 +44,7 @@ from tactcad.lab import (
     readings,
 )
 from tactcad.lab.inspection_sheet import read_sheet
+from tactcad.lab.load_cell import LoadCell
 from tactcad.paper import published
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
@@ -55,7 +58,8 @@ LONGEST = 60  # s; what takes longer hangs
 
 @dataclass(frozen=True)
 class Reader:
-    """A good file, its name, and what a command does with a file of that kind. `named`: messages name the file."""
+    """A good file, its name, and what a command does with a file of that kind. `named`: messages name the
+    file."""
 
     name: str
     good: bytes
@@ -63,7 +67,7 @@ class Reader:
     named: bool = True
 
 
-CELL = calibration.LoadCell.parse("57.04")
+CELL = LoadCell.parse("57.04")
 
 
 def calibrate(path: Path) -> None:
@@ -218,7 +222,8 @@ def every_scene(path: Path) -> None:
 
 
 NAMES = (
-    "design.toml shop.toml table1.csv table2.csv batch.csv readings.csv grasp.csv calibration.csv calibration.json sheet.csv "
+    "design.toml shop.toml table1.csv table2.csv batch.csv readings.csv grasp.csv calibration.csv "
+    "calibration.json sheet.csv "
     "golden.json manifest.json part.dxf bom.json samples.csv entry"
 ).split()
 

@@ -1,6 +1,7 @@
 """Design files with hostile names, values, sizes and encodings, through the real command.
 
-Refused ones: one line, exit status 2, nothing written. Legal ones with strange text: escaped in every kind of file.
+Refused ones: one line, exit status 2, nothing written. Legal ones with strange text: escaped in every kind of
+file.
 """
 
 from __future__ import annotations
@@ -248,7 +249,8 @@ class Page(HTMLParser):
 
 
 def step_text(coded: str) -> str:
-    """Text of a STEP string (ISO 10303-21, 6.4.3): quotes and backslashes doubled, the rest beyond ASCII as \\X2\\, \\X4\\."""
+    """Text of a STEP string (ISO 10303-21, 6.4.3): quotes and backslashes doubled, the rest beyond ASCII as
+    \\X2\\, \\X4\\."""
 
     def decoded(match: re.Match) -> str:
         if match.group(0) in ("''", "\\\\"):

@@ -1,4 +1,5 @@
-"""`tactcad export` killed with SIGKILL at random moments spread over its whole run: all or nothing, and no litter."""
+"""`tactcad export` killed with SIGKILL at random moments spread over its whole run: all or nothing, and no
+litter."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ def killed_after(seconds: float, *arguments: str, cwd: Path, env: dict[str, str]
 def kill_exports(bench, folder: Path, kills: int) -> None:
     """Exports of A and B in turn into one folder, each killed once and then done again.
 
-    Two in three start with a cold cache, so that kills fall into the kernel's work too, the others with what is there.
+    Two in three start with a cold cache, so that kills fall into the kernel's work too, the others with what
+    is there.
     """
     chance = random.Random(SEED)
     out, env = folder / "exports" / "out", environment(folder)

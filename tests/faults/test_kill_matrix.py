@@ -1,7 +1,8 @@
-"""Five commands that write, ended by four signals at moments spread over each one's run: whole or untouched, and no litter.
+"""Five commands that write, ended by four signals at moments spread over each one's run: whole or untouched,
+and no litter.
 
-What lies there before is what the command made of input A, after it what it makes of B; whatever ends it in between, one of
-the two is there. Nothing here knows how anything is written.
+What lies there before is what the command made of input A, after it what it makes of B; whatever ends it in
+between, one of the two is there. Nothing here knows how anything is written.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ OTHERS = ("home", "cache")  # where libraries and the cache keep theirs
 
 @dataclass(frozen=True)
 class Case:
-    """A command in a folder of its own: seconds of a run, and what lies there after a run with either input."""
+    """A command in a folder of its own: seconds of a run, and what lies there after a run with either
+    input."""
 
     work: Path
     words: str
@@ -93,7 +95,8 @@ def hidden(path: str) -> bool:
 
 
 def ended(case: Case, name: str, sent: str, share: float) -> bool:
-    """Send the signal at that share of a run's time: whether that ended the command, by the signal's status and in one line."""
+    """Send the signal at that share of a run's time: whether that ended the command, by the signal's status
+    and in one line."""
     with subprocess.Popen(
         [*MODULE, *case.line(name)],
         cwd=case.work,
@@ -127,7 +130,8 @@ def takes_signals(process: int) -> bool:
 
 
 def end_at(case: Case, standing: str, sent: str, moments: int, every: bool) -> tuple[str, int]:
-    """End runs at that many moments; what stands there at last, and how many moments came before the run's end.
+    """End runs at that many moments; what stands there at last, and how many moments came before the run's
+    end.
 
     With `every`, each is followed by an undisturbed run, and every second one has to make everything anew.
     """

@@ -1,4 +1,5 @@
-"""A machine that refuses, and others at the same files: full disks, read-only folders, open files, exports at once."""
+"""A machine that refuses, and others at the same files: full disks, read-only folders, open files, exports at
+once."""
 
 from __future__ import annotations
 
@@ -87,7 +88,8 @@ print("as it should be")
 
 
 def test_full_disk(work):
-    """A disk of its own, filled until nothing is free, or a page, a quarter of an export, all of one but five pages."""
+    """A disk of its own, filled until nothing is free, or a page, a quarter of an export, all of one but five
+    pages."""
     command = in_own_mounts(SMALL_DISK, work / "disk", "8M")
     path = os.pathsep.join([str(Path(__file__).parent), environment(work)["PYTHONPATH"]])
     done = subprocess.run(
@@ -286,7 +288,8 @@ def test_two_exports_at_once_with_one_cold_cache(bench, work):
 
 
 def test_a_cache_beyond_its_bound_is_trimmed_by_the_next_export(bench, work):
-    """Entries that look like 300 MB each (without taking it) were used long ago: they go, and those in use stay."""
+    """Entries that look like 300 MB each (without taking it) were used long ago: they go, and those in use
+    stay."""
     own = set(contents(work / "cache"))
     for n in range(3):
         path = work / "cache" / f"{n:02d}" / f"{n:02d}{'0' * 62}"

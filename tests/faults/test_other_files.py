@@ -1,4 +1,5 @@
-"""Every other file that a command reads, and every other word: one line that says what is wrong, exit status 2, nothing written."""
+"""Every other file that a command reads, and every other word: one line that says what is wrong, exit status
+2, nothing written."""
 
 from __future__ import annotations
 
@@ -158,7 +159,8 @@ def test_files_that_are_something_else(bench, good, tmp_path, kind):
 
 
 def test_the_good_files_are_read(good, tmp_path, bench):
-    """Or the tests above would show nothing. (`validate` and `check` with their own files are tested elsewhere.)"""
+    """Or the tests above would show nothing. (`validate` and `check` with their own files are tested
+    elsewhere.)"""
     bench.write_designs(tmp_path)
     for name, data in good.items():
         (tmp_path / name).write_bytes(data)
@@ -272,7 +274,8 @@ FAR = {
 
 
 def test_mistyped_words(bench, tmp_path):
-    """Commands, options, rungs, designs, scenes, fields, choices: what is legal, and the one that was meant."""
+    """Commands, options, rungs, designs, scenes, fields, choices: what is legal, and the one that was
+    meant."""
     bench.write_designs(tmp_path)
     good = bench.texts["A"]
     (tmp_path / "sides.toml").write_text(good.replace('sides = "', 'sides = "twoo" # ', 1))

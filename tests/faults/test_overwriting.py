@@ -1,4 +1,5 @@
-"""No command writes over what it reads: under another name, through a link, by a hard link, or with a folder round it."""
+"""No command writes over what it reads: under another name, through a link, by a hard link, or with a folder
+round it."""
 
 from __future__ import annotations
 
@@ -57,7 +58,8 @@ def good(name: str, inputs) -> bytes:
 
 
 def test_files(inputs):
-    """The output is the input: the very name, a link to it, a hard link, and the input a link to the output."""
+    """The output is the input: the very name, a link to it, a hard link, and the input a link to the
+    output."""
     _, work = inputs
     commands, kept = [], {}
     name_of = (work / "A.toml").read_text().split('name = "', 1)[1].split('"', 1)[0]
@@ -96,7 +98,8 @@ def test_files(inputs):
 
 
 def test_folders(inputs):
-    """The input lies in the folder that would be replaced: itself, or a link to it, or a folder further in."""
+    """The input lies in the folder that would be replaced: itself, or a link to it, or a folder further
+    in."""
     _, work = inputs
     commands = []
     for n, (name, line) in enumerate(FOLDERS.items()):

@@ -1,4 +1,5 @@
-"""Clocks, locales, hash seeds and the like: the same bytes in every product, and nothing taken for old or new by its date."""
+"""Clocks, locales, hash seeds and the like: the same bytes in every product, and nothing taken for old or new
+by its date."""
 
 from __future__ import annotations
 
@@ -11,10 +12,12 @@ from pathlib import Path
 import pytest
 from command_line import ROOT, assert_tidy, contents, environment, tactcad_run
 
-# The command with the user's locale switched on, as an application around it would, and another clock where asked for.
+# The command with the user's locale switched on, as an application around it would, and another clock where
+# asked for.
 INSIDE = """
 import locale, os, sys, time
-assert locale.setlocale(locale.LC_ALL, "") == os.environ["LC_ALL"] and locale.format_string("%.1f", 0.5) == sys.argv[1]
+assert locale.setlocale(locale.LC_ALL, "") == os.environ["LC_ALL"]
+assert locale.format_string("%.1f", 0.5) == sys.argv[1]
 if sys.argv[2] != "now":
     shift = float(sys.argv[2]) - time.time()
     real, real_ns = time.time, time.time_ns
@@ -72,8 +75,8 @@ def export_in(name: str, design: str, work: Path, locales: Path, *options: str) 
     [pytest.param(name, marks=[] if n == 0 else pytest.mark.nightly) for n, name in enumerate(SURROUNDINGS)],
 )
 def test_every_product_has_the_same_bytes_everywhere(bench, work, locales, name):
-    """From a cold cache. The reference was made with seed 0, in the C locale, by today's clock. A home that libraries cannot
-    keep their caches in is no reason to fail either.
+    """From a cold cache. The reference was made with seed 0, in the C locale, by today's clock. A home that
+    libraries cannot keep their caches in is no reason to fail either.
     """
     shutil.rmtree(work / "cache")
     export_in(name, "A.toml", work, locales)
@@ -117,7 +120,8 @@ DATES = {"long ago": 1.0, "far ahead": 4102444800.0}
 
 @pytest.mark.parametrize("date", DATES)
 def test_dates_of_files_mean_nothing(bench, exported, date):
-    """Every file, cache entry and design dated far away: nothing is rebuilt, and a change is seen all the same."""
+    """Every file, cache entry and design dated far away: nothing is rebuilt, and a change is seen all the
+    same."""
     out, env = exported / "exports" / "out", environment(exported)
     for path in [*exported.rglob("*"), exported]:
         os.utime(path, (DATES[date], DATES[date]), follow_symlinks=False)

@@ -102,7 +102,8 @@ def test_an_inspection_sheet_has_a_place_of_its_own(exported):
 def killed_while_somebody_writes(bench, work: Path, kills: int) -> None:
     """Somebody saves a note into the export while the next one is made, which is killed at some moment after.
 
-    Whatever happened, DIR is whole but for the note; the next run refuses for it or has kept it; it is never gone.
+    Whatever happened, DIR is whole but for the note; the next run refuses for it or has kept it; it is never
+    gone.
     """
     chance, out = random.Random(SEED), work / "exports" / "out"
     env, standing = environment(work), "A"

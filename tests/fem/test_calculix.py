@@ -6,8 +6,8 @@ import pytest
 
 from tactcad.fem import calculix
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics.section import REFERENCE
 

@@ -6,7 +6,7 @@ import pytest
 
 from tactcad.contour import Arc, Contour, Line, chain
 from tactcad.design.messages import CheckFailure
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import cut_element, outline, read, reference_contour, reference_shape
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE

@@ -10,8 +10,8 @@ from tactcad.contour import circle, rectangle
 from tactcad.fem import elasticity
 from tactcad.fem.convergence import converged_plane
 from tactcad.fem.free_mesh import Fine, triangle_mesh
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import end_nodes, fixed_unknowns, parabola
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import end_nodes, fixed_unknowns, parabola
 from tactcad.fem.shape import reference_contour, reference_shape
 from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE

@@ -13,7 +13,7 @@ import pytest
 
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 from tactcad.fit.corner_samples import draw_corners, few_elements
 from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import ladder

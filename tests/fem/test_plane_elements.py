@@ -8,8 +8,8 @@ from skfem import Basis, ElementQuad2
 
 from tactcad.fem import elasticity
 from tactcad.fem.convergence import ORDER, converged_plane, richardson
-from tactcad.fem.mesh import plane_mesh, quad_mesh
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh, quad_mesh
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import outline, reference_shape
 from tactcad.mechanics.section import REFERENCE
 
@@ -99,7 +99,7 @@ def test_stiffness_is_proportional_to_modulus_and_width_and_free_of_size():
 def test_unit_force_is_applied():
     mesh = plane_mesh(ONE, 2)
     basis = Basis(quad_mesh(mesh), ElementQuad2())
-    from tactcad.fem.plane import end_nodes, parabola
+    from tactcad.fem.plane_elements import end_nodes, parabola
 
     end = end_nodes(basis.doflocs, mesh)
     f = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))

@@ -1,5 +1,5 @@
-"""The stop plate's bending by solid elements: a plate that its set screws' points hold at their mean height, an arm's land
-pressing it up. Of the plate's own account this uses its dimensions, none of its formulas."""
+"""The stop plate's bending by solid elements: a plate that its set screws' points hold at their mean height,
+an arm's land pressing it up. Of the plate's own account this uses its dimensions, none of its formulas."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ def lines(marks, step):
 
 
 def rise(layout: Layout, step: float = 2.0) -> float:
-    """mm that the plate rises under a land in the middle of the first span, per newton; two spans at most are meshed."""
+    """mm that the plate rises under a land in the middle of the first span, per newton; two spans at most are
+    meshed."""
     c, ys = layout.design.clamp, list(layout.hold_down_y)[:3]
     end = layout.stop_plate_width / 2 - layout.hold_down_y[-1]
     low, high = ys[0] - end, ys[-1] + end
@@ -85,6 +86,7 @@ def test_the_beams_err_to_the_soft_side(changes, least, most):
 
 
 def test_the_plate_of_the_issue_gives_way_by_more_than_its_gap():
-    """196 mm between set screws, 2 mm thick: 0.105 mm of gap, and 0.5 mm of plate under the 7.3 N on its stop."""
+    """196 mm between set screws, 2 mm thick: 0.105 mm of gap, and 0.5 mm of plate under the 7.3 N on its
+    stop."""
     layout = Layout(variant({**LONG, "clamp.stop_plate_thickness": 2.0, "clamp.hold_down_pitch": 200.0}))
     assert rise(layout) * 7.3 > 0.3 > 0.105

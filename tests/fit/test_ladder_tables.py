@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import ladder_tables
 import pytest
-
-from tactcad.fit import ladder_tables
 
 DOCUMENTS = "".join(
     (Path(__file__).parents[2] / "docs" / f"{name}.md").read_text("utf-8")

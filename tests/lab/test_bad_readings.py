@@ -12,7 +12,8 @@ from tactcad.cli.main import main
 from tactcad.design import csv_table
 from tactcad.design.csv_table import Field
 from tactcad.design.messages import InputError
-from tactcad.lab import calibration, readings, regression
+from tactcad.lab import calibration, noise, readings, regression
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth, calibration_rows
 
 HEADER = "element,run,displacement,force,signal"
@@ -51,7 +52,8 @@ BAD = {
             HEADER + ",force_mN",
             "{:g},{:g},{:g},{:g},{:g},{:g}",
         ),
-        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, force_mN",
+        r":1:6: force and force_mN are both the force; found 'force_mN'; legal: one of force, force_N, "
+        r"force_mN",
     ),
     "thousands": (
         text(rows() * [1, 1, 1, 1, 1], HEADER.replace(",", "\t"), "{:g}\t{:g}\t1,250\t{:g}\t1,000"),
@@ -78,7 +80,7 @@ def test_noise_about_zero_is_no_reversed_sign():
     data = readings.CalibrationReadings(
         *(c for c in table.T[:2].astype(int)), *table.T[2:], np.arange(len(table))
     )
-    found = calibration.calibrate(data, calibration.LoadCell(57.04))[0]
+    found = calibration.calibrate(data, LoadCell(57.04))[0]
     assert "do not tell the stiffness from zero" in " ".join(found.notes) and found.stiffness.low == 0
 
 
@@ -137,7 +139,8 @@ def test_one_bad_cell_of_many_is_named_with_line_and_column(tmp_path, bad):
 
 
 def test_outliers_cost_no_fit_each(monkeypatch):
-    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random cases."""
+    """Extreme deviates are downdated: the same readings as by weighted fits again after each, in 60 random
+    cases."""
     rng, compared = np.random.default_rng(11), 0
     for _ in range(60):
         run = np.repeat(np.arange(rng.integers(1, 6)), rng.integers(6, 20))
@@ -145,8 +148,8 @@ def test_outliers_cost_no_fit_each(monkeypatch):
         y = 3 * x + run + 0.01 * rng.standard_normal(len(run))
         for i in rng.integers(0, len(run), rng.integers(0, 4)):
             y[i] += rng.choice([-1, 1]) * 10 ** rng.uniform(-1.5, 1)
-        named = regression.extreme_deviates(x, y, run)
-        weight = regression.variance_weights(regression.fit_lines(x, y[:, None], run), x, 0)
+        weight = noise.weights([noise.Readings(x, x, y, run)])[0]
+        named = regression.extreme_deviates(x, y, run, weight)
         left = np.ones(len(x), bool)
         for i in named:  # by fits of what is left: each one named was the most extreme
             index = np.flatnonzero(left)

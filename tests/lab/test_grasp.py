@@ -11,6 +11,7 @@ from scipy.stats import binom
 from tactcad.design.messages import InputError
 from tactcad.lab import calibration, grasp, readings, simulate
 from tactcad.lab.combine import combine, scatter
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, GraspReadings
 from tactcad.lab.sensitivity import Sensitivity
 from tactcad.mechanics import fieller
@@ -137,7 +138,7 @@ def simulated_sensitivity(rng) -> Sensitivity:
         CalibrationReadings(
             rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, np.arange(len(rows))
         ),
-        calibration.LoadCell(CELL),
+        LoadCell(CELL),
     )
     pick = lambda f: np.array([f(r) for r in made])  # noqa: E731
     return Sensitivity(
@@ -258,7 +259,8 @@ def test_grasp_file_needs_every_element_at_every_load(tmp_path):
 
 
 def coupled_grasp(x: float, share: np.ndarray, noise: float, seed: int) -> GraspReadings:
-    """Signals where each pad also sinks by share[i, j] of what the force on pad j does there: a dense solve."""
+    """Signals where each pad also sinks by share[i, j] of what the force on pad j does there: a dense
+    solve."""
     force = np.linalg.solve(np.diag(1 / TRUTH.stiffness) + share / x, np.ones(4))
     deflection = np.outer(force / TRUTH.stiffness, LOAD / force.sum())
     signal = TRUTH.zero_signal[:, None] + TRUTH.signal_per_deflection[:, None] * deflection
@@ -283,8 +285,8 @@ def test_without_noise_the_coupled_readings_give_the_truth_at_their_coupling(of_
 @pytest.mark.parametrize("x", [1.5, 4.0, 12.0])
 @pytest.mark.parametrize("kind", ["half-space", "even, 5 %", "separate"])
 def test_intervals_hold_whatever_the_coupling_up_to_its_limit(x, kind):
-    """Fifty grasps each: the truth lies within every pair's interval and the combined one, 93 % of the time at
-    least; without the limit, coupling takes nearly all of them away from it."""
+    """Fifty grasps each: the truth lies within every pair's interval and the combined one, 93 % of the time
+    at least; without the limit, coupling takes nearly all of them away from it."""
     limit = half_space()
     share = {"half-space": limit, "even, 5 %": np.full((4, 4), 0.05), "separate": np.zeros((4, 4))}[
         kind
@@ -302,8 +304,8 @@ def test_intervals_hold_whatever_the_coupling_up_to_its_limit(x, kind):
 
 
 def test_the_load_cell_s_limits_reach_the_object():
-    """Readings of a calibration with a softer cell than was reckoned with: the interval holds the truth, which
-    noise alone does not."""
+    """Readings of a calibration with a softer cell than was reckoned with: the interval holds the truth,
+    which noise alone does not."""
     cell, off = CELL, 0.97
     k = TRUTH.stiffness * off * cell / (TRUTH.stiffness + off * cell)  # slope over the stage's displacement
     believed = k * cell / (cell - k)

@@ -83,7 +83,8 @@ def test_torsion_is_saint_venant_s(width, height):
 
 
 def test_a_round_plate_obeys_its_differential_equation():
-    """D (w'' + w'/r)' + ... = shear: integrated numerically, rim free to turn, for the force and for the pressure."""
+    """D (w'' + w'/r)' + ... = shear: integrated numerically, rim free to turn, for the force and for the
+    pressure."""
     R, t = 14.0, 6.0
     D = E * t**3 / (12 * (1 - NU**2))
     near = 1e-4 * R

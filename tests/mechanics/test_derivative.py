@@ -1,4 +1,5 @@
-"""How K follows a dimension: beam theory's exponents by hand, elements, and every page that states the figure."""
+"""How K follows a dimension: beam theory's exponents by hand, elements, and every page that states the
+figure."""
 
 from __future__ import annotations
 
@@ -10,14 +11,14 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem.ladder import stiffness as by_elements
+from tactcad.fem.one_element import stiffness as by_elements
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.designs import load
 from tactcad.parts.hinge_section import hinge_section, thickness_elasticity
 from tactcad.parts.layout import Layout
-from tactcad.release.readme import Contents, readme_bytes
+from tactcad.release.readme import ReleaseContents, readme_bytes
 from tactcad.scenes import make_scene
 
 ROOT = Path(__file__).parents[2]
@@ -101,6 +102,6 @@ def test_a_full_round_to_nine_digits_is_a_full_round():
 def test_the_shop_is_told_the_model_s_figure():
     """A hundredth on the published hinge: 10 %, where t^3 would say 12 %."""
     design = LAYOUT.design
-    contents = Contents(design, (make_scene(design, "array"),), (), (), draft=False)
+    contents = ReleaseContents(design, (make_scene(design, "array"),), (), (), draft=False)
     text = " ".join(readme_bytes(contents, ()).decode().split())
     assert "one hundredth of a millimetre more or less is 10 % more or less stiffness" in text

@@ -37,8 +37,8 @@ def in_range(s, rung):
     return ladder.evaluate(s, rung).stiffness
 
 
-# Material that is added while the load's line and face, and the clamped face, stay where they are (or the clamped
-# face grows): the slot's floor rises, its fillets grow, it is filled from either end, the body grows higher.
+# Material that is added while the load's line and face stay where they are, and the clamped face too or
+# grows: the slot's floor rises, its fillets grow, it is filled from either end, the body grows higher.
 def thicker(s, by):
     return s.with_(hinge_thickness=s.hinge_thickness * (1 + by))
 

@@ -100,3 +100,21 @@ def test_at_the_largest_closing_force_one_limit_is_just_reached(height):
     assert max(stress, deflection) == pytest.approx(limit, rel=1e-12)
     assert bool(stress > deflection) is (height > 1.0)
     assert largest_overload(s, K, arm, give, closing, limit) == pytest.approx(13.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("overload", [1e-3, 1.0, 3.5])
+def test_a_stop_closes_at_the_limit_where_the_overload_alone_is_less(overload):
+    """Nothing has to be kept from the hinge then, but a stop that closes later protects it from nothing."""
+    s = section(3.0)
+    assert largest_closing_force(s, ladder.stiffness(s), 4.0, 3.4e-5, overload, 3.5) == 3.5
+
+
+def test_a_stop_that_gives_more_than_the_hinge_keeps_nothing_from_it():
+    """A give of 1 mm/N leaves the hinge all and the lever's turn besides: no gap at all, where the equation's
+    own root would be a force beyond the overload, at which the stop is not even reached."""
+    s, K = section(3.0), ladder.stiffness(section(3.0))
+    whippy = section(3.0, 0.05)
+    share = float(deflection_share(whippy, K, 4.0, 1.0))
+    assert share > 1.0 and (3.5 - share * 13.0) / (1.0 - share) > 13.0
+    assert largest_closing_force(whippy, K, 4.0, 1.0, 13.0, 3.5) == 0.0
+    assert largest_closing_force(s, K, 4.0, 3.4e-5, 13.0, 3.5) > 0.0

@@ -1,15 +1,17 @@
 """Every check broken once, in a copy of the source: does a test fail?
 
-    python tests/mutation/mutants.py                   all of them, as a table; exit status 1 where one survives
+    python tests/mutation/mutants.py                   all of them, as a table; exit status 1 where one
+                                                       survives
     python tests/mutation/mutants.py brep rules        those whose name holds one of these words
     python tests/mutation/mutants.py --list            what there is, and which tests it is tried on
 
-What there is to break is read off the syntax tree, by name and never by line, so that a new check is in the table by being
-written. Kinds of mutation:
+What there is to break is read off the syntax tree, by name and never by line, so that a new check is in the
+table by being written. Kinds of mutation:
 
 finding   a module of checks says everything but findings of one name
 rule      a rule between fields of a design finds nothing
-gate      one statement of a gate that reads a written file back, or holds a file against its model, says nothing
+gate      one statement of a gate that reads a written file back, or holds a file against its model, says
+          nothing
 call      a check or gate is not called where it should be
 """
 
@@ -58,7 +60,8 @@ NO_GATES = {
     "all_written",  # a process was killed
     "part_plan",  # a part that has no sheet
 }
-# Modules of export/drawing/ that hold a written sheet against its model; the others refuse what cannot be laid out, before.
+# Modules of export/drawing/ that hold a written sheet against its model; the others refuse what cannot be
+# laid out, before.
 SHEET_GATES = ("gate.py", "layout.py", "sheets.py", "assembly_file.py")
 
 
@@ -130,7 +133,8 @@ def _appended(tree: ast.Module, text: str) -> ast.Module:
 
 
 def names_of_findings(module: str, tree: ast.Module) -> set[str]:
-    """Every name under which the module reports. Raises AssertionError where one cannot be told from the source."""
+    """Every name under which the module reports. Raises AssertionError where one cannot be told from the
+    source."""
     names = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in PASS_ON and node.args:
@@ -310,8 +314,8 @@ CALLERS = {
     "export/products.py": r"^_compare_box$",
     "export/shapes.py": r"^picture\.check_",
     "export/dxf.py": r"^check_dxf$",
-    "export/step.py": r"^_check_(part|scene)$",
-    "drawing/sheets.py": r"_faults$",
+    "export/step_file.py": r"^_check_(part|scene)$",
+    "drawing/part_sheet.py": r"_faults$",
     "drawing/assembly_file.py": r"_faults$",
     "release/make.py": r"^check_archive$|_faults$",
 }
@@ -381,13 +385,14 @@ ALSO = {
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most, those that name it most first: they import its module, or stand in ALSO; for a rule,
-    those that name it.
+    """The test files that concern it most, those that name it most first: they import its module, or stand in
+    ALSO; for a rule, those that name it.
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
     imports = re.compile(
-        rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b|from {re.escape(package)} import .*\b{last}\b)",
+        rf"^\s*(from {re.escape(dotted)} import|import {re.escape(dotted)}\b"
+        rf"|from {re.escape(package)} import .*\b{last}\b)",
         re.M,
     )
     chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
@@ -414,8 +419,9 @@ class Outcome:
     failed: str  # the first test that failed, "" where the mutant survived
 
 
-# Loads the heavy libraries once, and runs pytest in a fork for every folder that it is told: all of tactcad is imported anew.
-# Takes a line of JSON, folder and test files; gives one, pytest's exit status and what it said.
+# Loads the heavy libraries once, and runs pytest in a fork for every folder that it is told: all of tactcad
+# is imported anew. Takes a line of JSON, folder and test files; gives one, pytest's exit status and what it
+# said.
 RUNNER = """
 import json, os, signal, sys
 import ezdxf, hypothesis, manifold3d, numpy, pypdf, pytest, reportlab, scipy.optimize, trimesh
@@ -431,7 +437,8 @@ for line in sys.stdin:
         os.dup2(1, 2)
         os.environ |= {"PYTHONPATH": folder + "/src", "TMPDIR": folder + "/tmp"}
         sys.path.insert(0, folder + "/src")
-        status = pytest.main(["-x", "-q", "-m", "not nightly", "-p", "no:cacheprovider", "--no-header", *files])
+        options = ["-x", "-q", "-m", "not nightly", "-p", "no:cacheprovider", "--no-header"]
+        status = pytest.main([*options, *files])
         sys.stdout.flush()
         os._exit(status)
     status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])

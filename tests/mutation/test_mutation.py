@@ -1,4 +1,5 @@
-"""The table of mutations is complete, each changes something and has tests; nightly, a test fails for each."""
+"""The table of mutations is complete, each changes something and has tests; nightly, a test fails for
+each."""
 
 from __future__ import annotations
 
@@ -10,7 +11,8 @@ import pytest
 
 
 def test_every_check_is_in_the_table():
-    """What reports, what refuses a design and what reads a file back: all of it has a mutation, and each has tests."""
+    """What reports, what refuses a design and what reads a file back: all of it has a mutation, and each has
+    tests."""
     every = mutants.every()
     labels = [m.label for m in every]
     assert len(set(labels)) == len(labels)

@@ -116,7 +116,8 @@ def test_the_stop_lands_gap_and_length(design, place):
 
 
 def test_stop_gaps_of_the_paper_arms_are_below_yield_and_grow_with_the_arm():
-    """hardware.md's worked values are 0.13, 0.16, 0.19, 0.22, 0.25 mm; travel at yield is the bound that counts."""
+    """hardware.md's worked values are 0.13, 0.16, 0.19, 0.22, 0.25 mm; travel at yield is the bound that
+    counts."""
     layout = Layout(ONE_SIDED)
     gaps = {}
     for place in layout.elements:

@@ -49,7 +49,8 @@ def test_sizes_are_the_published_ones(thread):
 
 
 def test_rows_that_every_workshop_knows():
-    """ISO 4762 M3: head 5.5 x 3, key 2.5; M4: 7 x 4, key 3; M5: 8.5 x 5, key 4. ISO 4026 points: M3 2.0, M5 3.5."""
+    """ISO 4762 M3: head 5.5 x 3, key 2.5; M4: 7 x 4, key 3; M5: 8.5 x 5, key 4. ISO 4026 points: M3 2.0, M5
+    3.5."""
     assert [(METRIC[t].head, METRIC[t].head_height, METRIC[t].key) for t in ("M3", "M4", "M5")] == [
         (5.5, 3, 2.5),
         (7, 4, 3),
@@ -162,7 +163,8 @@ def test_volumes_and_centres_against_the_kernel(macro_scene, macro_shapes):
 
 @pytest.mark.cad
 def test_every_kind_of_feature_against_the_kernel():
-    """Holes from all sides, counterbored, blind, with drill points, and pockets with islands on a slanted x axis."""
+    """Holes from all sides, counterbored, blind, with drill points, and pockets with islands on a slanted x
+    axis."""
     from tactcad.contour import circle, rectangle
     from tactcad.parts.description import Pocket
     from tactcad.solids.build import build

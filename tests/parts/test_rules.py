@@ -193,6 +193,10 @@ WITNESSES = {
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
         ({"clamp.carrier_screw_offset": 6.0, "clamp.mount_pitch_y": 25.0}, "clamp.mount_pitch_y"),
     ],
+    "plates_stay_straight": [
+        ({"tolerance.pad_height": 0.001}, "clamp.end_plate_thickness"),
+        ({"tolerance.pad_height": 0.0001}, "tolerance.pad_height"),
+    ],
     "no_slivers": [
         ({"element.hinge_length": 0.6005}, "element.hinge_length"),
         ({**TWO_SIDED, "array.row_arms": [[4], [2.7405]], "stop.land_length": 0.2}, "array.row_arms"),
@@ -279,8 +283,8 @@ def holes_outside(part: Part) -> list[str]:
 
 
 def checked(design: Design) -> list[str]:
-    """What is wrong with the array as solids: what its loads do to it, or a drill to its plates, is not asked here,
-    nor whether lengths drawn by chance leave an edge of a micrometre."""
+    """What is wrong with the array as solids: what its loads do to it, or a drill to its plates, is not asked
+    here, nor whether lengths drawn by chance leave an edge of a micrometre."""
     from tactcad.checks.brep import check_brep
     from tactcad.checks.interference import check_interference
     from tactcad.checks.mesh import check_mesh

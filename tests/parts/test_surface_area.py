@@ -1,4 +1,5 @@
-"""Closed-form surface areas against geometry done by hand, and against the kernel on every part that ships."""
+"""Closed-form surface areas against geometry done by hand, and against the kernel on every part that
+ships."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The zip's form, and its appearing whole or not at all: killed anywhere, two at once, a machine that refuses."""
+"""The zip's form, and its appearing whole or not at all: killed anywhere, two at once, a machine that
+refuses."""
 
 from __future__ import annotations
 

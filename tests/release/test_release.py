@@ -1,4 +1,5 @@
-"""`tactcad release` on a design of one element: what is in the zip, when there is none, and that every fault in one is found."""
+"""`tactcad release` on a design of one element: what is in the zip, when there is none, and that every fault
+in one is found."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
 from tactcad.release import verify
 from tactcad.release.archive import archive_bytes
-from tactcad.release.readme import DRAFT, Contents
+from tactcad.release.readme import DRAFT, ReleaseContents
 from tactcad.release.verify import check_archive
 from tactcad.scenes import make_scene
 
@@ -94,7 +95,7 @@ def files(released):
 @pytest.fixture(scope="module")
 def contents(project):
     design = load(project / "hardware" / "tiny.toml")
-    return Contents(design, [make_scene(design, "array")], (), (), False)
+    return ReleaseContents(design, [make_scene(design, "array")], (), (), False)
 
 
 def test_nothing_in_it_names_the_machine(home, files):
@@ -350,7 +351,8 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
 
 
 def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released, tmp_path, capsys):
-    """This process and the fresh one; here the design stands outside hardware/, where it can have no golden file."""
+    """This process and the fresh one; here the design stands outside hardware/, where it can have no golden
+    file."""
     (tmp_path / "tiny.toml").write_text(TEXT)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))

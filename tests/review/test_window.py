@@ -1,4 +1,5 @@
-"""The review of FreeCAD's tree fails where the tree is not the bill's, and its settings are those that the guide names."""
+"""The review of FreeCAD's tree fails where the tree is not the bill's, and its settings are those that the
+guide names."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Cut files of plates: the solid that the kernel builds has that outline, and is open where the file cuts a hole."""
+"""Cut files of plates: the solid that the kernel builds has that outline, and is open where the file cuts a
+hole."""
 
 from __future__ import annotations
 

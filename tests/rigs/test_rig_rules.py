@@ -1,4 +1,5 @@
-"""Every rule of the rigs has a design that breaks it; an array that a rig cannot take costs only that scene."""
+"""Every rule of the rigs has a design that breaks it; an array that a rig cannot take costs only that
+scene."""
 
 from __future__ import annotations
 
@@ -45,6 +46,9 @@ MISFITS = {
     "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
     "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
     "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
+    "calibration_stays_straight": ("calibration", {"calibration.step": 0.01}),
+    "sample_stand_stays_straight": ("sample-stiffness", {"sample.step": 0.001}),
+    "guide_stays_straight": ("grasping", {"grasping.weights": 40}),
     "ballast_trims_moving_weight": ("grasping", {"grasping.moving_weight": 2.8}),
 }
 

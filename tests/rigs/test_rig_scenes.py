@@ -158,7 +158,8 @@ def test_the_roller_leaves_the_pad_where_the_turned_face_ends(sides):
 @pytest.mark.parametrize("number", [1, 4])
 @pytest.mark.parametrize("deflection", [0.02, 0.08])
 def test_a_pressed_pad_touches_the_roller(number, deflection):
-    """The roller's axis has come up by the deflection; the pad's face is its radius away, by the turned face itself."""
+    """The roller's axis has come up by the deflection; the pad's face is its radius away, by the turned face
+    itself."""
     layout = Layout(load("macro-array"))
     place, r = layout.elements[number - 1], 1.0025
     part = deflected_element(layout, place, deflection, r)
@@ -239,6 +240,19 @@ def test_there_is_a_pose_for_every_element():
     assert [p.element for p in poses(design, "calibration")] == list(range(1, 11))
 
 
+@pytest.mark.parametrize("row_arms", [[[5]], [[4, 7], [6, 8]]])
+def test_a_part_number_is_one_part_in_every_scene_and_pose(row_arms):
+    """One arm's pad dents the sample as the force gauge's tip does, in another place: the kernel's shapes go
+    by number."""
+    design = variant({"array.row_arms": row_arms, "clamp.mount_pitch_y": 24.0})
+    known = {}
+    for name in scene_names(design):
+        for pose in (None, *poses(design, name)):
+            for part in make_scene(design, name, pose).parts:
+                assert known.setdefault(part.part_no, part) == part
+    assert sum("-pressed-" in number for number in known) >= 3
+
+
 @pytest.mark.parametrize(
     ("text", "pose"),
     [
@@ -288,7 +302,8 @@ def test_set_screws_are_turned_in_by_their_size():
 
 
 def test_set_screws_of_a_long_array_do_not_bow_it():
-    """Ten a row bear 0.1 N m; with 25 a row they only touch, in the step, its part's row and the drawing's note."""
+    """Ten a row bear 0.1 N m; with 25 a row they only touch, in the step, its part's row and the drawing's
+    note."""
     ten, many = (variant({"array.row_arms": [[4, 7, 6, 8, 6] * n, [8, 5, 4, 5, 7] * n]}) for n in (2, 5))
     assert "crosswise, to 0.1 N m, locked" in guide.page(ten, make_scene(ten, "array")).decode()
     scene = make_scene(many, "array")
@@ -350,7 +365,8 @@ def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
 
 
 def test_an_array_beyond_the_estimator_still_has_a_calibration():
-    """Its strength is flagged as not known, the guide says nothing of it, and poses take it as without stiffness."""
+    """Its strength is flagged as not known, the guide says nothing of it, and poses take it as without
+    stiffness."""
     odd = variant(
         {
             "element.hinge_length": 3.0,

@@ -20,7 +20,8 @@ from tactcad.solids.build import build
 
 
 def wheels_can_carry(contacts, forces) -> bool:
-    """Is there a set of pushing wheel forces in balance with vertical forces (F, x, y) and moments? By a linear program."""
+    """Is there a set of pushing wheel forces in balance with vertical forces (F, x, y) and moments? By a
+    linear program."""
     x, y = np.array(contacts).T
     total = sum(f for f, _, _ in forces)
     balance = np.array([np.ones(len(x)), x, y])

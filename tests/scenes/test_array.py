@@ -1,4 +1,5 @@
-"""The array as a mechanism: who stands where, what moves, what holds what, and whether it can be put together."""
+"""The array as a mechanism: who stands where, what moves, what holds what, and whether it can be put
+together."""
 
 from __future__ import annotations
 
@@ -111,7 +112,8 @@ def test_pads_are_coplanar_at_their_pitch_and_face_each_other(case):
 
 
 def test_every_arm_is_free_to_close_its_gap_and_no_further(case):
-    """The arm turned rigidly about its hinge until the land meets the stop plate: everything else keeps clear."""
+    """The arm turned rigidly about its hinge until the land meets the stop plate: everything else keeps
+    clear."""
     design, layout, scene = case
     found = by_name(scene)
     facing = design.array.row_pitch - design.element.pad_length
@@ -184,7 +186,8 @@ def axis_of(p: Placement) -> tuple[np.ndarray, np.ndarray]:
 
 
 def holes_of(p: Placement) -> list[tuple[Hole | None, np.ndarray, np.ndarray, float]]:
-    """Feature (None for wire-cut openings), a point of the axis, its direction, and the diameter, in the scene."""
+    """Feature (None for wire-cut openings), a point of the axis, its direction, and the diameter, in the
+    scene."""
     found = []
     for f in p.part.features:
         if isinstance(f, Hole):
@@ -230,7 +233,8 @@ def test_every_thread_contact_is_a_screw_in_line_with_a_thread_deep_enough(case)
 
 
 def test_screws_and_dowels_pass_through_every_part_of_their_row(case):
-    """Each stacked part has a hole in line with each of its row's screws and dowels: they locate each other."""
+    """Each stacked part has a hole in line with each of its row's screws and dowels: they locate each
+    other."""
     design, layout, scene = case
     through = [p for p in scene.placements if p.designator[:2] in ("DW", "TR")]
     through += [
@@ -298,7 +302,8 @@ def test_the_stop_plate_lies_on_every_ledge_under_set_screws_that_stand_on_it(ca
 
 
 def test_a_screwdriver_reaches_every_screw_when_it_goes_in(case):
-    """A cylinder of the head's width from the head outwards, 60 mm long, meets nothing that stands by then."""
+    """A cylinder of the head's width from the head outwards, 60 mm long, meets nothing that stands by
+    then."""
     design, _, scene = case
     m = METRIC[design.clamp.screw]
     boxes = [(p.designator, box(p)) for p in scene.placements]

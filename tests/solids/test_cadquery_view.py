@@ -14,7 +14,7 @@ from tactcad.checks.interference import check_interference
 from tactcad.design.messages import InputError
 from tactcad.drawing import picture
 from tactcad.export import shapes as shapes_of
-from tactcad.export import step
+from tactcad.export import step_file as step
 from tactcad.export.cache import Cache
 from tactcad.export.step_text import Header
 from tactcad.parts.description import Material, Purchase

@@ -34,7 +34,7 @@ class Clock:
 
 def kernel() -> dict:
     """The kernel is loaded, nothing else."""
-    import tactcad.export.step
+    import tactcad.export.step_file
     import tactcad.solids.build  # noqa: F401
 
     return {}
@@ -96,9 +96,9 @@ def stages(elements: int) -> dict:
 def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
     """One element built and written `repeats` times, as an export does it, to the file of "tactcad"; then the
     volume (mm3) of the one solid in each file."""
-    from tactcad.export.step import part_step
+    from tactcad.export.step_file import part_step
     from tactcad.solids.build import build
-    from tactcad.solids.files import model_file
+    from tactcad.solids.step_models import model_file
 
     part = next(
         p.part for p in make_scene(arrays.published(), "array").placements if p.designator == designator
@@ -127,7 +127,7 @@ def _shapes(scene: Scene) -> dict:
 
 
 def _step(scene: Scene, shapes: dict) -> bytes:
-    from tactcad.export.step import scene_step
+    from tactcad.export.step_file import scene_step
 
     return scene_step(scene, shapes, HEADER)
 

@@ -38,15 +38,13 @@ def measure(plan: Plan) -> dict:
     for row in rows:
         row["time ratio"] = (row["build"] + row["write"]) / (bare["build"] + bare["write"])
     columns = (
-        "program; build [ms]; write: write STEP [ms]; median: both, median [ms]; "
-        "time ratio: over the bare kernel; process: whole process [s]; peak_bytes: peak memory [MB]; "
-        "bytes: STEP [kB]; volume: volume, mm3; off: off the closed form [ppm]; "
-        "read off: STEP read back, off [ppm]"
+        "program; build [ms]; write: write STEP [ms]; median: both, median [ms]; time ratio: over the bare "
+        "kernel; process: whole process [s]; peak_bytes: peak memory [MB]; bytes: STEP [kB]; volume: volume, "
+        "mm3; off: off the closed form [ppm]; read off: STEP read back, off [ppm]"
     )
     note = (
         f"{part.part_no}, {part.volume:.6f} mm3 in closed form. tactcad's build compares solid and closed "
-        "form, and its file is "
-        "read back and compared before it is let out; the scripts check nothing."
+        "form, and its file is read back and compared before it is let out; the scripts check nothing."
     )
     missing = [] if freecad.version() else ["FreeCAD (freecadcmd) is not installed: not compared."]
     return {

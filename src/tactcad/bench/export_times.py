@@ -34,9 +34,8 @@ def measure(plan: Plan) -> dict:
     )
     note = (
         "`tactcad export --scene array` in fresh processes, shortest of the runs. Cold: empty cache. The "
-        "plain script "
-        "builds each shape once, writes each file once and reads it back once, without tactcad, cache or "
-        "repeatable bytes."
+        "plain script builds each shape once, writes each file once and reads it back once, without tactcad, "
+        "cache or repeatable bytes."
     )
     return {
         "tables": {

@@ -46,9 +46,8 @@ def measure(plan: Plan) -> dict:
     )
     note = (
         "Known pairs: boxes and pins at gaps of 0.1 mm to 0.1 um, touching, and overlapping by as much, "
-        "verdicts in closed form. "
-        "The array's near pairs: all whose boxes meet, the kernel's verdict taken as true. Mean and median "
-        "time; meshes are made once a part."
+        "verdicts in closed form. The array's near pairs: all whose boxes meet, the kernel's verdict taken "
+        "as true. Mean and median time; meshes are made once a part."
     )
     others = (
         "elements; placed: placed parts; findings: contacts judged; seconds: tactcad check [s]; "
@@ -114,8 +113,8 @@ class Prepared:
 
 
 def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import closed
+    from tactcad.solids.triangles import triangles
 
     return closed(triangles(shape, LINEAR, angular))
 
@@ -231,11 +230,9 @@ def findings(rows: list[dict], situations: list[dict]) -> list[str]:
         f"{finest['by']} {finest['wrong']} times: "
         f"{finest['missed']} overlaps missed, {finest['false']} seen where there are none.",
         f"At {coarsest['angular']:g} rad meshes, once made, take {coarsest['time ratio']:.2g} of the "
-        f"kernel's time a pair, at {finest['angular']:g} rad "
-        f"{finest['time ratio']:.2g}; making one takes {1e3 * coarsest['meshing']:.0f} and "
-        f"{1e3 * finest['meshing']:.0f} ms.",
+        f"kernel's time a pair, at {finest['angular']:g} rad {finest['time ratio']:.2g}; making one takes "
+        f"{1e3 * coarsest['meshing']:.0f} and {1e3 * finest['meshing']:.0f} ms.",
         f"{last['elements']} elements: the check judges {last['findings']} contacts in {last['seconds']:.1f} "
-        "s, every near pair by the kernel takes "
-        f"{last['kernel seconds']:.1f} s, {last['time ratio']:.1f} times as long; "
-        f"{'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
+        f"s, every near pair by the kernel takes {last['kernel seconds']:.1f} s, {last['time ratio']:.1f} "
+        f"times as long; {'the same verdicts' if last['same verdicts'] else 'VERDICTS DIFFER'}.",
     ]

@@ -19,10 +19,10 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.present import present
 from tactcad.fem import calculix, elasticity
 from tactcad.fem.convergence import ORDER, richardson
-from tactcad.fem.mesh import plane_mesh
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 
 from . import tables, truth
 from .front import efficient, told
@@ -147,9 +147,8 @@ def findings(rows: list[dict]) -> list[str]:
         ratio = ours["seconds"] / theirs["own clock"]
         lines.append(
             f"{'met' if ratio <= GOAL_SOLVE else 'MISSED'}: plane elements within {100 * ASKED:g} %: "
-            f"{1e3 * ours['seconds']:.1f} ms (density "
-            f"{ours['density']}) against CalculiX's own {1e3 * theirs['own clock']:.0f} ms (density "
-            f"{theirs['density']}), {ratio:.2f} of its time "
+            f"{1e3 * ours['seconds']:.1f} ms (density {ours['density']}) against CalculiX's own "
+            f"{1e3 * theirs['own clock']:.0f} ms (density {theirs['density']}), {ratio:.2f} of its time "
             f"(goal {GOAL_SOLVE:g}); {1e3 * theirs['seconds']:.0f} ms as a process."
         )
     return lines

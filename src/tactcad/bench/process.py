@@ -6,13 +6,13 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
 import tactcad
+from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure
 
 from .timing import of_samples
@@ -32,10 +32,11 @@ class Run:
 
 def measured(command: Sequence[str], environment: Mapping[str, str] | None = None) -> Run:
     """Run a command to its end, on one thread. Raises CheckFailure with its last words where it fails."""
-    with tempfile.TemporaryDirectory() as folder:
-        result = Path(folder) / "meter.json"
+    with scratch_folder("bench-run") as folder:
+        result = folder / "meter.json"
         meter = [sys.executable, "-I", "-S", str(METER), str(result), *command]
-        environment = {**os.environ, **surroundings(), **(environment or {})}
+        here = {"TMPDIR": str(folder)}  # what a killed one leaves there goes with it
+        environment = {**os.environ, **surroundings(), **here, **(environment or {})}
         run = subprocess.run(meter, env=environment, capture_output=True, text=True, check=False)
         if run.returncode:
             words = (run.stderr or run.stdout).strip().splitlines() or ["it said nothing"]

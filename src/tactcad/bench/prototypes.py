@@ -47,9 +47,8 @@ def measure(plan: Plan) -> dict:
         copies["size ratio"] = copies["bytes"] / original["bytes"]
         copies["time ratio"] = copies["seconds"] / original["seconds"]
     columns = (
-        "elements; solids; form: prototypes; bytes: file [kB]; size ratio: over shared; "
-        "seconds: written and read back [s]; median [s]; time ratio: over shared; "
-        "peak_bytes: peak memory [MB]"
+        "elements; solids; form: prototypes; bytes: file [kB]; size ratio: over shared; seconds: written and "
+        "read back [s]; median [s]; time ratio: over shared; peak_bytes: peak memory [MB]"
     )
     last = rows[-1]
     finding = (

@@ -21,17 +21,15 @@ def made_on(result: dict) -> str:
     peers = ", ".join(f"{name} {version}" for name, version in result["peers"].items())
     said = (
         f"{result['mode'].capitalize()} run of {result['date']}, seed {result['seed']}, "
-        f"{result['seconds'] / 60:.0f} minutes on {m['processor']}, "
-        f"{m['cores']} cores, {m['memory_GB']:g} GB, {m['system']}, load {m['load']:g} when it began; Python "
-        f"{v['python']}, tactcad {v['tactcad']}, "
+        f"{result['seconds'] / 60:.0f} minutes on {m['processor']}, {m['cores']} cores, {m['memory_GB']:g} "
+        f"GB, {m['system']}, load {m['load']:g} when it began; Python {v['python']}, tactcad {v['tactcad']}, "
         f"numpy {v['numpy']}, scipy {v['scipy']}, scikit-fem {v['scikit-fem']}, OCP {v['cadquery-ocp']}, "
         f"build123d {v['build123d']}; {peers}."
     )
     for more in result.get("further", ()):
         said += (
             f" From a {more['mode']} run of {more['date']} on it, seed {more['seed']}, "
-            f"{more['seconds'] / 60:.0f} minutes, load "
-            f"{more['load']:g}: {', '.join(more['benchmarks'])}."
+            f"{more['seconds'] / 60:.0f} minutes, load {more['load']:g}: {', '.join(more['benchmarks'])}."
         )
     return said
 

@@ -36,18 +36,16 @@ def measure(plan: Plan) -> dict:
         row |= seconds[row["rung"]] | {"when": BY_NAME[row["rung"]].when}
         row["time ratio"] = row["seconds"] / seconds[ladder.DEFAULT_RUNG]["seconds"]
     columns = (
-        "rung; solid mean: solid: mean error [%]; solid worst: worst [%]; solid designs: designs; "
-        "plane mean: plane stress: mean error [%]; plane worst: worst [%]; plane designs: designs; "
-        "seconds: time per element [us]; median [us]; alone: one element alone [us]; "
-        "time ratio: time over solid's"
+        "rung; solid mean: solid: mean error [%]; solid worst: worst [%]; solid designs: designs; plane "
+        "mean: plane stress: mean error [%]; plane worst: worst [%]; plane designs: designs; seconds: time "
+        "per element [us]; median [us]; alone: one element alone [us]; time ratio: time over solid's"
     )
     worst = max(float(np.nanmax(fine["plane_error"])), float(np.nanmax(fine["width_error"])))
     note = (
         "Errors of stiffness against converged elements, in three dimensions and in plane stress. These are "
-        "themselves "
-        f"within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest estimate), "
-        "within 1e-4 on the held-out ones; "
-        "no error of finite elements smaller than that estimate is claimed."
+        f"themselves within about {worst:.1g} on the {len(fine['width'])} designs solved for this (largest "
+        "estimate), within 1e-4 on the held-out ones; no error of finite elements smaller than that estimate "
+        "is claimed."
     )
     return {"tables": {"rungs": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
@@ -71,7 +69,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
 
 
 def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     found = np.full(len(fine["width"]), np.nan)
     for i, one in enumerate(truth.sections(fine)[:count]):
@@ -86,7 +84,7 @@ def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
 
 def _times(plan: Plan) -> dict[str, dict]:
     """Seconds per element: closed forms among many, element rungs one after the other."""
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     many = section(draw_box(plan.of(1_000, 20_000, 200_000), plan.seed))
     count = many.shape[0]
@@ -122,9 +120,8 @@ def findings(rows: list[dict]) -> list[str]:
         f"{'met' if slowest <= GOAL_MILLION else 'MISSED'}: a million designs by the slowest closed form in "
         f"{slowest:.2f} s (goal {GOAL_MILLION} s).",
         f"The solid rung errs by {100 * default['solid worst']:.2f} % at worst, fem-plane by "
-        f"{100 * plane['solid worst']:.0f} % at "
-        f"{sig(plane['seconds'] / default['seconds'], 2)} times the time: for a real sheet plane elements "
-        "are dominated by a closed form.",
+        f"{100 * plane['solid worst']:.0f} % at {sig(plane['seconds'] / default['seconds'], 2)} times the "
+        "time: for a real sheet plane elements are dominated by a closed form.",
         f"fem-solid errs by {sig(100 * solid['solid worst'], 2)} % at worst, at "
         f"{sig(solid['seconds'] / default['seconds'], 2)} times the solid rung's time.",
     ]

@@ -23,8 +23,7 @@ QUESTION = "Does any cost grow faster than the array?"
 # Why a stage may grow faster than its array; what is not named here is reported as unexplained.
 _PICTURES = (
     "hidden lines: up to 300 shapes exactly, every edge against every face near it; beyond, strip by strip "
-    "on triangles, but "
-    "plates as long as the picture reach into every strip with all their holes"
+    "on triangles, but plates as long as the picture reach into every strip with all their holes"
 )
 EXPLAINED = {"picture, above": _PICTURES, "picture, open": _PICTURES, "all of these, process": "its pictures"}
 NOISE = 0.15  # by which the exponent between two single times of a linear cost may be off
@@ -43,8 +42,7 @@ def measure(plan: Plan) -> dict:
     )
     note = (
         "cost = a n^p by least squares of the logarithms, Student's interval. Fixed costs hide growth at "
-        "small sizes: the last two "
-        "sizes alone stand beside it."
+        "small sizes: the last two sizes alone stand beside it."
     )
     return {
         "tables": {
@@ -68,7 +66,7 @@ def _estimates(plan: Plan) -> list[dict]:
 
 
 def _elements(plan: Plan) -> list[dict]:
-    from tactcad.fem.plane import solve_plane
+    from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape
 
     sizes = plan.of((1, 2), (3, 10, 30), (10, 30, 100, 300))

@@ -21,8 +21,8 @@ STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
 
 def measure(plan: Plan) -> dict:
     from tactcad.solids.build import build
-    from tactcad.solids.mesh import triangles
     from tactcad.solids.mesh_overlap import volume
+    from tactcad.solids.triangles import triangles
 
     scene = make_scene(arrays.published(), "array")
     plan.say(f"{len(scene.parts)} parts built")
@@ -73,9 +73,8 @@ def findings(rows: list[dict]) -> list[str]:
     coarse, fine = main[0], main[-1]
     lines = [
         f"From {coarse['angular']:g} to {fine['angular']:g} rad the volume error falls from "
-        f"{1e6 * coarse['volume error']:.0f} to "
-        f"{1e6 * fine['volume error']:.1f} ppm, for {fine['triangles'] / coarse['triangles']:.0f} times the "
-        "triangles and "
+        f"{1e6 * coarse['volume error']:.0f} to {1e6 * fine['volume error']:.1f} ppm, for "
+        f"{fine['triangles'] / coarse['triangles']:.0f} times the triangles and "
         f"{fine['seconds'] / coarse['seconds']:.1f} times the time."
     ]
     same = [row for row in rows if row["angular"] == 0.2]

@@ -13,9 +13,9 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import ORDER, richardson
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
-from tactcad.fem.solid import solve_solid
+from tactcad.fem.solid_elements import solve_solid
 from tactcad.fit.fit_samples import BOX, Columns, draw_box, draw_edges, joined, load, section, write
 from tactcad.mechanics.section import REFERENCE, HingeSection
 

@@ -1,4 +1,5 @@
 """What must be true of geometry, strength and assembly before it leaves the house.
 
-In: a design that keeps its rules, and its scenes. Out: a report of findings; a failing one makes the exit status 1.
+In: a design that keeps its rules, and its scenes. Out: a report of findings; a failing one makes the exit
+status 1.
 """

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
-from tactcad.parts.finding import Finding
+from tactcad.parts.finding import Finding, Severity
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 
@@ -15,15 +16,15 @@ def check_calibration(design: Design) -> list[Finding]:
     An element whose strength the estimator cannot tell is flagged by the strength check.
     """
     found = []
+    travel = present(design.calibration).travel
     for load in calibration_loads(design):
         if load.refused or load.deflection <= load.rated_deflection:
             continue
-        severity = "fail" if design.calibration.travel > load.travel_at_yield else "flag"
+        severity: Severity = "fail" if travel > load.travel_at_yield else "flag"
         who = f"{load.place.designator} ({element_number(design, load.place)})"
         message = (
-            f"{design.calibration.travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is "
-            f"rated for {load.rated_deflection:.4g}: "
-            f"calibrate it to {load.travel_at_rated:.4g} mm of travel"
+            f"{travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated "
+            f"for {load.rated_deflection:.4g}: calibrate it to {load.travel_at_rated:.4g} mm of travel"
         )
         found.append(
             Finding(

@@ -1,12 +1,12 @@
 """Do pressed arms stay clear of their own body, the stop plate and the opposite row?
 
-Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to its stop's gap and
-tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate.
+Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to its stop's gap
+and tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate.
 
-The rules on pressed arms (`parts/rules/pressed_rules.py`) say in closed form which corner meets which wall first. This
-asks every piece of the contour, and so alone finds a shape of arm, fillet or land of which that is no longer true. Of
-thousands of designs that keep the rules none has had a finding here. What lies beside an arm, and the room of gauges
-and leads, are the rules' alone: there is no contour to ask.
+The rules on pressed arms (`parts/rules/pressed_rules.py`) say in closed form which corner meets which wall
+first. This asks every piece of the contour, and so alone finds a shape of arm, fillet or land of which that
+is no longer true. Of thousands of designs that keep the rules none has had a finding here. What lies beside
+an arm, and the room of gauges and leads, are the rules' alone: there is no contour to ask.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.TopoDS import TopoDS_Shape
 
+from tactcad.parts.description import vector
 from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Contact, Placement, Scene
 from tactcad.solids.measure import bounding_box, measure, volume
@@ -77,12 +78,13 @@ def near_pairs(boxes: np.ndarray) -> Iterator[tuple[int, int]]:
     axis = int(np.argmax(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)))
     order = np.argsort(boxes[:, 0, axis], kind="stable")
     low, high = boxes[order, 0] - TOUCH_MM, boxes[order, 1] + TOUCH_MM
-    pairs = []
+    pairs: list[tuple[int, int]] = []
     for n in range(len(order)):
         last = int(np.searchsorted(low[:, axis], high[n, axis], side="right"))
         ahead = slice(n + 1, last)
         meets = np.all((low[ahead] <= high[n]) & (high[ahead] >= low[n]), axis=1)
-        pairs += [tuple(sorted((int(order[n]), int(order[n + 1 + k])))) for k in np.flatnonzero(meets)]
+        others = order[n + 1 + np.flatnonzero(meets)]
+        pairs += [(int(min(order[n], k)), int(max(order[n], k))) for k in others]
     return iter(sorted(pairs))
 
 
@@ -138,7 +140,7 @@ def meeting(
         place = tuple(measure(common)["centre"])
     seen_from = pair[anchor]
     there = np.array(seen_from.rotation).T @ (np.array(place) - np.array(seen_from.origin))
-    return Meeting(overlap, distance, tuple(map(float, there)), anchor)
+    return Meeting(overlap, distance, vector(there.tolist()), anchor)
 
 
 def _faces(p: Placement, shapes: Mapping[str, TopoDS_Shape], known: dict[str, Faces]) -> Faces:

@@ -12,7 +12,16 @@ from tactcad.contour import Arc, Contour, Segment
 from tactcad.contour.inside import clearance, side
 from tactcad.contour.nearest import distance
 from tactcad.contour.necks import direction
-from tactcad.parts.description import Extrusion, Hole, Part, Pocket, Revolution, Vector, drill_point_height
+from tactcad.parts.description import (
+    Extrusion,
+    Hole,
+    Part,
+    Pocket,
+    Revolution,
+    Vector,
+    drill_point_height,
+    vector,
+)
 from tactcad.parts.finding import SAME, Finding, at_least, at_most
 from tactcad.parts.library.screws import METRIC
 
@@ -190,12 +199,12 @@ def _hole_walls(part: Part, limit: Machining) -> Iterator[Finding]:
 def _cylinders(h: Hole) -> Iterator[tuple[Hole, Vector, Vector, float]]:
     """Axis and radius of the hole, and of its counterbore; a thread counts with its outside diameter.
 
-    Walls are measured from the axis, with round ends: a blind hole's axis ends so that its round end reaches as
-    deep as the drill's point.
+    Walls are measured from the axis, with round ends: a blind hole's axis ends so that its round end reaches
+    as deep as the drill's point.
     """
 
     def at(depth: float) -> Vector:
-        return tuple(p + depth * a for p, a in zip(h.at, h.axis))
+        return vector(p + depth * a for p, a in zip(h.at, h.axis))
 
     r = max(h.diameter, h.thread_diameter) / 2
     point = drill_point_height(h.diameter) if h.drill_point else 0.0
@@ -209,7 +218,7 @@ def _between(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
     ways)."""
 
     def sub(p: Vector, q: Vector) -> Vector:
-        return tuple(x - y for x, y in zip(p, q))
+        return vector(x - y for x, y in zip(p, q))
 
     def dot(p: Vector, q: Vector) -> float:
         return sum(x * y for x, y in zip(p, q))
@@ -236,8 +245,8 @@ def _material_along(part: Part, at: Vector, axis: Vector) -> float:
     if isinstance(part.body, Revolution):
         low, high = (-inf, -inf, part.body.profile.box[1]), (inf, inf, part.body.profile.box[3])
     else:
-        x0, y0, x1, y1 = part.body.outer.box
-        low, high = (x0, y0, 0.0), (x1, y1, part.body.thickness)
+        x0, y0, x1, y1 = part.extrusion.outer.box
+        low, high = (x0, y0, 0.0), (x1, y1, part.extrusion.thickness)
     return min(
         ((high[i] if axis[i] > 0 else low[i]) - at[i]) / axis[i] for i in range(3) if abs(axis[i]) > 0.5
     )
@@ -246,12 +255,12 @@ def _material_along(part: Part, at: Vector, axis: Vector) -> float:
 def _slender(part: Part, limit: Machining) -> Iterator[Finding]:
     if part.process != "turned":
         return
-    if isinstance(part.body, Extrusion):
-        x0, _, x1, _ = part.body.outer.box
-        length, diameter = part.body.thickness, x1 - x0
-    else:
+    if isinstance(part.body, Revolution):
         _, z0, r, z1 = part.body.profile.box
         length, diameter = z1 - z0, 2 * r
+    else:
+        x0, _, x1, _ = part.extrusion.outer.box
+        length, diameter = part.extrusion.thickness, x1 - x0
     slender = length / diameter
     what = (
         f"{length:g} mm long at {diameter:g} diameter: {slender:.3g} diameters, at most {limit.slenderness:g}"

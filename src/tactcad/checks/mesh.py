@@ -10,7 +10,7 @@ from tactcad.account import making
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.solids.measure import measure
-from tactcad.solids.mesh import triangles
+from tactcad.solids.triangles import triangles
 
 LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
 

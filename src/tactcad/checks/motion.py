@@ -1,9 +1,9 @@
 """Does anything collide while a scene moves: every stated motion, over its whole way and not only in poses.
 
-A pair that moves against each other is passed over while its boxes stay apart. For the rest the kernel gives the
-distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
-prove the whole way, however thin the parts are. Distances are first taken between envelopes (parts without their
-holes and pockets), which only come out smaller.
+A pair that moves against each other is passed over while its boxes stay apart. For the rest the kernel gives
+the distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
+prove the whole way, however thin the parts are. Distances are first taken between envelopes (parts without
+their holes and pockets), which only come out smaller.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Common
 from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.TopoDS import TopoDS_Shape
 
-from tactcad.parts.description import Vector
+from tactcad.parts.description import Vector, vector
 from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Motion, Placement, Scene
 from tactcad.solids.measure import bounding_box, volume
@@ -41,7 +41,7 @@ class _Pair:
     end: Vector
 
     def offset(self, t: float) -> Vector:
-        return tuple(a + t * (b - a) for a, b in zip(self.start, self.end))
+        return vector(a + t * (b - a) for a, b in zip(self.start, self.end))
 
     @property
     def way(self) -> float:
@@ -73,24 +73,25 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
             )
             if key not in known:
                 known[key] = _slides(pair, full) if kind else _meets(pair, span, full, envelope)
-            if known[key]:
-                found.append(_finding(motion, pair, *known[key]))
+            hit = known[key]
+            if hit:
+                found.append(_finding(motion, pair, *hit))
     return found
 
 
 def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Pair]:
     """Pairs of different groups that are not at rest, as placed, over the whole motion."""
     group = {d: name for name, members in scene.groups for d in members}
-    ways = {name: (start, end) for name, start, end in motion.ways}
     still = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    ways: dict[str | None, tuple[Vector, Vector]] = {name: (start, end) for name, start, end in motion.ways}
     for i, a in enumerate(scene.placements):
         for b in scene.placements[i + 1 :]:
             ga, gb = group.get(a.designator), group.get(b.designator)
             if ga == gb:
                 continue
             (a0, a1), (b0, b1) = ways.get(ga, still), ways.get(gb, still)
-            start = tuple(q - p for p, q in zip(a0, b0))
-            end = tuple(q - p for p, q in zip(a1, b1))
+            start = vector(q - p for p, q in zip(a0, b0))
+            end = vector(q - p for p, q in zip(a1, b1))
             if any(start) or any(end):
                 yield _Pair(a, b, start, end)
 
@@ -145,7 +146,7 @@ def _distance(pair: _Pair, t: float, shapes: Shapes) -> float:
 
 def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS_Shape]:
     a, b = pair.first, pair.second
-    moved = tuple(o + d for o, d in zip(b.origin, pair.offset(t)))
+    moved = vector(o + d for o, d in zip(b.origin, pair.offset(t)))
     return (
         shapes[a.part.part_no].Located(location(a.origin, a.rotation)),
         shapes[b.part.part_no].Located(location(moved, b.rotation)),
@@ -155,8 +156,7 @@ def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS
 def _finding(motion: Motion, pair: _Pair, t: float, what: str) -> Finding:
     a, b = pair.first, pair.second
     message = (
-        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at "
-        f"{100 * t:.0f} % of the "
-        f"motion '{motion.name}'"
+        f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at {100 * t:.0f} % "
+        f"of the motion '{motion.name}'"
     )
     return Finding("motion", "fail", a.designator, pair.offset(t), t, 0.0, message)

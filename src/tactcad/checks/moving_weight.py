@@ -3,6 +3,7 @@ paper's 3.235 N)."""
 
 from __future__ import annotations
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
 from tactcad.scenes.moving_axis import moving_weight
@@ -14,7 +15,7 @@ AGREES = 0.005
 
 def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
     """A finding where what moves is heavier than asked for (no ballast can mend that), or lighter."""
-    weight, wanted = moving_weight(scene), design.grasping.moving_weight
+    weight, wanted = moving_weight(scene), present(design.grasping).moving_weight
     if abs(weight - wanted) <= AGREES * wanted:
         return []
     message = f"what moves weighs {weight:.4g} N by its parts, grasping.moving_weight asks for {wanted:.4g} N"

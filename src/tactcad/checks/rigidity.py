@@ -1,4 +1,8 @@
-"""What is taken as rigid: does every part of the array and its rigs bend as little as it may?"""
+"""What is taken as rigid: does every part of the array and its rigs bend as little as it may?
+
+Rules (parts/rules/stiffness_rules.py) refuse by the same lines what fails here, or leave its scene out; what
+is left for a design that keeps them is what is only flagged.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ from collections.abc import Collection
 
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
+from tactcad.parts.stiffness_remedy import remedy
 from tactcad.parts.stiffness_table import Deflection, deflections
 
 
@@ -13,14 +18,12 @@ def check_rigidity(design: Design, scenes: Collection[str], table: list[Deflecti
     """Findings on the lines that give way by more than is allowed; all lines into `table`."""
     table += deflections(design, scenes)
     return [
-        Finding("deflection", line.severity, line.part, (), line.gives, line.allowed, _message(line))
+        Finding("deflection", line.severity, line.part, (), line.gives, line.allowed, _message(design, line))
         for line in table
-        if line.gives > line.allowed
+        if line.too_much
     ]
 
 
-def _message(line: Deflection) -> str:
-    return (
-        f"{line.scene}: gives way by {line.gives:.3g} um under {line.load:.3g} N ({line.origin}), {line.model}; "
-        f"allowed are {line.allowed:.3g} um, {line.why}"
-    )
+def _message(design: Design, line: Deflection) -> str:
+    path, value, legal = remedy(design, line)
+    return f"{line} ({path} = {value:g}; legal: {legal})"

@@ -89,7 +89,8 @@ class Shop:
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
     """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them,
-    [machining] and [machining_source]: all of them, or those in which it differs from what comes with tactcad.
+    [machining] and [machining_source]: all of them, or those in which it differs from what comes with
+    tactcad.
 
     Raises InputError where it cannot be read or a field is missing, unknown or not legal.
     """
@@ -147,8 +148,7 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 
 
 def _size(where: str, value: object) -> float:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (number and 0 < value <= 100):
+    if not isinstance(value, int | float) or isinstance(value, bool) or not 0 < value <= 100:
         raise InputError(
             where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
         )

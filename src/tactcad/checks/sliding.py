@@ -29,17 +29,18 @@ def zones(part: Part) -> tuple[Zones, Zones, Zones] | None:
     body = part.body
     if isinstance(body, Extrusion):
         contours = (body.outer, *body.openings)
-        found = [_along(contours, 0), _along(contours, 1), [(0.0, 0.0), (body.thickness, body.thickness)]]
+        along = [_along(contours, 0), _along(contours, 1), [(0.0, 0.0), (body.thickness, body.thickness)]]
     elif isinstance(body, Revolution):
         radius = body.profile.box[2]
-        found = [[(-radius, radius)], [(-radius, radius)], _along((body.profile,), 1)]
+        along = [[(-radius, radius)], [(-radius, radius)], _along((body.profile,), 1)]
     else:
         return None
     for feature in part.features:
         low, high = feature_box(feature)
         for k in range(3):
-            found[k].append((float(low[k]), float(high[k])))
-    return tuple(_merged(intervals) for intervals in found)
+            along[k].append((float(low[k]), float(high[k])))
+    x, y, z = (_merged(intervals) for intervals in along)
+    return x, y, z
 
 
 def _along(contours: Iterable[Contour], axis: int) -> list[tuple[float, float]]:
@@ -49,7 +50,8 @@ def _along(contours: Iterable[Contour], axis: int) -> list[tuple[float, float]]:
         if isinstance(s, Line) and s.start[1 - axis] == s.end[1 - axis]:
             intervals += [(s.start[axis], s.start[axis]), (s.end[axis], s.end[axis])]
         elif isinstance(s, Line):
-            intervals.append(tuple(sorted((s.start[axis], s.end[axis]))))
+            low, high = sorted((s.start[axis], s.end[axis]))
+            intervals.append((low, high))
         else:  # the whole circle: more than the arc, and simple
             intervals.append((s.centre[axis] - s.radius, s.centre[axis] + s.radius))
     return intervals

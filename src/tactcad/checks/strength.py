@@ -3,6 +3,7 @@ one element."""
 
 from __future__ import annotations
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
 from tactcad.parts.finding import Finding
@@ -39,7 +40,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
         "tolerance included"
     )
-    stress = design.material.yield_strength / design.rating.deflection_factor
+    stress = present(design.material.yield_strength) / design.rating.deflection_factor
     found = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
         found.append(
@@ -76,9 +77,8 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 at_hinge,
                 state.rated_force,
                 design.rating.force,
-                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: "
-                "there the fillet "
-                f"would have less than its safety of {design.rating.yield_factor:g} against yield",
+                f"rated at {state.rated_force:.3g} N, not at the {design.rating.force:g} N asked for: there "
+                f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )
     return found

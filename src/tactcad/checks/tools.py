@@ -1,12 +1,12 @@
 """Can a key or a socket get at every screw and nut at the moment when the assembly's steps put them in?
 
-A tool is a cylinder out of the screw's socket, or over the nut, as long as what a hand holds. In its way may be what
-stands after the screw's own step: not what the step says is on the bench or driven aside.
+A tool is a cylinder out of the screw's socket, or over the nut, as long as what a hand holds. In its way may
+be what stands after the screw's own step: not what the step says is on the bench or driven aside.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from math import cos, pi
 
@@ -14,10 +14,10 @@ import numpy as np
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.contour import Contour, circle
-from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket
+from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, vector
 from tactcad.parts.finding import Finding
 from tactcad.parts.library.screws import SOCKET_WALL
-from tactcad.scenes.scene import Placement, Scene, Step
+from tactcad.scenes.scene import Placement, Scene, Step, rotation
 from tactcad.solids.build import build
 from tactcad.solids.measure import bounding_box
 from tactcad.solids.near import Faces, boxed, faces_within, nearest
@@ -30,28 +30,33 @@ REACH = 40.0
 # The tool begins this far off the faces that it turns (mm), so that it does not count as touching them.
 OFF = 0.05
 
+Known = Callable[[str], tuple[Faces, list[list[float]]]]
+
 
 def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Finding]:
     """Findings on every screw and nut that a step of the scene puts in; shapes by part number."""
     placed = {p.designator: p for p in scene.placements}
     known = cache(lambda number: (Faces(shapes[number]), bounding_box(shapes[number])))
-    found, there = [], []
+    found: list[Finding] = []
+    standing: list[str] = []
     for step in scene.steps:
-        there += step.designators
+        standing += step.designators
         for fastener in (placed[name] for name in step.designators if name not in step.ready):
             tool = _tool(fastener)
             if tool is not None:
-                others = [placed[name] for name in _in_the_way(step, there) if name != fastener.designator]
+                others = [placed[name] for name in _in_the_way(step, standing) if name != fastener.designator]
                 found += _reached(fastener, tool, others, known)
     return found
 
 
-def _in_the_way(step: Step, there: list[str]) -> list[str]:
-    standing = list(step.designators) if step.bench else there
-    return [name for name in standing if name not in step.aside]
+def _in_the_way(step: Step, standing: list[str]) -> list[str]:
+    beside = list(step.designators) if step.bench else standing
+    return [name for name in beside if name not in step.aside]
 
 
-def _reached(fastener: Placement, tool: Placement, others: list[Placement], known) -> Iterator[Finding]:
+def _reached(
+    fastener: Placement, tool: Placement, others: list[Placement], known: Known
+) -> Iterator[Finding]:
     shape, local = _cylinder(tool.part)
     box = boxed(local, np.array(tool.rotation), np.array(tool.origin))
     for other in others:
@@ -63,19 +68,15 @@ def _reached(fastener: Placement, tool: Placement, others: list[Placement], know
         if free < TOUCH_MM:
             message = (
                 f"{other.designator} ({other.part.part_no}) is in the way of the {tool.part.name} of "
-                f"{REACH:g} mm for "
-                f"{fastener.designator} ({fastener.part.part_no})"
+                f"{REACH:g} mm for {fastener.designator} ({fastener.part.part_no})"
             )
             yield Finding("tool-room", "fail", fastener.designator, place, free, OFF, message)
 
 
 def _screwed(nut: Placement, other: Placement) -> bool:
     """Whether the other part is the rod that stands in the nut."""
-    return (
-        not _socket(nut.part)
-        and np.linalg.norm((np.array(other.origin) - np.array(nut.origin)) @ np.array(nut.rotation)[:, :2])
-        < OFF
-    )
+    beside = (np.array(other.origin) - np.array(nut.origin)) @ np.array(nut.rotation)[:, :2]
+    return not _socket(nut.part) and bool(np.linalg.norm(beside) < OFF)
 
 
 @cache
@@ -115,11 +116,6 @@ def _round(name: str, diameter: float) -> Part:
 def _placed(p: Placement, tool: Part, z: float, way: float) -> Placement:
     """The tool on the fastener's axis, from its own z on, along z or against it."""
     turn = np.array(p.rotation)
-    rotation = turn @ np.diag((1.0, way, way))
     origin = np.array(p.origin) + turn @ np.array((0.0, 0.0, z))
-    return Placement(
-        f"tool at {p.designator}",
-        tool,
-        tuple(map(float, origin)),
-        tuple(tuple(map(float, row)) for row in rotation),
-    )
+    name, turned = f"tool at {p.designator}", rotation(turn @ np.diag((1.0, way, way)))
+    return Placement(name, tool, vector(origin.tolist()), turned)

@@ -6,11 +6,11 @@ import argparse
 import sys
 from contextlib import nullcontext
 
-from .parser import add_others
+from .parser import add_json, add_others
 
 EXAMPLES = """\
   tactcad bench                              everything in short: four minutes on two quiet cores
-  tactcad bench --full --out bench           for publication: report.json, report.md, tables/*.csv, plots/*.svg
+  tactcad bench --full --out bench           for publication: report.json, report.md, tables/, plots/
   tactcad bench --only rungs --only meshes   two of them
   tactcad bench --smoke                      does everything run? its figures mean nothing
 
@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", metavar="DIR", help="write the report into this folder")
     add_others(parser)
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -43,17 +43,17 @@ def run(args: argparse.Namespace) -> int:
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before numpy: one thread, as every child
         os.environ[variable] = "1"
     from tactcad.bench import render, truth
-    from tactcad.bench.plan import Plan
+    from tactcad.bench.plan import Mode, Plan
     from tactcad.bench.run import SCHEMA
     from tactcad.bench.run import run as measure
     from tactcad.design.files import scratch_folder
-    from tactcad.export.publish import turn
+    from tactcad.export.publication import turn
 
     from .progress import progress
 
     names = _names(args.only)
     say = progress(sys.stderr)
-    mode = "full" if args.full else "smoke" if args.smoke else "short"
+    mode: Mode = "full" if args.full else "smoke" if args.smoke else "short"
     seed = _seed(args.seed, args.full)
     with turn(args.out, SCHEMA, args.others, say.line) if args.out else nullcontext() as work:
         with scratch_folder("bench") as scratch:

@@ -8,7 +8,7 @@ import sys
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
   tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
-  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   a measured cell, runs known to repeat
+  tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
   tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
@@ -21,15 +21,18 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--load-cell",
         metavar="K[+-U]",
-        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 or "
-        "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, assumed); the "
+        help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
+        "or "
+        "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
+        "assumed); the "
         "intervals hold for every load cell within them",
     )
     parser.add_argument(
         "--run-scatter",
         type=float,
         metavar="S",
-        help="relative standard deviation of an element's slope from run to run, where you know it (0.01 for 1 %%); "
+        help="relative standard deviation of an element's slope from run to run, where you know it (0.01 "
+        "for 1 %%); "
         "without it the runs tell, and for a single run 0.01 is assumed",
     )
     parser.add_argument(
@@ -43,15 +46,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
+    from tactcad.lab.load_cell import LoadCell
     from tactcad.paper import published
 
     from .progress import slow_work
 
     if args.out:
         refuse_overwriting(args.out, args.file)
-    load_cell = calibration.LoadCell.parse(
-        args.load_cell or str(published.load().figure["load_cell_stiffness"])
-    )
+    load_cell = LoadCell.parse(args.load_cell or str(published.load().figure["load_cell_stiffness"]))
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         rows = calibration.calibrate(

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tactcad.checks.report import Report
 
+from .parser import add_design, add_json, add_shop
+
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
   tactcad check soft-tissue --json        findings, runs and times as JSON
@@ -25,23 +27,13 @@ file in exports/golden/ too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="*",
-        default=[DEFAULT_DESIGN],
-        metavar="DESIGN",
-        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
-    )
+    add_design(parser, several=True)
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)"
     )
-    parser.add_argument(
-        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
-    )
+    add_shop(parser)
     parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -70,11 +62,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
-    """The design's report. Of several designs one that is refused fails, and the others are checked all the same."""
+    """The design's report. Of several designs one that is refused fails, and the others are checked all the
+    same."""
     from tactcad.checks.report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
-    from tactcad.export.golden import check_golden, golden_path
+    from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.parts.finding import Finding
     from tactcad.scenes import chosen_scenes

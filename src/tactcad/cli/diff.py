@@ -6,6 +6,8 @@ import argparse
 import json
 from dataclasses import asdict
 
+from .parser import add_json
+
 EXAMPLES = """\
   tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
   tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
@@ -18,7 +20,7 @@ What only one of them tells is left out, and said. The exit status is 0 whether 
 def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("old", metavar="A", help="design, export's folder or golden file")
     parser.add_argument("new", metavar="B", help="the same, what it became")
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
     parser.add_argument(
         "--html", metavar="FILE", help="also write one offline page with contours laid over each other"
     )

@@ -13,19 +13,21 @@ from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
+    from tactcad.design.tree import Design
     from tactcad.mechanics.accuracy import Choice
+    from tactcad.parts.layout import Layout
 
 EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
-  tactcad estimate --accuracy 1%                    # the quickest rung whose measured worst error is within it
+  tactcad estimate --accuracy 1%             # the quickest rung whose measured worst error is within it
   tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
   tactcad estimate --inspection inspections/macro-array-C.csv
-                                      the elements as made, from the inspection sheet that the shop filled in: a copy
-                                      of an export's inspection.csv, kept outside the export
+                                      the elements as made, from the inspection sheet that the shop
+                                      filled in: a copy of an export's inspection.csv, kept outside the export
 """
 
 COLUMNS = (  # heading, unit, field, format
@@ -58,8 +60,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--accuracy",
         metavar="P",
-        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the examples), "
-        "against solid elements refined to their limit; takes the quickest rung whose measured worst error at this "
+        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the "
+        "examples), "
+        "against solid elements refined to their limit; takes the quickest rung whose measured worst error "
+        "at this "
         "design is within it, or refuses (docs/accuracy.md)",
     )
     parser.add_argument(
@@ -73,7 +77,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--inspection",
         metavar="FILE",
-        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its elements as "
+        help="the design's inspection sheet, a copy filled in outside the export (inspections/, say): its "
+        "elements as "
         "made, beside the nominal",
     )
 
@@ -110,7 +115,7 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
     else:
         print(_report(layout, model, rows, uncut))
-        if choice:
+        if choice and accuracy:
             print(_why(choice, accuracy))
     return 0
 
@@ -206,7 +211,7 @@ def _worst(rows: list[dict]) -> float | None:
     return None if None in errors else max(errors)
 
 
-def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+def _document(design: Design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     from tactcad.mechanics.accuracy import accuracy_data
 
     document = {
@@ -223,7 +228,7 @@ def _document(design, model: str, rows: list[dict], uncut: dict | None) -> dict:
     return document | ({"uncut": uncut} if uncut else {})
 
 
-def _report(layout, model: str, rows: list[dict], uncut: dict | None) -> str:
+def _report(layout: Layout, model: str, rows: list[dict], uncut: dict | None) -> str:
     from tactcad.mechanics.accuracy import stated
 
     design, first = layout.design, rows[0]
@@ -239,7 +244,8 @@ def _report(layout, model: str, rows: list[dict], uncut: dict | None) -> str:
         )
     if uncut:
         lines.append(
-            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in plane stress: "
+            f"uncut contour of no. {uncut['number']}, with pad, land and holes, held between spacers, in "
+            f"plane stress: "
             f"{uncut['uncut']:.4g} N/mm, {uncut['uncut'] / uncut['model'] - 1:+.2%} against the model "
             "cut at load line and clamp edge"
         )
@@ -275,7 +281,7 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(layout, model: str) -> str:
+def _spread(layout: Layout, model: str) -> str:
     """What the hinge's tolerance does to these numbers, by the rung's own derivative."""
     from tactcad.mechanics.derivative import elasticity
     from tactcad.parts.hinge_section import hinge_section

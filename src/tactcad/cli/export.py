@@ -7,7 +7,7 @@ import json
 import sys
 from dataclasses import asdict
 
-from .parser import add_others
+from .parser import add_design, add_json, add_others
 
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
@@ -18,21 +18,13 @@ EXAMPLES = """\
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
 
-The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing. A folder
-with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill in a copy of
-inspection.csv (in inspections/, say), not the export's own."""
+The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
+A folder with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill
+in a copy of inspection.csv (in inspections/, say), not the export's own."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="?",
-        default=DEFAULT_DESIGN,
-        metavar="DESIGN",
-        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
-    )
+    add_design(parser)
     parser.add_argument(
         "--scene", action="append", metavar="NAME", help="export this scene; may be repeated (default: all)"
     )
@@ -41,7 +33,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="KEY=VALUE",
         default=[],
-        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be repeated",
+        help="configuration of the rigs: element=N, deflection=MM, weights=N, height=MM, cart=MM; may be "
+        "repeated",
     )
     parser.add_argument(
         "--detail",
@@ -59,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

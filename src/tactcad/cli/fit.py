@@ -1,4 +1,5 @@
-"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their report."""
+"""`tactcad fit`: the ladder's constants and every rung's worst errors from finite elements, with their
+report."""
 
 from __future__ import annotations
 
@@ -77,12 +78,8 @@ def run(args: argparse.Namespace) -> int:
 
     for option, least in LEAST.items():
         if getattr(args, option) < least:
-            raise InputError(
-                f"--{option.replace('_', '-')}",
-                "too few",
-                value=getattr(args, option),
-                legal=f"at least {least}",
-            )
+            name = f"--{option.replace('_', '-')}"
+            raise InputError(name, "too few", value=getattr(args, option), legal=f"at least {least}")
     out = Path(args.out)
     make_folder(out)
     results = [out / name for name in ("ladder.json", "accuracy.json")]
@@ -121,6 +118,7 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
         return lambda line: print(f"{kind}: {line}", file=sys.stderr, flush=True)
 
     plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
+
     for kind, (count, solids) in plan.items():
         inside, edges = fit_samples.designs(kind, count)
         tables = [
@@ -138,7 +136,8 @@ def _sample(args: argparse.Namespace, out: Path) -> dict:
 
 
 def _today() -> date:
-    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no time."""
+    """The date of the report; SOURCE_DATE_EPOCH, where set, keeps it. Raises InputError where that is no
+    time."""
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
     try:
         return datetime.fromtimestamp(as_whole(epoch), UTC).date() if epoch else date.today()

@@ -6,6 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from .parser import add_design, add_shop
+
 EXAMPLES = """\
   tactcad golden                   the golden file of hardware/macro-array.toml
   make golden                      those of every design in hardware/
@@ -15,18 +17,8 @@ fails. Other geometry under the same revision letter is refused: give the design
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="*",
-        default=[DEFAULT_DESIGN],
-        metavar="DESIGN",
-        help=f"a path or name of a design in a folder hardware/ (default {DEFAULT_DESIGN})",
-    )
-    parser.add_argument(
-        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
-    )
+    add_design(parser, several=True)
+    add_shop(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,7 +39,7 @@ def _renew(source: str, shop_file: str | None) -> None:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
-    from tactcad.export.golden import accept, changes_against, golden_path
+    from tactcad.export.golden_file import accept, changes_against, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
 

@@ -1,7 +1,7 @@
 """The `tactcad` command: finds the sub-command's module, runs it, turns refusals into exit status.
 
-A sub-command is one module with EXAMPLES (text), configure(parser) and run(args) ->
-exit status; it imports what it needs inside run, so that `tactcad estimate` never pays for the kernel.
+A sub-command is one module with EXAMPLES (text), configure(parser) and run(args) -> exit status; it imports
+what it needs inside run, so that `tactcad estimate` never pays for the kernel.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ DONE, FAILED, BAD_INPUT = 0, 1, 2
 def main(argv: list[str] | None = None) -> int:
     """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input.
 
-    Without ARGV it is this process that is the command: its own arguments are taken, its streams may lose their readers,
-    and signals end it.
+    Without ARGV it is this process that is the command: its own arguments are taken, its streams may lose
+    their readers, and signals end it.
     """
     if argv is None:
         return _own_process()
@@ -76,7 +76,7 @@ def _own_process() -> int:
     try:
         status = main(sys.argv[1:])
     except SystemExit as ended:  # the parser's help and refusals
-        status = ended.code
+        status = ended.code if isinstance(ended.code, int) else DONE
     sys.stdout.flush()
     past_ending()
     if output.failed and status == DONE:
@@ -120,7 +120,8 @@ def parser_of(command: str) -> Parser:
     parser.add_argument(
         "--profile",
         action="store_true",
-        help="at the end, on standard error: what was loaded, which parts, meshes and finite-element solutions were "
+        help="at the end, on standard error: what was loaded, which parts, meshes and finite-element "
+        "solutions were "
         "made, how often, how long, and how much memory it took (with --json as JSON)",
     )
     return parser
@@ -128,7 +129,7 @@ def parser_of(command: str) -> Parser:
 
 def _dispatch(argv: list[str]) -> int:
     if argv and argv[0] in COMMANDS:
-        args = parser_of(argv[0]).parse_args(argv[1:])
+        args = parser_of(argv[0]).parse(argv[1:])
         if argv[0] in NEED_KERNEL and importlib.util.find_spec("build123d") is None:
             raise CheckFailure(_no_kernel())
         run = importlib.import_module(f"tactcad.cli.{argv[0]}").run
@@ -145,5 +146,5 @@ def _dispatch(argv: list[str]) -> int:
     parser.add_argument("command", choices=list(COMMANDS), metavar="COMMAND")
     if not argv:
         parser.error(str(InputError("COMMAND", "missing", legal=one_of("", COMMANDS))))
-    parser.parse_args(argv[:1])
+    parser.parse(argv[:1])
     return BAD_INPUT

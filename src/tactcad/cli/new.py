@@ -5,12 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 
+from .parser import add_json
+
 EXAMPLES = """\
   tactcad new my-sensor.toml                      the published array under a name of your own
   tactcad new my-sensor.toml --from soft-tissue   from another named design, or from a file
 
-The design's name is the file's. Everything else is the other design's, with its comments and origins; it starts at
-revision A, dated today. A file that is there is never written over."""
+The design's name is the file's. Everything else is the other design's, with its comments and origins; it
+starts at revision A, dated today. A file that is there is never written over."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +26,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="DESIGN",
         help=f"what to start from: a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
     )
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

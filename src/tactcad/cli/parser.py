@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
+from tactcad.design.load import DEFAULT_DESIGN
 from tactcad.design.messages import InputError, near, one_of
 from tactcad.design.plain_numbers import as_number, as_whole
 
@@ -18,17 +19,14 @@ class Parser(argparse.ArgumentParser):
         self.register("type", float, as_number)
         self.register("type", int, as_whole)
 
-    def parse_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> argparse.Namespace:
+    def parse(self, args: Sequence[str]) -> argparse.Namespace:
+        """The arguments; what is not understood ends the program with exit status 2."""
         if args and args[-1] == "--":
-            self.error(
-                str(InputError("--", "nothing follows it", legal="leave it out, or name what it is for"))
-            )
-        parsed, unknown = super().parse_known_args(args, namespace)
+            self._refuse("--", "nothing follows it", legal="leave it out, or name what it is for")
+        parsed, unknown = super().parse_known_args(args)
         if unknown:
             hint = near(unknown[0], self._option_string_actions) if unknown[0].startswith("-") else ""
-            self.error(
-                str(InputError(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`"))
-            )
+            self._refuse(unknown[0], "unknown argument", legal=hint or f"see `{self.prog} --help`")
         for action in self._actions:
             self._refuse_empty(action, getattr(parsed, action.dest, None))
         return parsed
@@ -36,25 +34,44 @@ class Parser(argparse.ArgumentParser):
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
         """An empty text is a slip of whoever wrote the script, never a wish for the default."""
         if "" in (value if isinstance(value, list) else [value]):
-            self.error(str(InputError(_named(action), "empty", value="", legal=action.help or "")))
+            self._refuse(_named(action), "empty", value="", legal=action.help or "")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
-            self.error(
-                str(
-                    InputError(
-                        _named(action), "unknown", value=value, legal=one_of(value, map(str, action.choices))
-                    )
-                )
-            )
+            legal = one_of(value, map(str, action.choices))
+            self._refuse(_named(action), "unknown", value=value, legal=legal)
+
+    def _refuse(self, where: str, what: str, *, value: object = ..., legal: str) -> NoReturn:
+        self.error(str(InputError(where, what, value=value, legal=legal)))
 
     def error(self, message: str) -> NoReturn:
         """One line, exit status 2."""
         self.exit(2, f"tactcad: {message}\n")
 
 
+def add_design(parser: argparse.ArgumentParser, several: bool = False) -> None:
+    """DESIGN, or several of them."""
+    parser.add_argument(
+        "design",
+        nargs="*" if several else "?",
+        default=[DEFAULT_DESIGN] if several else DEFAULT_DESIGN,
+        metavar="DESIGN",
+        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
+    )
+
+
+def add_shop(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
+    )
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+
+
 def add_others(parser: argparse.ArgumentParser) -> None:
-    """--keep and --discard, for commands that write a folder (tactcad.export.publish)."""
+    """--keep and --discard, for commands that write a folder (tactcad.export.publication)."""
     others = parser.add_mutually_exclusive_group()
     others.add_argument(
         "--keep",
@@ -62,7 +79,8 @@ def add_others(parser: argparse.ArgumentParser) -> None:
         action="store_const",
         const="keep",
         default="refuse",
-        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 (default: refuse)",
+        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 "
+        "(default: refuse)",
     )
     others.add_argument(
         "--discard",

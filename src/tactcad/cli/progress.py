@@ -48,7 +48,8 @@ def progress(stream: TextIO) -> Terminal | Log:
 
 @contextmanager
 def slow_work(stream: TextIO) -> Iterator[Callable[[int, int, str], None]]:
-    """Gives a function to tell each step's (done, total, text); what is told is shown every SILENT seconds only."""
+    """Gives a function to tell each step's (done, total, text); what is told is shown every SILENT seconds
+    only."""
     shown, told, ended = progress(stream), [(0, 1, "")], threading.Event()
 
     def show() -> None:

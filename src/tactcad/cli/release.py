@@ -8,40 +8,32 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
+from .parser import add_design, add_json, add_shop
+
 EXAMPLES = """\
   tactcad release                     exports/releases/macro-array-<revision>.zip
   tactcad release soft-tissue --out to-the-shop
   tactcad release --shop my-shop.toml with your own shop's limits for wire cutting
-  tactcad release --draft             although a check fails: PRELIMINARY on every sheet, in README and file name
+  tactcad release --draft             although a check fails: PRELIMINARY on sheets, in README and file name
 
-One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection sheet,
-strength summary, checksums. Every check runs first, and the golden file is compared; where one fails
+One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection
+sheet, strength summary, checksums. Every check runs first, and the golden file is compared; where one fails
 nothing is written and an earlier zip stays as it is."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    from tactcad.design.load import DEFAULT_DESIGN
-
-    parser.add_argument(
-        "design",
-        nargs="*",
-        default=[DEFAULT_DESIGN],
-        metavar="DESIGN",
-        help=f"a path, or a name in hardware/ (default {DEFAULT_DESIGN})",
-    )
+    add_design(parser, several=True)
     parser.add_argument(
         "--out",
         metavar="DIR",
         default="exports/releases",
         help="folder of the zip (default exports/releases)",
     )
-    parser.add_argument(
-        "--shop", metavar="FILE", help="your shop's limits (default: the ones that come with tactcad)"
-    )
+    add_shop(parser)
     parser.add_argument(
         "--draft", action="store_true", help="write a PRELIMINARY zip whatever the checks say"
     )
-    parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
+    add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:

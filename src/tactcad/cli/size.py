@@ -105,42 +105,42 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
     tolerance = args.tolerance or getattr(design.tolerance, parameter)
     force = args.force or design.rating.force
     value = size(section, args.stiffness, parameter, args.model)
-    ends = [
-        _stiffness_at(ladder, section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)
-    ]
-    found = section.with_(**{parameter: value})
-    elastic = bool(strength.elastic(found, alloy, force))
+    ends = [_stiffness_at(section, parameter, value + sign * tolerance, args.model) for sign in (-1, 1)]
+    sized = section.with_(**{parameter: value})
+    elastic = bool(strength.elastic(sized, alloy, force))
     per_cut = (
-        strain.peak(found, force, args.model),
-        strain.gauge(found, force, design.gauge.grid_length, args.model),
+        strain.peak(sized, force, args.model),
+        strain.gauge(sized, force, design.gauge.grid_length, args.model),
     )
-    yields_at = float(strength.yield_force(found, alloy))
-    error = float(expected_error_of(found, args.model))
+    yields_at = float(strength.yield_force(sized, alloy))
+    error = float(expected_error_of(sized, args.model))
     return {
         "model": args.model,
         "solved": parameter,
         "value": value,
         "tolerance": tolerance,
-        "stiffness": float(ladder.stiffness(found, args.model)),
+        "stiffness": float(ladder.stiffness(sized, args.model)),
         "expected_error": error if math.isfinite(error) else None,
         "stiffness_interval": sorted(ends),
         "section": {
-            name: float(getattr(found, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS)
+            name: float(getattr(sized, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS)
         }
-        | {"sides": "two" if bool(found.two_sided) else "one"},
+        | {"sides": "two" if bool(sized.two_sided) else "one"},
         "alloy": alloy.name,
         "force": force,
         "elastic": elastic,
         "peak_strain": float(per_cut[0]) if elastic else None,
         "gauge_strain": float(per_cut[1]) if elastic else None,
-        "stress": float(strain.peak_stress(found, force)) if elastic else None,
+        "stress": float(strain.peak_stress(sized, force)) if elastic else None,
         "yield_force": yields_at,
         "yield_deflection": yields_at / args.stiffness,
         "rated_force": float(min(force, yields_at / design.rating.yield_factor)),
     }
 
 
-def _stiffness_at(ladder, section, parameter: str, value: float, model: str) -> float:
+def _stiffness_at(section: HingeSection, parameter: str, value: float, model: str) -> float:
+    from tactcad.mechanics import ladder
+
     try:
         return float(ladder.stiffness(section.with_(**{parameter: value}), model))
     except CheckFailure as refusal:

@@ -36,7 +36,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--design",
         metavar="DESIGN",
         default=None,
-        help="the array that was pressed: where its pads stand says how far they feel each other through the object "
+        help="the array that was pressed: where its pads stand says how far they feel each other through "
+        "the object "
         f"(default {DEFAULT_DESIGN})",
     )
     parser.add_argument(
@@ -44,7 +45,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=1.0,
         metavar="C",
-        help="the object couples the pads by at most this share of what an elastic half-space does (default 1; 0: each "
+        help="the object couples the pads by at most this share of what an elastic half-space does (default "
+        "1; 0: each "
         "pad on an object of its own); the intervals hold for all up to it",
     )
     parser.add_argument("--json", action="store_true", help="print as JSON")
@@ -57,17 +59,17 @@ def run(args: argparse.Namespace) -> int:
     from .progress import slow_work
 
     known = calibration_text.read(args.calibration)
-    found = []
+    results: list[grasp.Grasp] = []
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = readings.grasps(args.file)
         for g in samples:
-            tell(len(found), len(samples), f"sample {g.sample}")
+            tell(len(results), len(samples), f"sample {g.sample}")
             coupling = pads.coupling(args.design or DEFAULT_DESIGN, g, args.coupling)
-            found.append(
+            results.append(
                 grasp.evaluate(g, known, reference=args.reference, level=args.level, coupling=coupling)
             )
     sys.stdout.write(
-        grasp_text.to_json(found, args.level) if args.json else grasp_text.to_text(found, args.level)
+        grasp_text.to_json(results, args.level) if args.json else grasp_text.to_text(results, args.level)
     )
     return 0

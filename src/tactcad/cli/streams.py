@@ -6,6 +6,7 @@ import io
 import os
 import select
 import sys
+from typing import Any, TextIO
 
 
 class Lossy(io.FileIO):
@@ -17,24 +18,25 @@ class Lossy(io.FileIO):
         super().__init__(handle, "w", closefd=False)
         self.terminal = self.isatty()
 
-    def write(self, data: bytes) -> int:
+    def write(self, data: Any) -> int:
         try:
             while (count := super().write(data)) is None:  # a pipe that does not wait for its reader
                 select.select([], [self], [])
             return count
         except OSError as error:
             self.error = self.error or error
-            return len(data)
+            return memoryview(data).nbytes
 
     @property
     def failed(self) -> OSError | None:
-        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal that hung
-        up."""
+        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal
+        that hung up."""
         return None if self.terminal or isinstance(self.error, ConnectionError) else self.error
 
 
 def mend() -> None:
-    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its number."""
+    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its
+    number."""
     if None in (sys.stdin, sys.stdout, sys.stderr):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
             os.set_inheritable(handle, True)
@@ -49,11 +51,14 @@ def mend() -> None:
 def own() -> Lossy:
     """Let this process's output and messages go through such files; returns that of standard output."""
     mend()
-    sys.stdout, sys.stderr = _lossy(sys.stdout), _lossy(sys.stderr)
-    return sys.stdout.buffer.raw
+    sys.stdout, output = _lossy(sys.stdout)
+    sys.stderr, _ = _lossy(sys.stderr)
+    return output
 
 
-def _lossy(stream: io.TextIOWrapper) -> io.TextIOWrapper:
-    at_once = stream.line_buffering or stream.write_through
-    file = io.BufferedWriter(Lossy(stream.fileno()))
-    return io.TextIOWrapper(file, stream.encoding, "backslashreplace", line_buffering=at_once)
+def _lossy(stream: TextIO) -> tuple[io.TextIOWrapper, Lossy]:
+    """A stream in the place of that one, and its file."""
+    at_once = isinstance(stream, io.TextIOWrapper) and (stream.line_buffering or stream.write_through)
+    file = Lossy(stream.fileno())
+    buffered: Any = io.BufferedWriter(file)  # the stub asks for more of a raw file than it uses
+    return io.TextIOWrapper(buffered, stream.encoding, "backslashreplace", line_buffering=at_once), file

@@ -14,8 +14,8 @@ EXAMPLES = """\
   tactcad validate --json                    findings and every number as JSON
   tactcad validate --table1 mine.csv         another calibration table of the same form
 
-The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report as tactcad
-wrote it; any other is left as it is, unless --keep or --discard is given."""
+The folder is replaced in one step by a finished one. It may be missing, empty, or an earlier report as
+tactcad wrote it; any other is left as it is, unless --keep or --discard is given."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.load import find
-    from tactcad.export.publish import turn
+    from tactcad.export.publication import turn
     from tactcad.paper import array_model as array
     from tactcad.paper import published, report, validation
     from tactcad.parts.designs import load

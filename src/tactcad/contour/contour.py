@@ -35,10 +35,10 @@ class Contour:
 
     def named(self, name: str) -> Segment:
         """The one segment of that name. Raises KeyError where there is none or more than one."""
-        found = [s for s in self.segments if s.name == name]
-        if len(found) != 1:
-            raise KeyError(f"{len(found)} segments are named {name!r}")
-        return found[0]
+        matches = [s for s in self.segments if s.name == name]
+        if len(matches) != 1:
+            raise KeyError(f"{len(matches)} segments are named {name!r}")
+        return matches[0]
 
     @property
     def length(self) -> float:
@@ -114,8 +114,8 @@ def chain(points: Iterable[Point]) -> Contour:
 def _area_and_moments(s: Segment, x0: float, y0: float) -> tuple[float, float, float]:
     """Green's theorem: the segment's share of area, and of its first moments about (x0, y0).
 
-    The chord's triangle with (x0, y0), and for an arc the circular segment between chord and arc:
-    area r^2 (w - sin w)/2, its centroid 4 r sin^3(w/2) / (3 (w - sin w)) from the centre (w = sweep).
+    The chord's triangle with (x0, y0), and for an arc the circular segment between chord and arc: area r^2 (w
+    - sin w)/2, its centroid 4 r sin^3(w/2) / (3 (w - sin w)) from the centre (w = sweep).
     """
     ax, ay = s.start[0] - x0, s.start[1] - y0
     bx, by = s.end[0] - x0, s.end[1] - y0

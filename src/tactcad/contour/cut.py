@@ -16,8 +16,8 @@ def cut(
 ) -> tuple[Contour, ...]:
     """The parts of the enclosed area on one side of the line x = at (or y = at), mm.
 
-    Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where
-    the whole contour lies on the other side.
+    Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where the
+    whole contour lies on the other side.
     """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0
@@ -45,9 +45,9 @@ def crossings(contour: Contour, axis: Literal["x", "y"], at: float) -> list[floa
     A vertex on the line counts once for each segment that ends there.
     """
     i = 0 if axis == "x" else 1
-    found = [p[1 - i] for s in contour for p in _crossings(s, i, at)]
-    found += [p[1 - i] for s in contour for p in (s.start, s.end) if p[i] == at]
-    return sorted(found)
+    crossed = [p[1 - i] for s in contour for p in _crossings(s, i, at)]
+    crossed += [p[1 - i] for s in contour for p in (s.start, s.end) if p[i] == at]
+    return sorted(crossed)
 
 
 def _split(s: Segment, i: int, at: float) -> list[Segment]:

@@ -113,12 +113,12 @@ def meeting_points(a: Segment, b: Segment) -> list[Point]:
     if not _discs_meet(a, b):
         return []
     if isinstance(a, Line):
-        found = _lines_meet(a, b) if isinstance(b, Line) else _line_and_circle(a, b)
+        candidates = _lines_meet(a, b) if isinstance(b, Line) else _line_and_circle(a, b)
     elif isinstance(b, Line):
-        found = _line_and_circle(b, a)
+        candidates = _line_and_circle(b, a)
     else:
-        found = _circles_meet(a, b)
-    return [p for p in found if on(a, p) and on(b, p)]
+        candidates = _circles_meet(a, b)
+    return [p for p in candidates if on(a, p) and on(b, p)]
 
 
 def _lines_meet(a: Line, b: Line) -> list[Point]:

@@ -1,8 +1,8 @@
 """Where a part, or the space around it, is narrow: webs, walls and slots, in closed form.
 
-A neck is a straight connection of two boundary points that is normal to the boundary at both
-(at a sharp corner: lies between the normals of its two edges) and that nothing else crosses. The smallest
-wall and the narrowest slot are necks.
+A neck is a straight connection of two boundary points that is normal to the boundary at both (at a sharp
+corner: lies between the normals of its two edges) and that nothing else crosses. The smallest wall and the
+narrowest slot are necks.
 """
 
 from __future__ import annotations
@@ -56,16 +56,16 @@ def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float
     contours = [outer if outer.ccw else outer.reversed()]
     contours += [c.reversed() if c.ccw else c for c in openings]
     pieces = [piece for contour in contours for piece in _pieces(contour)]
-    found = []
+    candidates = []
     for a, b in combinations_with_replacement(pieces, 2):
         for p, q in _facing(a, b):
             width = dist(p, q)
             if ROUNDING_MM < width < below:
                 side = _side(a, p, q)
                 if side and side == _side(b, q, p) and _is_free(p, q, pieces):
-                    found.append(Neck(width, p, q, side, (a.segment, b.segment)))
+                    candidates.append(Neck(width, p, q, side, (a.segment, b.segment)))
     different: list[Neck] = []
-    for neck in sorted(found, key=lambda n: (round(n.width / ROUNDING_MM), n.middle)):
+    for neck in sorted(candidates, key=lambda n: (round(n.width / ROUNDING_MM), n.middle)):
         if not any(_same(neck, other) for other in different):
             different.append(neck)
     return different

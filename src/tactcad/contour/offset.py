@@ -26,8 +26,8 @@ def offset(contour: Contour, by: float) -> Contour:
     """Every point of the contour moved by `by` mm along its normal: outwards, or inwards where negative.
 
     Corners that open are rounded about their old place (the path of a wire's centre); corners that close are
-    cut where the moved pieces meet, and a fillet smaller than the move vanishes there. Raises
-    ValueError where the move closes a slot, eats a web or a piece other than a fillet.
+    cut where the moved pieces meet, and a fillet smaller than the move vanishes there. Raises ValueError
+    where the move closes a slot, eats a web or a piece other than a fillet.
     """
     to_the_right = by if contour.ccw else -by
     moved = [m for m in (_moved(s, to_the_right) for s in contour) if m]

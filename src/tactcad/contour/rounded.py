@@ -28,34 +28,34 @@ class Corner:
 def rounded_polygon(corners: list[Corner]) -> Contour:
     """The closed contour through the corners, in their order, each rounded by its radius.
 
-    Where two fillets use up a whole edge the edge vanishes and the arcs meet; two that then share
-    their centre (a full round) become one arc. Raises ValueError where fillets do not fit an edge.
+    Where two fillets use up a whole edge the edge vanishes and the arcs meet; two that then share their
+    centre (a full round) become one arc. Raises ValueError where fillets do not fit an edge.
     """
     count = len(corners)
     arcs = [_fillet(corners[i - 1].at, corners[i], corners[(i + 1) % count].at) for i in range(count)]
     pieces: list[Segment] = []
     for i, corner in enumerate(corners):
         after = (i + 1) % count
-        here, there = arcs[i], arcs[after]
-        start = here.end if here else corner.at
-        end = there.start if there else corners[after].at
+        arc, next_arc = arcs[i], arcs[after]
+        start = arc.end if arc else corner.at
+        end = next_arc.start if next_arc else corners[after].at
         room = _along(corner.at, corners[after].at, start, end)
         if room < -ROUNDING_MM:
             raise ValueError(f"fillets overlap by {-room:.6g} mm on the edge {corner.edge!r}")
-        if here:
-            pieces.append(here)
+        if arc:
+            pieces.append(arc)
         if room > ROUNDING_MM:
             pieces.append(Line(start, end, corner.edge))
-        elif there and here:  # the edge is used up: both arcs end at the same point
-            arcs[after] = longer = replace(there, start=start)
+        elif next_arc and arc:  # the edge is used up: both arcs end at the same point
+            arcs[after] = longer = replace(next_arc, start=start)
             if after == 0:
                 pieces[0] = longer
-        elif there:
-            arcs[after] = longer = replace(there, start=corner.at)
+        elif next_arc:
+            arcs[after] = longer = replace(next_arc, start=corner.at)
             if after == 0:
                 pieces[0] = longer
-        elif here:
-            pieces[-1] = replace(here, end=corners[after].at)
+        elif arc:
+            pieces[-1] = replace(arc, end=corners[after].at)
     return Contour(tuple(_merged(pieces)))
 
 

@@ -9,12 +9,14 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin, tau
 
 Point = tuple[float, float]
-# mm, a tenth of the finest step that any shop works to (0.01 mm); and what decimals lose when they are added up.
+# mm, a tenth of the finest step that any shop works to (0.01 mm); and what decimals lose when they are added
+# up.
 LEAST_EDGE, LOST = 1e-3, 1e-9
 
 
 def is_sliver(length: float) -> bool:
-    """Whether an edge of that length (mm) is shorter than wire and kernel make: the one judge of rules and checks."""
+    """Whether an edge of that length (mm) is shorter than wire and kernel make: the one judge of rules and
+    checks."""
     return length < LEAST_EDGE - LOST
 
 

@@ -114,10 +114,10 @@ class Rows:
         Raises InputError where that is beyond all numbers ("0e400").
         """
         texts = [text.replace(",", ".") for text in self.table.column(name)]
-        found = np.array([half_step(text) for text in texts])
-        for i in np.flatnonzero(~np.isfinite(found))[:1]:
+        steps = np.array([half_step(text) for text in texts])
+        for i in np.flatnonzero(~np.isfinite(steps))[:1]:
             raise InputError(self.where(i, name), "its last digit is beyond all numbers", value=texts[i])
-        return found
+        return steps
 
     def where(self, row: int, name: str) -> str:
         """'file:line:column' of a cell, the column counted from 1."""

@@ -66,7 +66,7 @@ class Whole:
 
 
 @dataclass(frozen=True)
-class Choice:
+class OneOf:
     """One of a few words."""
 
     options: tuple[str, ...]
@@ -92,7 +92,7 @@ class Choice:
 
 
 @dataclass(frozen=True)
-class Text:
+class TextLine:
     """One line of text that matches `pattern` whole."""
 
     pattern: str
@@ -114,8 +114,8 @@ def shown_text(value: Any, where: str, legal: str) -> str:
     characters."""
     if not isinstance(value, str) or not visible(value):
         raise InputError(where, "not text", value=value, legal=legal)
-    if found := hidden(value):
-        raise InputError(where, f"not usable text: it holds {found}", value=value, legal=legal)
+    if fault := hidden(value):
+        raise InputError(where, f"not usable text: it holds {fault}", value=value, legal=legal)
     return value
 
 
@@ -170,7 +170,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Rows:
+class NumberRows:
     """One or two rows of numbers; a third row is refused with the reason."""
 
     row: Numbers
@@ -200,7 +200,7 @@ class Rows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Whole | Choice | Text | Day | Numbers | Rows
+Spec = Number | Whole | OneOf | TextLine | Day | Numbers | NumberRows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -81,9 +81,9 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
         # error.object is what stands behind the mark
         before = error.object[: error.start]
         line, column = before.count(b"\n") + 1, len(before) - before.rfind(b"\n")
-        found = error.object[error.start : error.end]
+        bad = error.object[error.start : error.end]
         raise InputError(
-            f"{path}:{line}:{column}", "is not UTF-8 text", value=found, legal=f"{kind} in UTF-8"
+            f"{path}:{line}:{column}", "is not UTF-8 text", value=bad, legal=f"{kind} in UTF-8"
         ) from None
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
@@ -122,8 +122,8 @@ def _refuse_hidden(value: Any, shown: str, kind: str) -> None:
             left += [*item, *item.values()]
         elif isinstance(item, list):
             left += item
-        elif isinstance(item, str) and (found := hidden(item)):
-            raise InputError(shown, f"a text holds {found}", value=item, legal=kind)
+        elif isinstance(item, str) and (fault := hidden(item)):
+            raise InputError(shown, f"a text holds {fault}", value=item, legal=kind)
 
 
 def _within_floats(text: str) -> int:

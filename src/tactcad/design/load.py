@@ -26,8 +26,8 @@ DEFAULT_DESIGN = "macro-array"
 def read(source: str | Path) -> Design:
     """The design in a file, or the one of that name in hardware/, field by field.
 
-    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call.
-    Raises InputError where the file is missing or not a design, or a value is not legal.
+    Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
+    InputError where the file is missing or not a design, or a value is not legal.
     """
     path = find(source)
     return parse(read_text(path, MOST_BYTES, "a design file (TOML)"), str(path))

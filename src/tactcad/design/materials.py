@@ -11,9 +11,9 @@ from .messages import InputError, one_of
 class Alloy:
     """A sheet alloy.
 
-    youngs_modulus, yield_strength, fatigue_strength (fully reversed, 5e8 cycles) and
-    tensile_strength in MPa, density in kg/m3. `tensile_strength` is None where it is not known;
-    the Goodman line then ends at the yield strength, which is Soderberg's.
+    youngs_modulus, yield_strength, fatigue_strength (fully reversed, 5e8 cycles) and tensile_strength in MPa,
+    density in kg/m3. `tensile_strength` is None where it is not known; the Goodman line then ends at the
+    yield strength, which is Soderberg's.
     """
 
     name: str

@@ -29,8 +29,8 @@ def near(word: str, known: Iterable[str]) -> str:
     """ "did you mean X?" for the known word that `word` looks like; "" where none does."""
     import difflib  # most commands never mistype
 
-    found = difflib.get_close_matches(word[:200], list(known), n=1)
-    return f"did you mean {found[0]}?" if found else ""
+    likely = difflib.get_close_matches(word[:200], list(known), n=1)
+    return f"did you mean {likely[0]}?" if likely else ""
 
 
 def one_of(word: object, known: Iterable[str]) -> str:
@@ -70,8 +70,8 @@ def hidden(text: str) -> str:
     import unicodedata  # hardly a text needs it
 
     strange = (c for c in text if c not in "\n\u200c\u200d")
-    found = next((c for c in strange if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp")), "")
-    return found and f"U+{ord(found):04X} {unicodedata.name(found, '(a control, or half a pair)')}"
+    hiding = next((c for c in strange if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp")), "")
+    return hiding and f"U+{ord(hiding):04X} {unicodedata.name(hiding, '(a control, or half a pair)')}"
 
 
 def visible(text: str) -> bool:

@@ -13,7 +13,8 @@ _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(i
 
 
 def as_number(text: str) -> float:
-    """The number that is written there, with or without blanks around it. Raises ValueError where there is none."""
+    """The number that is written there, with or without blanks around it. Raises ValueError where there is
+    none."""
     plain = text.strip(" \t")
     if not _NUMBER.fullmatch(plain):
         raise ValueError(f"not a number: {text!r}")
@@ -29,5 +30,6 @@ def as_whole(text: str) -> int:
 
 
 def filling_radius(radius: float, length: float) -> float:
-    """The radius of two fillets in a slot: half its length where they fill it to nine digits (a full round)."""
+    """The radius of two fillets in a slot: half its length where they fill it to nine digits (a full
+    round)."""
     return length / 2 if abs(2 * radius - length) <= NINE_DIGITS * length else radius

@@ -29,7 +29,7 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not
     TOML."""
     text = text.replace("\r\n", "\n")
-    long = next((found for found in _LONG_KEY.finditer(text) if found["long"]), None)
+    long = next((token for token in _LONG_KEY.finditer(text) if token["long"]), None)
     if long:
         line = text.count("\n", 0, long.start()) + 1
         raise InputError(

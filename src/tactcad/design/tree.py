@@ -1,15 +1,15 @@
 """The parameter tree: one frozen dataclass a table of the design file.
 
-Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between
-the rows along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the
-object. A default of None is derived from other fields (design/layout.py says how).
+Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
+along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
+of None is derived from other fields (design/layout.py says how).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .fields import Choice, Day, Number, Numbers, Rows, Text, Whole, given
+from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
 from .materials import ALLOYS
 
 # Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
@@ -18,8 +18,8 @@ _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uf
 IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands write beside the designs' own
 
 
-def _line(meaning: str) -> Text:
-    return Text(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
+def _line(meaning: str) -> TextLine:
+    return TextLine(_LINE, "one line of 1 to 80 printable characters, among them a letter or digit", meaning)
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Identity:
     """[design]: who made which revision of what."""
 
     name: str = given(
-        Text(
+        TextLine(
             rf"(?!(?:con|prn|aux|nul|com[0-9]|lpt[0-9]|{'|'.join(IN_EXPORTS)})$)"
             r"[a-z0-9](?:[a-z0-9-]{0,38}[a-z0-9])?",
             "1 to 40 of a-z, 0-9 and '-', not first or last '-', no device of Windows (con, aux, com1, ...), "
@@ -36,17 +36,17 @@ class Identity:
         )
     )
     title: str = given(_line("title on drawings"))
-    revision: str = given(Text(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
+    revision: str = given(TextLine(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
     date: str = given(Day("date of issue; the only date in any output"))
     author: str = given(_line("creator, for the title block"))
     organisation: str = given(_line("legal owner, for the title block"))
 
 
 @dataclass(frozen=True)
-class Material:
+class SheetMaterial:
     """[material]: the sheet that the elements are cut from."""
 
-    alloy: str = given(Choice(tuple(ALLOYS), "alloy and temper of the sheet"))
+    alloy: str = given(OneOf(tuple(ALLOYS), "alloy and temper of the sheet"))
     youngs_modulus: float | None = given(
         Number("MPa", 1e3, 1e6, "Young's modulus"), None, "the alloy's value"
     )
@@ -72,7 +72,7 @@ class Array:
     """[array]: which elements stand where."""
 
     row_arms: tuple[tuple[float, ...], ...] = given(
-        Rows(
+        NumberRows(
             Numbers(Number("mm", 0.1, 100, "arm length"), 1, 500, "arm lengths of a row"),
             "arm lengths, hinge centre to the arm's tip, row by row; elements are numbered in this order",
         )
@@ -106,7 +106,7 @@ class Element:
     pad_length: float = given(Number("mm", 0.05, 50, "contact pad's length along the arm"))
     pad_height: float = given(Number("mm", 0.01, 50, "how far the pad stands out of the flat face"))
     sides: str = given(
-        Choice(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
+        OneOf(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
     )
     pad_root_radius: float = given(Number("mm", 0.005, 10, "fillet between pad and flat face"), 0.3)
     corner_radius: float = given(
@@ -146,9 +146,9 @@ class Holes:
 class Clamp:
     """[clamp]: spacers, end plates, stop plate, carrier and their fasteners."""
 
-    screw: str = given(Choice(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
-    dowel: str = given(Choice(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
-    plate_alloy: str = given(Choice(tuple(ALLOYS), "end plates and carrier"), "6061-T6")
+    screw: str = given(OneOf(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
+    dowel: str = given(OneOf(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
+    plate_alloy: str = given(OneOf(tuple(ALLOYS), "end plates and carrier"), "6061-T6")
     end_plate_thickness: float = given(Number("mm", 2, 40, "end plate along the row"), 8.0)
     end_plate_bottom: float = given(
         Number("mm", 0, 50, "end plates start this far over the flat face: clear of the object"), 0.5
@@ -171,12 +171,12 @@ class Clamp:
     carrier_thickness: float = given(Number("mm", 2, 40, "carrier plate"), 6.0)
     carrier_margin: float = given(Number("mm", 0, 20, "carrier beyond the end plates"), 2.0)
     carrier_screw_offset: float = given(Number("mm", 0.5, 200, "carrier screws behind the clamp edge"), 10.6)
-    mount_thread: str = given(Choice(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
+    mount_thread: str = given(OneOf(("M3", "M4", "M5"), "carrier's threads for the axis"), "M4")
     mount_pitch_y: float = given(Number("mm", 5, 200, "distance of these threads along the row"), 32.0)
 
 
 @dataclass(frozen=True)
-class Gauge:
+class StrainGauge:
     """[gauge]: the strain gauge at each hinge."""
 
     resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
@@ -251,7 +251,7 @@ class Calibration:
     )
     retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
     roller: str = given(
-        Choice(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
+        OneOf(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
     )
 
 
@@ -284,8 +284,7 @@ class Cart:
     """[cart]: plate on four ball bearings that roll along the arms."""
 
     bearing: str = given(
-        Choice(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"),
-        "623-2Z",
+        OneOf(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
     )
     length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
     width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)
@@ -356,13 +355,13 @@ class Design:
     """A whole design file."""
 
     design: Identity
-    material: Material
+    material: SheetMaterial
     sheet: Sheet
     array: Array
     element: Element
     holes: Holes = Holes()
     clamp: Clamp = Clamp()
-    gauge: Gauge = Gauge()
+    gauge: StrainGauge = StrainGauge()
     stop: Stop = Stop()
     rating: Rating = Rating()
     readout: Readout = Readout()

@@ -17,14 +17,12 @@ import numpy as np
 
 from tactcad.scenes.scene import Placement, Scene
 
-from .joints import TOUCH, Box, Joint, axis_of, box_of, joints_of, way_off
+from .extent import moved_by
+from .joints import TOUCH, Extent, Joint, axis_of, box_of, joints_of, way_off
 
 ROUNDS = 40  # of finding overlaps and solving again
-SLACK, TORN, BROKEN = (
-    1.0,
-    30.0,
-    1e4,
-)  # cost of a millimetre: too much in a joint, torn sideways, too little in a joint
+# cost of a millimetre: too much in a joint, torn sideways, too little in a joint
+SLACK, TORN, BROKEN = 1.0, 30.0, 1e4
 
 
 @dataclass(frozen=True)
@@ -37,7 +35,7 @@ class Piece:
 
     def shifted(self, by: Sequence[float]) -> Piece:
         """Moved by a vector, mm."""
-        return replace(self, placements=tuple(_moved(p, by) for p in self.placements))
+        return replace(self, placements=tuple(moved_by(p, by, 6) for p in self.placements))
 
 
 @dataclass(frozen=True)
@@ -115,15 +113,14 @@ def _solved(
     """Shifts along one axis, the first piece's zero."""
     from scipy.optimize import linprog
 
-    along = {}
+    along: dict[tuple[int, int], float] = {}
     for p in limits:
         if p.axis == axis:
             key = (p.lower, p.upper)
             along[key] = max(along.get(key, p.least), p.least)
-    ties = {(p.lower, p.upper) for p in limits if p.axis != axis} - set(along) | {
-        (i, k) for i, k, a in kept if a == axis
-    }
-    ties = sorted({(min(t), max(t)) for t in ties})
+    tied = {(p.lower, p.upper) for p in limits if p.axis != axis} - set(along)
+    tied |= {(i, k) for i, k, a in kept if a == axis}
+    ties = sorted({(min(t), max(t)) for t in tied})
     # unknowns: the shifts; each joint's deficit; each tie's two-sided tear
     n, m, q = count, len(along), len(ties)
     cost = np.zeros(n + m + q)
@@ -146,7 +143,7 @@ def _solved(
 
 
 def _overlapping(
-    pieces: Sequence[Piece], boxes: Mapping[str, Box], shifts: np.ndarray
+    pieces: Sequence[Piece], boxes: Mapping[str, Extent], shifts: np.ndarray
 ) -> list[tuple[Placement, Placement]]:
     """A pair of parts for each two pieces of which boxes overlap where they stand now, the earlier part
     first."""
@@ -167,27 +164,29 @@ def _overlapping(
 
 
 def _sorted_out(
-    a: Placement, b: Placement, boxes: Mapping[str, Box], joints: Sequence[Joint], owner: Mapping[str, int]
+    a: Placement, b: Placement, boxes: Mapping[str, Extent], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
     """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as
-    they are assembled, where one lies beyond the other; else the later one goes on along its own axis, the
-    way that it came off."""
+    they are assembled, where one lies beyond the other along an axis that either comes off along (aside of
+    it, what holds a piece would stay behind); else the later one goes on along its own axis, the way that it
+    came off."""
     ends = owner[a.designator], owner[b.designator]
     for j in joints:
         if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):
             return (a, b, j.axis) if owner[j.lower] == ends[0] else (b, a, j.axis)
     p, q = boxes[a.designator], boxes[b.designator]
     beyond = np.maximum(q[0] - p[1], p[0] - q[1])
-    if beyond.max() >= -TOUCH:
-        axis = int(beyond.argmax())
+    ways = {j.axis for j in joints if not {owner[j.lower], owner[j.upper]}.isdisjoint(ends)} or {0, 1, 2}
+    axis = max(ways, key=lambda k: beyond[k])
+    if beyond[axis] >= -TOUCH:
         return (a, b, axis) if p[:, axis].sum() < q[:, axis].sum() else (b, a, axis)
+    mine = [j for j in joints if ends[1] in (owner[j.lower], owner[j.upper])]
     axis, sign = way_off(a, b, boxes)
-    axis = axis if (turned := axis_of(b)) is None else turned
-    mine = [j for j in joints if owner[b.designator] in (owner[j.lower], owner[j.upper]) and j.axis == axis]
-    if mine:
-        sign = 1 if owner[mine[0].upper] == owner[b.designator] else -1
+    if (turned := axis_of(b)) is not None:
+        axis = turned
+    elif mine and axis not in {j.axis for j in mine}:
+        axis = mine[0].axis
+    along = next((j for j in mine if j.axis == axis), None)
+    if along:
+        sign = 1 if owner[along.upper] == ends[1] else -1
     return (a, b, axis) if sign > 0 else (b, a, axis)
-
-
-def _moved(p: Placement, by: Sequence[float]) -> Placement:
-    return replace(p, origin=tuple(round(o + float(s), 6) for o, s in zip(p.origin, by)))

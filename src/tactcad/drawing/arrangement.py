@@ -10,15 +10,16 @@ from tactcad.design.tree import Design
 from tactcad.scenes.scene import Scene
 
 from .assembly_notes import notes_of
+from .boxes import Box, grown
 from .dimension_lines import stacked
 from .extent import projected_box
 from .ink import Item, moved
 from .keys import WHOLE
-from .measure import size
+from .measures import size
 from .page import MARGIN, Page, edges, fewer
 from .paper import A0, A1, A2, A3, A3_UPRIGHT, Paper
-from .plan import Dimension, Linear
-from .scale import ASSEMBLIES, factor, largest_fitting, shown
+from .scale import ASSEMBLIES, Scale, factor, largest_fitting, shown
+from .sheet_plan import Dimension, Linear, Side
 from .title import HEIGHT, WIDTH, TitleBlock, notes
 
 if TYPE_CHECKING:
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
 APART = 14.0  # between views
 LEAST = 1 / 50  # scale: larger paper before a smaller scale
 AROUND = 20.0  # left of and over the views, for overall dimensions
-
-Box = tuple[float, float, float, float]
 
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
@@ -57,27 +56,25 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
     }
     for name, view in views.items():
         # from the front and from above the outermost parts hide the long rows behind them
-        some = (
-            scene.placements
-            if name == "left" or len(scene.placements) <= EXACT_UP_TO
-            else fewer(scene.placements)
-        )
+        whole = name == "left" or len(scene.placements) <= EXACT_UP_TO
+        some = scene.placements if whole else fewer(scene.placements)
         placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in some]
         (bx, by), (px, py) = boxes[name][:2], places[name]
         items += edges(drawing(placed, view).sharp, f, (px - f * bx, py - f * by))
     # on three sides that face nothing: texts of short dimensions stand beside them
-    for name, sides in (("front", ("top", "left")), ("plan", ("right",))):
+    dimensioned: dict[str, tuple[Side, ...]] = {"front": ("top", "left"), "plan": ("right",)}
+    for name, sides in dimensioned.items():
         items += [moved(i, *places[name]) for i in _overall(extents[name], f, sides)]
     return Page(paper, shown(scale), tuple(items), "Assembly drawing")
 
 
 def _largest(
     wide: float, high: float, spare: float, lines: Sequence[str], block: TitleBlock
-) -> tuple[tuple[int, int], Paper, list[Item], Box]:
+) -> tuple[Scale, Paper, list[Item], Box]:
     """Scale, paper, the notes on it and where views of that size in all (mm of the assembly, and `spare` mm
     of paper) may stand: the largest scale on A3, or the smallest larger paper on which it is at least
     LEAST."""
-    best: tuple[tuple[int, int], Paper, list[Item], Box] | None = None
+    best: tuple[Scale, Paper, list[Item], Box] | None = None
     for papers in ((A3, A3_UPRIGHT), (A2,), (A1,), (A0,)):
         for paper in papers:
             items, area = _with_notes(paper, lines, block)
@@ -108,13 +105,10 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
         )
     at = (x1 - WIDTH + MARGIN, y1 - MARGIN) if lying else (x0 + MARGIN, y0 + HEIGHT + MARGIN + high)
     left = (x0, y0, x1 - WIDTH, y1) if lying else (x0, at[1], x1, y1)
-    return (
-        [moved(t, *at) for t in texts],
-        tuple(v + m for v, m in zip(left, (MARGIN, MARGIN, -MARGIN, -MARGIN))),
-    )
+    return [moved(t, *at) for t in texts], grown(left, -MARGIN)
 
 
-def _overall(extent: tuple[float, float], f: float, sides: Sequence[str]) -> list[Item]:
+def _overall(extent: tuple[float, float], f: float, sides: Sequence[Side]) -> list[Item]:
     """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, as auxiliary dimensions in
     parentheses."""
     w, h = extent

@@ -13,12 +13,12 @@ from tactcad.scenes.scene import Scene
 
 from . import parts_list
 from .arrangement import arrangement
-from .ink import Sheet, preliminary
-from .layout import layout_faults
+from .ink import DrawnSheet, preliminary
+from .layout_check import layout_faults
 from .numbered import numbered_pages
 from .page import Page
 from .paper import A3, A4, frame
-from .title import HEIGHT, WIDTH, TitleBlock, title_block
+from .title import HEIGHT, WIDTH, TitleBlock, block_of, title_block
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -30,13 +30,16 @@ def assembly_sheets(
     rows: Sequence[BomRow],
     shapes: Mapping[str, TopoDS_Shape],
     draft: bool = False,
-) -> list[Sheet]:
+) -> list[DrawnSheet]:
     """All sheets of the scene, their layout clean. `shapes` by part number, `rows` the scene's bill of
     materials.
 
     Raises CheckFailure where the scene is larger than the sheet at 1:50, or a view leaves no clean layout.
     """
-    block = _title(design, scene, draft)
+    name = f"Assembly: {scene.name.replace('-', ' ')}"
+    block = block_of(design.design, f"{design.name}-{scene.name}", name, draft)
+    mass = sum(p.part.mass for p in scene.placements)
+    block = replace(block, material="see parts list", mass=mass)
     arranged = arrangement(design, scene, shapes, block)
     list_ = next(
         (p for p in (parts_list.laid(rows, size) for size in parts_list.SIZES) if _fits_beside(p)), None
@@ -53,28 +56,10 @@ def assembly_sheets(
     return [preliminary(sheet) for sheet in sheets] if draft else sheets
 
 
-def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> Sheet:
+def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> DrawnSheet:
     own = replace(block, scale=page.scale, sheet=number, sheets=count, document_type=page.document_type)
     items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
-    return Sheet(block.number, f"{block.title}, sheet {number} of {count}", page.paper.size, items)
-
-
-def _title(design: Design, scene: Scene, draft: bool) -> TitleBlock:
-    d = design.design
-    return TitleBlock(
-        legal_owner=d.organisation,
-        number=f"{design.name}-{scene.name}",
-        revision=d.revision,
-        date=d.date,
-        title=f"Assembly: {scene.name.replace('-', ' ')}",
-        supplementary=d.title,
-        creator=d.author,
-        document_type="",
-        status="draft" if draft else "for manufacture",
-        scale="",
-        material="see parts list",
-        mass=sum(p.part.mass for p in scene.placements),
-    )
+    return DrawnSheet(block.number, f"{block.title}, sheet {number} of {count}", page.paper.size, items)
 
 
 def _fits_beside(list_: parts_list.Laid) -> bool:

@@ -18,7 +18,7 @@ from .assembly import assembly_sheets
 from .balloons import height
 from .fonts import em
 from .gate import pdf_runs
-from .ink import Sheet
+from .ink import DrawnSheet
 from .workers import Written
 
 BETWEEN = 10.0  # of the sheets of one SVG file, mm
@@ -57,7 +57,7 @@ def assembly_written(order: AssemblyOrder) -> Written:
     return Written(pdf, stacked_svg(sheets))
 
 
-def stacked_svg(sheets: Sequence[Sheet]) -> bytes:
+def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
     """The sheets below each other in one SVG file, each at the paper's size."""
     from .svg import svg_bytes
 

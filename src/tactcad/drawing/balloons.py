@@ -15,11 +15,9 @@ from math import dist, hypot
 
 import numpy as np
 
-from .ink import THIN, Arc, Fill, Item, Point, Text, arrow, segment
-from .layout import crossing
-
-Polyline = Sequence[Point]
-Box = tuple[float, float, float, float]
+from .boxes import Box, Chord, Point, length
+from .ink import THIN, DrawnArc, Fill, Item, Text, arrow, segment
+from .layout_check import crossing
 
 RADIUS = 4.5  # of a balloon
 TEXT, SMALLER = 3.5, 2.5  # height of its number, larger than dimensions are (ISO 6433); of three digits
@@ -43,7 +41,7 @@ class Balloon:
     tip: Point
 
     @property
-    def leader(self) -> tuple[Point, Point]:
+    def leader(self) -> Chord:
         """From the circle to the tip."""
         (cx, cy), (tx, ty) = self.centre, self.tip
         share = RADIUS / hypot(tx - cx, ty - cy)
@@ -56,7 +54,7 @@ def height(number: str) -> float:
 
 
 def place(
-    own: Mapping[int | str, Sequence[Polyline]], lines: Sequence[Polyline], area: Box
+    own: Mapping[int | str, Sequence[Sequence[Point]]], lines: Sequence[Sequence[Point]], area: Box
 ) -> list[Balloon] | None:
     """A balloon for each item, in their order; None where they find no place.
 
@@ -72,7 +70,7 @@ def place(
     return _without_faults(list(own), lengths, list(tips.values()), places)
 
 
-def _places(lines: Sequence[Polyline], area: Box) -> list[Point]:
+def _places(lines: Sequence[Sequence[Point]], area: Box) -> list[Point]:
     """Grid points of the area outside the outlines, clear of every line."""
     from scipy import ndimage
 
@@ -100,20 +98,16 @@ def _places(lines: Sequence[Polyline], area: Box) -> list[Point]:
 
 
 def _tips(
-    some: Sequence[Polyline], own: Mapping[int | str, Sequence[Polyline]], item: int | str
+    some: Sequence[Sequence[Point]], own: Mapping[int | str, Sequence[Sequence[Point]]], item: int | str
 ) -> list[Point]:
     """Middles of the item's visible lines, the longest first; lines that are another item's too come last."""
     others = {tuple(line) for other, theirs in own.items() if other != item for line in theirs}
-    ranked = sorted(some, key=lambda line: (tuple(line) in others, -_length(line), tuple(line)))
+    ranked = sorted(some, key=lambda line: (tuple(line) in others, -round(length(line), 6), tuple(line)))
     return [_middle(line) for line in ranked[:TIPS]]
 
 
-def _length(line: Polyline) -> float:
-    return round(sum(dist(a, b) for a, b in zip(line, line[1:])), 6)
-
-
-def _middle(line: Polyline) -> Point:
-    left = _length(line) / 2
+def _middle(line: Sequence[Point]) -> Point:
+    left = round(length(line), 6) / 2
     for a, b in zip(line, line[1:]):
         step = dist(a, b)
         if left <= step and step > 0:
@@ -169,12 +163,12 @@ def faults(balloons: Sequence[Balloon]) -> list[tuple[int, int]]:
     ]
 
 
-def _closest(a: tuple[Point, Point], b: tuple[Point, Point]) -> float:
+def _closest(a: Chord, b: Chord) -> float:
     """Distance of two segments that do not cross."""
     return min(*(_to_segment(p, b) for p in a), *(_to_segment(p, a) for p in b))
 
 
-def _to_segment(p: Point, s: tuple[Point, Point]) -> float:
+def _to_segment(p: Point, s: Chord) -> float:
     (ax, ay), (bx, by) = s
     dx, dy = bx - ax, by - ay
     t = min(1.0, max(0.0, ((p[0] - ax) * dx + (p[1] - ay) * dy) / (dx * dx + dy * dy)))
@@ -190,7 +184,7 @@ def drawn(balloons: Sequence[Balloon]) -> list[Item]:
         number = str(b.item)
         size = height(number)
         items += [
-            Arc(b.centre, RADIUS, line=THIN, role="symbol"),
+            DrawnArc(b.centre, RADIUS, line=THIN, role="symbol"),
             Text((b.centre[0], b.centre[1] - size / 2), number, size, "middle"),
             segment(start, tip, THIN, "leader"),
             head,

@@ -7,10 +7,11 @@ from math import cos, hypot, radians, sin
 
 import numpy as np
 
+from .boxes import Box, Chord, Point, bounds, corners, grown, overlap
 from .dimension_lines import ARROW, HEIGHT, PAD, boxed, boxed_width, datum, datum_letter
-from .ink import THIN, Fill, Item, Point, Text, arrow, polar, segment
-from .layout import BESIDE_LINE, Quad, bounds, chord_meets, quads_meet
-from .plan import Box, Callout, Datum
+from .ink import THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
+from .layout_check import BESIDE_LINE, Quad, chord_meets, quads_meet
+from .sheet_plan import Callout, Datum
 
 STEP = 1.7 * HEIGHT  # between lines of a callout
 SHELF = 3.0  # of the leader beside the text
@@ -32,6 +33,7 @@ ALONG = 40.0  # what a leader pays for running along another line, where one is 
 AT_END = 12.0  # what a leader pays at an arc's very end
 NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
 FORBIDDEN = 80.0  # of the costs above: what a datum's stem never crosses
+AROUND_LETTER = 3.2  # mm kept free from the middle of a datum's letter, each way
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
 
@@ -103,28 +105,20 @@ class Board:
         ux, uy = d.away
         for reach in (8.0, 9.5, 11.0, 12.5, 14.0, 16.0, 18.0, 20.0, 22.0, 25.0, 28.0, 32.0, 36.0, 40.0):
             for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.05, 0.95):
-                x = origin[0] + scale * (d.start[0] + share * (d.end[0] - d.start[0]))
-                y = origin[1] + scale * (d.start[1] + share * (d.end[1] - d.start[1]))
+                on = d.at(share)
+                x, y = origin[0] + scale * on[0], origin[1] + scale * on[1]
                 items = datum((x, y), d.away, reach, d.letter)
                 outside = (x + 0.6 * ux, y + 0.6 * uy)
                 middle = (x + reach * ux, y + reach * uy)
-                m = 3.2
-                square = (
-                    (middle[0] - m, middle[1] - m),
-                    (middle[0] + m, middle[1] - m),
-                    (middle[0] + m, middle[1] + m),
-                    (middle[0] - m, middle[1] + m),
+                around = grown((*middle, *middle), AROUND_LETTER)
+                square = corners(around)
+                west, east, far, near = (
+                    (x + across * uy + out * ux, y - across * ux + out * uy)
+                    for across, out in ((-1.9, 0.6), (1.9, 0.6), (1.9, 3.4), (-1.9, 3.4))
                 )
-                foot = [
-                    (x + a * uy + b * ux, y - a * ux + b * uy)
-                    for a, b in ((-1.9, 0.6), (1.9, 0.6), (1.9, 3.4), (-1.9, 3.4))
-                ]
-                blocked = any(
-                    x1 > square[0][0] and x0 < square[1][0] and y1 > square[0][1] and y0 < square[2][1]
-                    for x0, y0, x1, y1 in self.kept
-                )
-                stem = (outside, middle)
-                passed = self.passed(stem)
+                foot = (west, east, far, near)
+                blocked = any(overlap(around, kept) for kept in self.kept)
+                passed = self.passed((outside, middle))
                 legs_free = passed is not None and passed < FORBIDDEN
                 if not blocked and legs_free and not self.hit([square, foot], bounds([*square, *foot])):
                     self.add(items)
@@ -139,11 +133,14 @@ class Board:
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
         texts, extras = _block(c, start, towards)
-        quads = [t.corners(AROUND) for t in texts] + [_corners(x) for x in extras if not isinstance(x, Text)]
+        quads = [t.corners(AROUND) for t in texts] + [
+            corners(grown(bounds_of_items([x]), PAD / 2)) for x in extras
+        ]
         if not self.free(quads):
             return [], 0.0
-        passed = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
-        if None in passed:
+        tried = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
+        passed = [cost for cost in tried if cost is not None]
+        if len(passed) < len(tried):
             return [], 0.0
         cost = reach + sum(passed) + (4.0 if abs(sin(radians(angle))) > 0.97 else 0.0)
         head = [] if c.dot else [arrow(tip, elbow, ARROW, "leader")]
@@ -156,23 +153,18 @@ class Board:
         ax0, ay0, ax1, ay1 = self.area
         if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
             return False
-        if any(x1 > kx0 and x0 < kx1 and y1 > ky0 and y0 < ky1 for kx0, ky0, kx1, ky1 in self.kept):
-            return False
-        return not self.hit(quads, box)
+        return not any(overlap(box, kept) for kept in self.kept) and not self.hit(quads, box)
 
-    def passed(self, leg: tuple[Point, Point]) -> float | None:
+    def passed(self, leg: Chord) -> float | None:
         """What a line pays for what it crosses; None where it would run through a text."""
-        return (
-            None if any(chord_meets(leg, quad) for quad in self._near(bounds(leg))) else self._crossings(leg)
-        )
+        through = any(chord_meets(leg, quad) for quad in self._near(bounds(leg)))
+        return None if through else self._crossings(leg)
 
-    def hit(self, quads: Sequence, box: Box) -> bool:
+    def hit(self, quads: Sequence[Quad], box: Box) -> bool:
         """Whether a text or frame would lie over anything that is there."""
         if any(quads_meet(q, b) for b in self._near(box) for q in quads):
             return True
-        if self._array is None:
-            self._array = np.array(self._chords).reshape(-1, 4)
-        a, (x0, y0, x1, y1), m = self._array, box, BESIDE_LINE + 0.5
+        a, (x0, y0, x1, y1), m = self._lines(), box, BESIDE_LINE + 0.5
         near = np.flatnonzero(
             (np.maximum(a[:, 0], a[:, 2]) > x0 - m)
             & (np.minimum(a[:, 0], a[:, 2]) < x1 + m)
@@ -181,15 +173,20 @@ class Board:
         )
         return any(chord_meets(((a[i, 0], a[i, 1]), (a[i, 2], a[i, 3])), q) for i in near for q in quads)
 
-    def _crossings(self, leg: tuple[Point, Point]) -> float:
+    def _lines(self) -> np.ndarray:
+        """Both ends of every straight piece, (n, 4)."""
         if self._array is None:
             self._array = np.array(self._chords).reshape(-1, 4)
+        return self._array
+
+    def _crossings(self, leg: Chord) -> float:
+        lines = self._lines()
         (px, py), (qx, qy) = leg
         ux, uy = qx - px, qy - py
         length = hypot(ux, uy)
-        if length < 1e-9 or not len(self._array):
+        if length < 1e-9 or not len(lines):
             return 0.0
-        rx, ry, sx, sy = self._array.T
+        rx, ry, sx, sy = lines.T
         vx, vy = sx - rx, sy - ry
         det = ux * vy - uy * vx
         safe = np.where(np.abs(det) < 1e-12, 1.0, det)
@@ -249,9 +246,3 @@ def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[I
         texts += [t for t in extras if isinstance(t, Text)]
         extras = [item for item in extras if not isinstance(item, Text)]
     return texts, extras
-
-
-def _corners(item: Item) -> tuple[Point, Point, Point, Point]:
-    x0, y0, x1, y1 = bounds([p for chord in item.chords() for p in chord])
-    m = PAD / 2
-    return ((x0 - m, y0 - m), (x1 + m, y0 - m), (x1 + m, y1 + m), (x0 - m, y1 + m))

@@ -13,20 +13,16 @@ from itertools import pairwise
 from tactcad.contour import Line
 from tactcad.parts.description import Part, drill_point_height
 
-from .callouts import widest
+from .boxes import Box, Chord, Point
 from .contours import contours
-from .holes import Round
-from .ink import THIN, Arc, Hatch, Point, Stroke
+from .holes import Round, widest
+from .ink import THIN, Curve, DrawnArc, Hatch, Stroke
 from .keys import Owner
-from .plan import Breaks, Callout, Datum, Plan, View
+from .sheet_plan import Breaks, Callout, Datum, SheetPlan, View
 from .window import clipped, fine
 
-Curve = Stroke | Arc | Hatch
-
 LEAST_LEFT_OUT = 1 / 3  # of a part's length: less is not worth a broken view
-MARGIN = (
-    1 / 2
-)  # of the part's width that is shown beside every feature, so that each is seen in its surroundings
+MARGIN = 1 / 2  # of the part's width, shown beside every feature, so that each is seen in its surroundings
 LEAST_MARGIN = 1 / 100  # of its length, for narrow parts
 GAP = 1 / 40  # between two break lines, of the length that is shown: 2 to 5 mm of paper
 FAR = 1e9  # mm: beyond any part
@@ -49,7 +45,7 @@ def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) ->
     Breaks | None
         None where too little could be left out.
     """
-    box = part.body.outer.box
+    box = part.extrusion.outer.box
     sides = (box[2] - box[0], box[3] - box[1])
     axis = 0 if sides[0] > sides[1] else 1
     length, width = sides[axis], sides[1 - axis]
@@ -92,10 +88,12 @@ def _features(
     return extents
 
 
-def broken(plan: Plan, curves: Mapping[str, Sequence[Curve]]) -> tuple[Plan, dict[str, Sequence[Curve]]]:
+def broken(
+    plan: SheetPlan, curves: Mapping[str, Sequence[Curve]]
+) -> tuple[SheetPlan, Mapping[str, Sequence[Curve]]]:
     """The plan and the curves of its views, by name, without what the plan's breaks leave out."""
     if plan.breaks is None:
-        return plan, dict(curves)
+        return plan, curves
     views = tuple(_Squeezed(v, plan.breaks).view() for v in plan.views)
     squeezed = {v.name: _Squeezed(v, plan.breaks).curves(curves[v.name]) for v in plan.views}
     return replace(plan, views=views), squeezed
@@ -126,7 +124,7 @@ class _Squeezed:
         section = v.section
         if section:
             bores = tuple(
-                replace(b, face=moved(b.face), end=moved(b.end), threaded=tuple(map(moved, b.threaded)))
+                replace(b, face=moved(b.face), end=moved(b.end), threaded=self._chord(b.threaded))
                 for b in section.bores
                 if self.shows(b.face)
             )
@@ -141,9 +139,12 @@ class _Squeezed:
             datums=tuple(piece for d in v.datums for piece in self._datums(d)),
             centres=tuple((moved(p), d) for p, d in v.centres if self.shows(p)),
             threads=tuple((moved(p), d) for p, d in v.threads if self.shows(p)),
-            axes=tuple((moved(p), moved(q)) for p, q in v.axes),
+            axes=tuple(map(self._chord, v.axes)),
             section=section,
         )
+
+    def _chord(self, chord: Chord) -> Chord:
+        return self.moved(chord[0]), self.moved(chord[1])
 
     def _callout(self, c: Callout) -> Callout:
         shown = [n for n, (p, _) in enumerate(c.targets) if self.shows(p)]
@@ -158,7 +159,7 @@ class _Squeezed:
         pieces = (clipped((d.start, d.end), band) for band in self._bands())
         return [replace(d, start=self.moved(p), end=self.moved(q)) for p, q in filter(None, pieces)]
 
-    def _bands(self) -> list[tuple[float, float, float, float]]:
+    def _bands(self) -> list[Box]:
         """What is shown of the view's plane."""
         if self.k is None:
             return [(-FAR, -FAR, FAR, FAR)]
@@ -176,19 +177,17 @@ class _Squeezed:
         if isinstance(curve, Hatch):
             loops = [_cut_off(loop, band) for band in self._bands() for loop in curve.loops]
             return [replace(curve, loops=tuple(tuple(map(moved, loop)) for loop in loops if loop))]
-        chords = curve.chords()
-        if isinstance(curve, Arc):
-            if all(self.shows(p) for chord in chords for p in chord):
-                return [replace(curve, centre=moved(curve.centre))] if self.shows(curve.centre) else []
-            chords = fine(curve)
+        if isinstance(curve, DrawnArc) and all(self.shows(p) for chord in curve.chords() for p in chord):
+            return [replace(curve, centre=moved(curve.centre))] if self.shows(curve.centre) else []
+        chords = fine(curve) if isinstance(curve, DrawnArc) else curve.chords()
         pieces = (clipped(chord, band) for band in self._bands() for chord in chords)
-        return [Stroke((moved(p), moved(q)), curve.line, curve.role) for p, q in filter(None, pieces)]
+        return [Stroke(self._chord(piece), curve.line, curve.role) for piece in filter(None, pieces)]
 
     def _break_lines(self, whole: Sequence[Curve]) -> list[Curve]:
         """Two lines with a zigzag at each gap, across all edges that it cuts."""
         if self.k is None:
             return []
-        lines = []
+        lines: list[Curve] = []
         for gap in self.breaks.left_out:
             for end in gap:
                 at = self.sign * end
@@ -215,7 +214,7 @@ class _Squeezed:
         return Stroke(points, THIN, "leader")
 
 
-def _crossings(curve: Stroke | Arc, k: int, at: float) -> list[float]:
+def _crossings(curve: Curve, k: int, at: float) -> list[float]:
     """Where straight pieces of a curve cross a coordinate of the paper's axis k: their other coordinate."""
     crossings = []
     for a, b in curve.chords():
@@ -225,7 +224,7 @@ def _crossings(curve: Stroke | Arc, k: int, at: float) -> list[float]:
     return crossings
 
 
-def _cut_off(loop: Sequence[Point], band: tuple[float, float, float, float]) -> tuple[Point, ...]:
+def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
     """What of a closed polygon lies in a box (Sutherland and Hodgman); empty where nothing does."""
     points = list(loop)
     for k, limit, way in ((0, band[0], 1), (0, band[2], -1), (1, band[1], 1), (1, band[3], -1)):

@@ -7,22 +7,21 @@ from collections.abc import Sequence
 from math import atan2, degrees
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.parts.description import Hole, Part, Pocket
+from tactcad.parts.description import Part, Pocket
 
-from .contours import contours
-from .holes import Group
+from .contours import contours, in_part
+from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
-from .measure import Difference, Offset, Radius, Slope, Span, Width, halfway, in_part, level, size
-from .plan import Callout, Dimension, View, seen
+from .measures import Difference, Offset, Radius, Slope, Span, Width, halfway, level, size
+from .sheet_plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 
 
-def round_outline(sketch: Sketch, part: Part) -> Callout:
+def round_outline(sketch: Sketch, centre: Point, radius: float) -> Callout:
     """Outside diameter of a disc; its openings about the same axis are in line with it."""
-    centre, r = part.body.outer.as_circle()
     d = sketch.must(Dimension("outside", (size(OUTER.size(Quantity.DIAMETER)),), "⌀"))
-    return Callout((d.text(sketch.values),), ((centre, r),), (d,))
+    return Callout((d.text(sketch.values),), ((centre, radius),), (d,))
 
 
 def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
@@ -37,10 +36,6 @@ def _to_outside(view: View, p: Point) -> float:
     small."""
     u0, v0, u1, v1 = view.box
     return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
-
-
-def widest(h: Hole) -> float:
-    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0)
 
 
 def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
@@ -93,7 +88,9 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
     if len(sides) < 6 or len(sides) % 2:
         return None
     pocket, n = Owner("pocket", k), len(contour)
-    x, y = (halfway(*(edge_level(sketch, OUTER, i, v) for v in part.body.outer.box[i::2])) for i in (0, 1))
+    x, y = (
+        halfway(*(edge_level(sketch, OUTER, i, v) for v in part.extrusion.outer.box[i::2])) for i in (0, 1)
+    )
     offsets = [Offset(Spot(pocket, i), Spot(pocket, (i + 1) % n), x, y) for i in sides]
     measured = [abs(o.of(sketch.values)) for o in offsets]
     if max(measured) - min(measured) > ALIKE:
@@ -108,7 +105,7 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
 
 
 def _is_outline(part: Part, f: Pocket) -> bool:
-    return in_part(f, f.contour).as_circle() == part.body.outer.as_circle()
+    return in_part(f, f.contour).as_circle() == part.extrusion.outer.as_circle()
 
 
 def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
@@ -117,33 +114,36 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
     for owner, contour in contours(part):
         if contour.as_circle():
             continue
-        kinds: dict[float, list[int]] = {}
-        for i, s in enumerate(contour):
-            if isinstance(s, Arc):
-                kinds.setdefault(round(s.radius, 6), []).append(i)
-        for indices in kinds.values():
-            rows = [Radius(owner, i) for i in indices]
-            new = [i for i, row in zip(indices, rows) if sketch.account.takes(row)]
-            if new:
-                d = Dimension(f"{owner} radius", tuple(Radius(owner, i) for i in new), "R")
-                callouts.append(radius_callout(sketch, view, d, [contour.segments[i] for i in new]))
+        arcs = [(f"{owner} radius", Radius(owner, i), s) for i, s in enumerate(contour) if isinstance(s, Arc)]
+        callouts += equal_radii(sketch, view, arcs)
     return callouts
 
 
-def radius_callout(sketch: Sketch, view: View, d: Dimension, arcs: Sequence[Arc]) -> Callout:
-    targets, spans = [], []
+def equal_radii(sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]]) -> list[Callout]:
+    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout."""
+    kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
+    for name, row, arc in arcs:
+        kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
+    callouts = []
+    for some in kinds.values():
+        if new := [one for one in some if sketch.account.takes(one[1])]:
+            name = " and ".join(dict.fromkeys(name for name, _, _ in new))
+            d = Dimension(name, tuple(row for _, row, _ in new), "R")
+            callouts.append(_radius_callout(sketch, view, d, [arc for _, _, arc in new]))
+    return callouts
+
+
+def _radius_callout(sketch: Sketch, view: View, d: Dimension, arcs: Sequence[Arc]) -> Callout:
+    targets: list[tuple[Point, float]] = []
+    spans: list[tuple[float, float]] = []
     for arc in arcs:
         centre = seen(view, (*arc.centre, 0.0))
         angles = []
         for p in (arc.start, arc.end) if arc.ccw else (arc.end, arc.start):
             u, v = seen(view, (*p, 0.0))
-            angles.append(_direction(u - centre[0], v - centre[1]))
+            angles.append(degrees(atan2(v - centre[1], u - centre[0])))
         if view.right[0] < 0:
             angles.reverse()
         targets.append((centre, arc.radius))
-        spans.append(tuple(angles))
+        spans.append((angles[0], angles[1]))
     return Callout((d.text(sketch.values),), tuple(targets), (d,), tuple(spans))
-
-
-def _direction(u: float, v: float) -> float:
-    return degrees(atan2(v, u))

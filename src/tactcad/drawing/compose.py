@@ -9,27 +9,38 @@ from dataclasses import dataclass, replace
 from tactcad.design.messages import CheckFailure
 
 from .board import Board
+from .boxes import Box, Point, bounds, bounds_of, corners, grown, overlap, scaled, shifted
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .fonts import width
-from .ink import CENTRE, THIN, Arc, Hatch, Item, Point, Sheet, Stroke, Text, box, moved, points_of
+from .ink import (
+    CENTRE,
+    THIN,
+    Curve,
+    DrawnArc,
+    DrawnSheet,
+    Hatch,
+    Item,
+    Stroke,
+    Text,
+    bounds_of_items,
+    moved,
+    rectangle,
+)
 from .keys import Values
-from .layout import bounds, layout_faults
+from .layout_check import layout_faults
 from .paper import A3, A4, Paper, frame
-from .plan import Box, Callout, Plan, View, seen
-from .scale import SERIES, factor, shown
+from .scale import SERIES, Scale, factor, shown
 from .section_lines import bore_lines, letters, mark_plane
+from .sheet_plan import Callout, SectionPlane, SheetPlan, View, seen
 from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
 from .window import windowed
 
-Curve = Stroke | Arc | Hatch
 MARGIN = 4.0  # from the frame to anything
 APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
 PLANE = 3.0  # more between a view and its dimensions where a cutting plane ends
 LARGEST = 200.0  # mm of paper, on A4 and A3: a view is not enlarged beyond
-
-
 # Shares of the room that details may take, tried in turn.
 SHRUNK = (1.0, 0.6, 0.35)
 
@@ -43,21 +54,21 @@ class _Drawn:
     """A view's items at its scale, its (0, 0) at the paper's (0, 0)."""
 
     view: View
-    scale: tuple[int, int]
+    scale: Scale
     items: tuple[Item, ...]
 
     @property
     def box(self) -> Box:
-        return bounds([p for item in self.items for p in points_of(item)])
+        return bounds_of_items(self.items)
 
 
 def compose(
-    plan: Plan,
+    plan: SheetPlan,
     curves: Mapping[str, Sequence[Curve]],
     block: TitleBlock,
     papers: Sequence[Paper],
-    scales: Sequence[tuple[int, int]] = SERIES,
-) -> Sheet:
+    scales: Sequence[Scale] = SERIES,
+) -> DrawnSheet:
     """The sheet at the largest preferred scale, and on the first paper, at which its layout is clean.
 
     Raises NoPlace where no scale down to 1:10 fits, or none leaves a clean layout.
@@ -84,20 +95,20 @@ def compose(
     )
 
 
-def _main_size(plan: Plan) -> tuple[float, float]:
+def _main_size(plan: SheetPlan) -> tuple[float, float]:
     x0, y0, x1, y1 = plan.views[0].box
     return (x1 - x0, y1 - y0)
 
 
 def _attempt(
-    plan: Plan,
+    plan: SheetPlan,
     curves: Mapping[str, Sequence[Curve]],
     block: TitleBlock,
     paper: Paper,
-    scale: tuple[int, int],
+    scale: Scale,
     beside: bool,
     shrunk: float,
-) -> tuple[Sheet | None, list[str]]:
+) -> tuple[DrawnSheet | None, list[str]]:
     board = Board(paper.area)
     board.add(frame(paper))
     board.add(title_block(paper, replace(block, scale=shown(scale))))
@@ -105,35 +116,31 @@ def _attempt(
     board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
     _place_notes(board, plan.notes, paper, beside)
     spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
-    drawn = [
-        _drawn(
-            v,
-            curves[v.name],
-            scale if not v.window else _detail_scale(v, shrunk),
-            plan.values,
-            {} if n else spread,
-        )
-        for n, v in enumerate(plan.views)
-    ]
+    drawn = []
+    for n, v in enumerate(plan.views):
+        own = _detail_scale(v, v.window, shrunk) if v.window else scale
+        drawn.append(_drawn(v, curves[v.name], own, plan.values, {} if n else spread))
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
         return None, [f"the views at {shown(scale)} do not fit {paper.name}"]
     for d in drawn:
         if d.view.window:
-            spot = _free_spot(board, _with_margin(d.box, APART / 2))
+            spot = _free_spot(board, grown(d.box, APART / 2))
             if spot is None:
                 return None, [f"detail {d.view.label} finds no place"]
             places[d.view.name] = spot
-            board.keep_out(_shifted(_view_box(d), spot))
-            board.taken.append(_shifted(d.box, spot))
+            board.keep_out(shifted(_view_box(d), spot))
+            board.taken.append(shifted(d.box, spot))
     for d in drawn:
         board.add(moved(item, *places[d.view.name]) for item in d.items)
+    front = places[plan.views[0].name]
     for d in drawn:
-        if d.view.window and not _mark_window(board, d.view, factor(scale), places[plan.views[0].name]):
+        window = shifted(scaled(d.view.window, factor(scale)), front) if d.view.window else None
+        if window and not _mark_window(board, window, d.view.label):
             return None, [f"the letter {d.view.label} finds no place"]
-        if d.view.section and not _mark_section(board, d.view, drawn[0], places[plan.views[0].name]):
+        if d.view.section and not _mark_section(board, d.view, d.view.section, drawn[0], front):
             return None, [f"the cutting plane {letters(d.view.section)} finds no place"]
-    lettered = {}
+    lettered: dict[str, bool] = {}
     for d in drawn:
         for edge in d.view.datums:
             # a letter that several views offer stands on the first of them that has room
@@ -142,17 +149,8 @@ def _attempt(
     for d in drawn:
         for edge in d.view.datums:
             if not lettered[edge.letter]:  # by words at the end of a leader
-                spots = [
-                    (
-                        (
-                            edge.start[0] + s * (edge.end[0] - edge.start[0]),
-                            edge.start[1] + s * (edge.end[1] - edge.start[1]),
-                        ),
-                        0.0,
-                    )
-                    for s in (0.5, 0.25, 0.75)
-                ]
-                said = Callout((f"datum {edge.letter}",), tuple(spots))
+                spots = tuple((edge.at(share), 0.0) for share in (0.5, 0.25, 0.75))
+                said = Callout((f"datum {edge.letter}",), spots)
                 lettered[edge.letter] = board.callout(said, factor(d.scale), places[d.view.name])
     if not all(lettered.values()):
         return None, [f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place"]
@@ -161,7 +159,7 @@ def _attempt(
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
                 return None, [f"callout {callout.lines[0]!r} finds no place"]
     keys = tuple(d.text(plan.values) for d in plan.dimensions if d.key)
-    sheet = Sheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
+    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
     return sheet, layout_faults(sheet)
 
 
@@ -177,15 +175,15 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
 
 
 def _drawn(
-    view: View, curves: Sequence[Curve], scale: tuple[int, int], values: Values, spread: Mapping[str, float]
+    view: View, curves: Sequence[Curve], scale: Scale, values: Values, spread: Mapping[str, float]
 ) -> _Drawn:
     """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting
     plane."""
     f = factor(scale)
     if view.window:
-        curves = windowed(curves, view.window)
+        curves = windowed([c for c in curves if not isinstance(c, Hatch)], view.window)
     items: list[Item] = [_scaled(c, f) for c in curves if view.hidden or c.role != "hidden"]
-    paper_box = tuple(v * f for v in (view.window or view.box))
+    paper_box = scaled(view.window or view.box, f)
     starts = {}
     for r in view.runnings:
         off = spread.get(r.side, 0.0)
@@ -195,13 +193,15 @@ def _drawn(
         items += stacked(
             view.linears, side, paper_box, f, values, starts.get(side, FIRST + spread.get(side, 0.0))
         )
-    for a in view.across:
-        items += across(a, f, values)
+    for dimension in view.across:
+        items += across(dimension, f, values)
     for centre, diameter in view.centres:
         items += centre_lines(centre, diameter, f)
     for centre, diameter in view.threads:
         # three quarters of a thin circle at the nominal diameter (ISO 6410-1)
-        items.append(Arc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline"))
+        items.append(
+            DrawnArc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline")
+        )
     for a, b in view.axes:
         items.append(Stroke(((a[0] * f, a[1] * f), (b[0] * f, b[1] * f)), CENTRE, "centre"))
     if view.section:
@@ -209,20 +209,17 @@ def _drawn(
         items += [line for bore in view.section.bores for line in bore_lines(bore, f, face)]
     label = letters(view.section) if view.section else f"{view.label} ({shown(scale)})" if view.label else ""
     if label:
-        x0, _, x1, y1 = bounds([p for item in items for p in points_of(item)])
+        x0, _, x1, y1 = bounds_of_items(items)
         items.append(Text(((x0 + x1) / 2, y1 + 4.0), label, LABEL, "middle"))
     return _Drawn(view, scale, tuple(items))
 
 
-def _detail_scale(view: View, shrunk: float) -> tuple[int, int]:
-    x0, y0, x1, y1 = view.window
+def _detail_scale(view: View, window: Box, shrunk: float) -> Scale:
+    x0, y0, x1, y1 = window
+    wide, high = (shrunk * room for room in view.room)
     for scale in SERIES:
         f = factor(scale)
-        if (
-            (x1 - x0) * f <= shrunk * view.room[0]
-            and (y1 - y0) * f <= shrunk * view.room[1]
-            or f <= view.least
-        ):
+        if (x1 - x0) * f <= wide and (y1 - y0) * f <= high or f <= view.least:
             return scale
     return SERIES[-1]
 
@@ -240,15 +237,15 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
         shifts["below"] = (0.0, f[1] - APART - boxes["below"][3])
     if "above" in boxes:
         shifts["above"] = (0.0, f[3] + APART - boxes["above"][1])
-    whole = bounds([p for name, s in shifts.items() for p in _corner_points(_shifted(boxes[name], s))])
+    whole = bounds_of(corners(shifted(boxes[name], s)) for name, s in shifts.items())
     spot = _middle_spot(board, whole) if len(drawn) == views else None
-    spot = spot or _free_spot(board, _with_margin(whole, APART))
+    spot = spot or _free_spot(board, grown(whole, APART))
     if spot is None:
         return None
     places = {name: (s[0] + spot[0], s[1] + spot[1]) for name, s in shifts.items()}
-    board.taken.append(_shifted(whole, spot))
+    board.taken.append(shifted(whole, spot))
     for name, place in places.items():
-        board.keep_out(_shifted(_view_box(next(d for d in drawn if d.view.name == name)), place))
+        board.keep_out(shifted(_view_box(next(d for d in drawn if d.view.name == name)), place))
     return places
 
 
@@ -258,14 +255,13 @@ def _middle_spot(board: Board, wanted: Box) -> Point | None:
     x0, y0, x1, y1 = board.area
     y0 = max([y0, *(kept[3] for kept in board.kept)])
     spot = ((x0 + x1 - wanted[0] - wanted[2]) / 2, (y0 + y1 - wanted[1] - wanted[3]) / 2)
-    around = _with_margin(_shifted(wanted, spot), APART)
+    around = grown(shifted(wanted, spot), APART)
     return spot if around[0] >= x0 and around[1] >= y0 and around[2] <= x1 and around[3] <= y1 else None
 
 
 def _view_box(d: _Drawn) -> Box:
     """The part's own outline in a view, on which no callout may stand."""
-    f = factor(d.scale)
-    return _with_margin(tuple(v * f for v in (d.view.window or d.view.box)), 1.0)
+    return grown(scaled(d.view.window or d.view.box, factor(d.scale)), 1.0)
 
 
 def _free_spot(board: Board, wanted: Box) -> Point | None:
@@ -277,19 +273,18 @@ def _free_spot(board: Board, wanted: Box) -> Point | None:
         x = ax0
         while x + w <= ax1:
             spot = (x, y - h, x + w, y)
-            if not any(_overlap(spot, kept) for kept in board.kept + board.taken):
+            if not any(overlap(spot, kept) for kept in board.kept + board.taken):
                 return (x - wanted[0], y - h - wanted[1])
             x += 4.0
         y -= 4.0
     return None
 
 
-def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
-    """A thin frame around what a detail shows, and its letter beside it."""
-    x0, y0, x1, y1 = (v * f for v in view.window)
-    x0, x1, y0, y1 = x0 + origin[0], x1 + origin[0], y0 + origin[1], y1 + origin[1]
-    board.add([box(x0, y0, x1 - x0, y1 - y0, THIN, "symbol")])
-    w = width(view.label, LABEL)
+def _mark_window(board: Board, window: Box, label: str) -> bool:
+    """A thin frame around what a detail shows (mm of paper), and its letter beside it."""
+    x0, y0, x1, y1 = window
+    board.add([rectangle(x0, y0, x1 - x0, y1 - y0, THIN, "symbol")])
+    w = width(label, LABEL)
     for gap in (1.5, 3.0, 5.0, 8.0, 12.0):
         for share in (0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.75, 0.9, 1.0):
             for at in (
@@ -298,7 +293,7 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
                 (x0 - gap - w, y0 + share * (y1 - y0) - LABEL / 2),
                 (x1 + gap, y0 + share * (y1 - y0) - LABEL / 2),
             ):
-                letter = Text(at, view.label, LABEL)
+                letter = Text(at, label, LABEL)
                 quad = letter.corners(0.6)
                 if not board.hit([quad], bounds(quad)):
                     board.add([letter])
@@ -306,34 +301,17 @@ def _mark_window(board: Board, view: View, f: float, origin: Point) -> bool:
     return False
 
 
-def _mark_section(board: Board, view: View, front: _Drawn, place: Point) -> bool:
-    f, section = factor(front.scale), view.section
-    on = [0.0, 0.0, 0.0]
-    on[section.axis] = section.at
-    at = seen(front.view, tuple(on))[section.axis] * f + place[section.axis]
+def _mark_section(board: Board, view: View, section: SectionPlane, front: _Drawn, place: Point) -> bool:
+    f = factor(front.scale)
+    on = (section.at, 0.0, 0.0) if section.axis == 0 else (0.0, section.at, 0.0)
+    at = seen(front.view, on)[section.axis] * f + place[section.axis]
     sight = -sum(a * b for a, b in zip(view.eye, (front.view.right, front.view.up)[section.axis]))
-    return mark_plane(board, section, at, sight, _shifted(tuple(v * f for v in front.view.box), place))
+    return mark_plane(board, section, at, sight, shifted(scaled(front.view.box, f), place))
 
 
 def _scaled(curve: Curve, f: float) -> Curve:
     if isinstance(curve, Hatch):
         return replace(curve, loops=tuple(tuple((x * f, y * f) for x, y in loop) for loop in curve.loops))
-    if isinstance(curve, Arc):
+    if isinstance(curve, DrawnArc):
         return replace(curve, centre=(curve.centre[0] * f, curve.centre[1] * f), radius=curve.radius * f)
     return replace(curve, points=tuple((x * f, y * f) for x, y in curve.points))
-
-
-def _corner_points(b: Box) -> list[Point]:
-    return [(b[0], b[1]), (b[2], b[3])]
-
-
-def _shifted(b: Box, by: Point) -> Box:
-    return (b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1])
-
-
-def _with_margin(b: Box, m: float) -> Box:
-    return (b[0] - m, b[1] - m, b[2] + m, b[3] + m)
-
-
-def _overlap(a: Box, b: Box) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]

@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from .fonts import ink_box
-from .ink import CENTRE, THIN, Arc, Fill, Item, Point, Stroke, Text, arrow, polar, segment
+from .boxes import Box, Point, corners, grown
+from .fonts import ink_box, width
+from .ink import CENTRE, THIN, DrawnArc, Fill, Item, Stroke, Text, arrow, polar, segment
 from .keys import Values
-from .plan import Across, Box, Linear, Running, Side
+from .sheet_plan import Across, Linear, Running, Side
 
 HEIGHT = 2.5  # of dimension texts, mm
 ARROW = 2.5  # length of an arrow head: 10 line widths
@@ -22,9 +23,7 @@ FIRST, PITCH, PITCH_BOXED = 10.0, 8.0, 10.0  # dimension lines from the outline 
 TAIL = 6.0  # of a dimension line whose arrows point inwards
 BEYOND = 12.0  # from the part to the text of a dimension across a web
 ABOVE = 1.0  # from the dimension line to the text
-CLEAR_OF_ARROW = (
-    0.65  # from the dimension line to a text's ink: half an arrow head, and the white beside a line
-)
+CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow head, and white beside a line
 PAD = 1.1  # around the text of a key characteristic
 LABELS = 4.4  # least distance of running dimensions' texts
 
@@ -79,9 +78,7 @@ def boxed(text: Text, key: int) -> list[Item]:
 
 
 def boxed_width(text: str, key: int) -> float:
-    return Text((0, 0), text, HEIGHT).width + (
-        Text((0, 0), f"K{key}", HEIGHT).width + 4 * PAD if key else 0.0
-    )
+    return width(text, HEIGHT) + (width(f"K{key}", HEIGHT) + 4 * PAD if key else 0.0)
 
 
 def stacked(
@@ -184,16 +181,10 @@ def _one(
         segment(on_paper(s, min(os + GAP, o - 1.0)), on_paper(s, o + OVERSHOOT), THIN, "extension")
         for s, os in ((a, oa), (b, ob))
     ]
-    low, high = min(a, t0), max(b, t1)
-    if inside:
-        items += [arrow(on_paper(a, o), on_paper(b, o), ARROW), arrow(on_paper(b, o), on_paper(a, o), ARROW)]
-    else:
-        low, high = min(a - TAIL, t0), max(b + TAIL, t1)
-        items += [
-            arrow(on_paper(a, o), on_paper(a - 1, o), ARROW),
-            arrow(on_paper(b, o), on_paper(b + 1, o), ARROW),
-        ]
-    return [*items, segment(on_paper(low, o), on_paper(high, o))]
+    tail = 0.0 if inside else TAIL
+    for s, towards in ((a, b if inside else a - 1), (b, a if inside else b + 1)):
+        items.append(arrow(on_paper(s, o), on_paper(towards, o), ARROW))
+    return [*items, segment(on_paper(min(a - tail, t0), o), on_paper(max(b + tail, t1), o))]
 
 
 def _text_on(
@@ -220,12 +211,11 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
     places = _spread([s for s, _, _ in stops], LABELS)
     items: list[Item] = [segment(on_paper(stops[0][0], o), on_paper(stops[-1][0], o))]
     for n, ((s, foot, d), label) in enumerate(zip(stops, places)):
-        bend = o + (3.0 if abs(label - s) < 1e-6 else 2.0)
+        aside = abs(label - s) > 1e-6
+        bend = o + (2.0 if aside else 3.0)
+        end = on_paper(label if aside else s, bend + 4.0)
         items.append(segment(on_paper(s, foot + GAP), on_paper(s, bend), THIN, "extension"))
-        if abs(label - s) > 1e-6:
-            items.append(segment(on_paper(s, bend), on_paper(label, bend + 4.0), THIN, "extension"))
-        else:
-            items.append(segment(on_paper(s, bend), on_paper(s, bend + 4.0), THIN, "extension"))
+        items.append(segment(on_paper(s, bend), end, THIN, "extension"))
         items += _stop(on_paper, stops, n, origin, o)
         items.append(_label(on_paper, r.side, label, o + 8.0, "0" if d is None else d.text(values)))
     return items
@@ -237,7 +227,7 @@ def _stop(
     """Circle at the origin, arrow at a stop, a dot where its neighbour leaves no room for one."""
     s = stops[n][0]
     if abs(s - origin) < 1e-9:
-        return [Arc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
+        return [DrawnArc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
     inner = stops[n - 1][0] if s > origin else stops[n + 1][0]
     if abs(s - inner) < ARROW + 1.2:
         x, y = on_paper(s, o)
@@ -299,18 +289,13 @@ def datum(at: Point, away: Point, reach: float, letter: str) -> list[Item]:
 
 def datum_letter(letter: str, middle: Point) -> list[Item]:
     x, y = middle
-    square = Stroke(
-        ((x - 2.5, y - 2.5), (x + 2.5, y - 2.5), (x + 2.5, y + 2.5), (x - 2.5, y + 2.5)), THIN, "symbol", True
-    )
+    square = Stroke(corners(grown((x, y, x, y), 2.5)), THIN, "symbol", True)
     return [square, Text((x, y - HEIGHT / 2), letter, HEIGHT, "middle")]
 
 
 def centre_lines(centre: Point, diameter: float, scale: float) -> list[Item]:
     """A cross that stands out of its circle by 2 mm; continuous where too small for dashes."""
-    x, y, r = (
-        centre[0] * scale,
-        centre[1] * scale,
-        diameter / 2 * scale + min(2.0, 0.8 + diameter * scale / 4),
-    )
+    x, y = centre[0] * scale, centre[1] * scale
+    r = diameter / 2 * scale + min(2.0, 0.8 + diameter * scale / 4)
     line = CENTRE if r > 5.0 else THIN
     return [segment((x - r, y), (x + r, y), line, "centre"), segment((x, y - r), (x, y + r), line, "centre")]

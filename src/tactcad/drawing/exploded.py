@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from math import dist
 from typing import TYPE_CHECKING
 
 from . import balloons, parts_list
 from .apart import Piece
+from .boxes import Box, Polyline, bounds, bounds_of, corners, length, overlap
 from .fonts import width
 from .ink import Item, Text
 from .page import MARGIN, Page, edges
 from .paper import A3, A3_UPRIGHT, A4, A4_LYING, Paper
 from .scale import SERIES, factor, shown
 from .title import HEIGHT, WIDTH
-from .windows import Polyline
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -26,7 +25,6 @@ RIM = 2 * balloons.RADIUS + 8.0  # around an exploded view, for its balloons
 MOST_NUMBERED = 45  # items in one view; more would not find places around it
 LINE = 5.0  # from line to line of a view's heading, mm
 
-Box = tuple[float, float, float, float]
 Label = int | str  # item number, or letter of a sub-assembly's own view
 
 
@@ -39,8 +37,7 @@ class Exploded:
 
     @property
     def box(self) -> Box:
-        xs, ys = zip(*(p for line in self.lines for p in line))
-        return (min(xs), min(ys), max(xs), max(ys))
+        return bounds_of(self.lines)
 
     def labelled(self, which: Callable[[Label], bool]) -> Exploded:
         """The same lines with the labels asked for, no more than MOST_NUMBERED."""
@@ -64,7 +61,7 @@ def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], e
     known: dict[tuple, float] = {}
     for piece in pieces:
         if alike(piece) not in known:
-            known[alike(piece)] = length(seen_of_each([_solid(piece, shapes)], eye)[0])
+            known[alike(piece)] = total_length(seen_of_each([_solid(piece, shapes)], eye)[0])
     return [known[alike(piece)] for piece in pieces]
 
 
@@ -99,8 +96,9 @@ def exploded_view(
     return Exploded(in_order, tuple(sorted({line for some in seen for line in some})))
 
 
-def length(lines: Sequence[Polyline]) -> float:
-    return sum(dist(a, b) for line in lines for a, b in zip(line, line[1:]))
+def total_length(lines: Iterable[Polyline]) -> float:
+    """mm"""
+    return sum(map(length, lines))
 
 
 def exploded_page(
@@ -110,34 +108,30 @@ def exploded_page(
     beside it, which it does where that costs no scale. Where A4 is allowed (`small`) it is taken if that
     costs none either. None where the balloons find no place."""
     bx0, by0, bx1, by1 = view.box
-    choices = [
-        *([(A3, True)] if list_ else []),
-        *([(A4, False), (A4_LYING, False)] if small else []),
-        (A3, False),
-        (A3_UPRIGHT, False),
-    ]
+    choices: list[tuple[Paper, parts_list.Laid | None]] = [(A3, list_)] if list_ else []
+    choices += [(paper, None) for paper in ((A4, A4_LYING) if small else ()) + (A3, A3_UPRIGHT)]
     for scale in SERIES:
         f = factor(scale)
-        for paper, with_list in choices:
-            area = room(paper, with_list)
+        for paper, beside in choices:
+            area = room(paper, bool(beside))
             if (bx1 - bx0) * f + 2 * RIM > area[2] - area[0] or (by1 - by0) * f + 2 * RIM > area[3] - area[1]:
                 continue
             shift = ((area[0] + area[2] - (bx0 + bx1) * f) / 2, (area[1] + area[3] - (by0 + by1) * f) / 2)
             drawn = edges(view.lines, f, shift)
             own = {n: [e.points for e in edges(lines, f, shift)] for n, lines in view.own.items()}
             texts, taken = _heading(heading, area)
-            if any(_reaches(e.points, taken) for e in drawn):
+            if any(overlap(bounds(e.points), taken) for e in drawn):
                 continue
             placed = balloons.place(own, [*(e.points for e in drawn), _outline(taken)], area)
             if not placed:
                 continue
             items: list[Item] = [*drawn, *balloons.drawn(placed), *texts]
-            if with_list:
-                items += parts_list.drawn(
-                    list_, range(len(list_.cells)), (paper.area[2] - WIDTH, paper.area[3])
-                )[0]
-            kind = "Assembly drawing, parts list" if with_list else "Assembly drawing"
-            return Page(paper, shown(scale), tuple(items), kind), with_list
+            kind = "Assembly drawing"
+            if beside:
+                corner = (paper.area[2] - WIDTH, paper.area[3])
+                items += parts_list.drawn(beside, range(len(beside.cells)), corner)[0]
+                kind += ", parts list"
+            return Page(paper, shown(scale), tuple(items), kind), bool(beside)
     return None
 
 
@@ -154,13 +148,8 @@ def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
 
 
 def _outline(b: Box) -> Polyline:
-    return ((b[0], b[1]), (b[2], b[1]), (b[2], b[3]), (b[0], b[3]), (b[0], b[1]))
-
-
-def _reaches(line: Polyline, b: Box) -> bool:
-    """Whether the box of a line meets another."""
-    xs, ys = zip(*line)
-    return min(xs) < b[2] and max(xs) > b[0] and min(ys) < b[3] and max(ys) > b[1]
+    ends = corners(b)
+    return (*ends, ends[0])
 
 
 def room(paper: Paper, with_list: bool) -> Box:

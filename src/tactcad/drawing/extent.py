@@ -2,51 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from math import cos, pi, sin
 
 from tactcad.contour import Arc, Contour, Point
-from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector
+from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
 from tactcad.scenes.scene import Placement
+
+from .boxes import Box, bounds
 
 _STEPS = 96  # points on a full turn: within 0.6 permille of the radius
 
 
-def projected_box(
-    placements: Iterable[Placement], right: Vector, eye: Vector
-) -> tuple[float, float, float, float]:
+def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -> Box:
     """x_min, y_min, x_max, y_max (mm) of the placed parts as seen from `eye`, with `right` to the right.
 
     A model file counts with its box, which may be seen larger than the model.
     """
     up = _unit(_cross(eye, right))
-    spans: dict[
-        tuple, tuple[float, float, float, float]
-    ] = {}  # equal parts turned alike differ by their place alone
+    spans: dict[tuple, Box] = {}  # equal parts turned alike differ by their place alone
     corners = []
     for p in placements:
         key = (p.part.part_no, p.rotation)
         if key not in spans:
-            spans[key] = _span(
-                [placed(replace(p, origin=(0.0, 0.0, 0.0)), v) for v in _surface_points(p.part)], right, up
-            )
+            turned = (placed(replace(p, origin=(0.0, 0.0, 0.0)), v) for v in _surface_points(p.part))
+            spans[key] = bounds((_dot(v, right), _dot(v, up)) for v in turned)
         x, y = _dot(p.origin, right), _dot(p.origin, up)
         x0, y0, x1, y1 = spans[key]
         corners += [(x + x0, y + y0), (x + x1, y + y1)]
-    xs, ys = zip(*corners)
-    return (min(xs), min(ys), max(xs), max(ys))
-
-
-def _span(points: Iterable[Vector], right: Vector, up: Vector) -> tuple[float, float, float, float]:
-    xs, ys = zip(*((_dot(q, right), _dot(q, up)) for q in points))
-    return (min(xs), min(ys), max(xs), max(ys))
+    return bounds(corners)
 
 
 def placed(p: Placement, point: Vector) -> Vector:
     """A point of the part's own frame, in the scene (mm)."""
-    return tuple(_dot(row, point) + o for row, o in zip(p.rotation, p.origin))
+    return vector(_dot(row, point) + o for row, o in zip(p.rotation, p.origin))
+
+
+def moved_by(p: Placement, way: Sequence[float], digits: int = 9) -> Placement:
+    """The placement elsewhere (mm), its place rounded."""
+    return replace(p, origin=vector(round(o + float(w), digits) for o, w in zip(p.origin, way)))
 
 
 def _surface_points(part: Part) -> Iterator[Vector]:
@@ -59,7 +55,7 @@ def _surface_points(part: Part) -> Iterator[Vector]:
         for island in foot.island if foot else ():
             yield from ((x, y, 0.0) for x, y in _curve_points(island))
     elif isinstance(body, ModelFile):
-        yield from product(*zip(*body.box))
+        yield from box_corners(body.box)
     elif isinstance(body, Revolution):
         for r, z in _curve_points(body.profile):
             for k in range(_STEPS):
@@ -92,6 +88,12 @@ def _cross(a: Vector, b: Vector) -> Vector:
 def _unit(a: Vector) -> Vector:
     size = _dot(a, a) ** 0.5
     return (a[0] / size, a[1] / size, a[2] / size)
+
+
+def box_corners(box: tuple[Vector, Vector]) -> Iterator[Vector]:
+    """The eight corners of a box between its least and its largest."""
+    (x0, y0, z0), (x1, y1, z1) = box
+    return product((x0, x1), (y0, y1), (z0, z1))
 
 
 def part_box(part: Part) -> tuple[Vector, Vector]:

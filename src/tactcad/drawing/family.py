@@ -8,10 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from .balloons import RADIUS, SHORTEST, Balloon
-from .scale import factor, largest_fitting
-
-Polyline = Sequence[tuple[float, float]]
-Box = tuple[float, float, float, float]
+from .boxes import Box, Point, Polyline, bounds_of
+from .scale import Scale, factor, largest_fitting
 
 GAP = 6.0  # between cells, mm of paper
 ABOVE = 2 * RADIUS + 2 * SHORTEST  # for a part's balloon
@@ -23,10 +21,10 @@ SIZES = tuple(range(150, 15, -5))  # tried for the larger side of every part, mm
 class Shown:
     """A part on the page: its lines (mm of paper), its balloon, its scale, and the middle below it."""
 
-    lines: tuple[tuple[tuple[float, float], ...], ...]
+    lines: tuple[Polyline, ...]
     balloon: Balloon
-    scale: tuple[int, int]
-    below: tuple[float, float]
+    scale: Scale
+    below: Point
 
 
 def pages(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]] | None:
@@ -36,9 +34,10 @@ def pages(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]]
     for size in SIZES:
         scales = {}
         for item, lines in own.items():
-            x0, y0, x1, y1 = _box(lines)
-            scales[item] = largest_fitting(x1 - x0, y1 - y0, (size, size))
-        if None not in scales.values() and (laid := _laid(own, scales, area)):
+            x0, y0, x1, y1 = bounds_of(lines)
+            if scale := largest_fitting(x1 - x0, y1 - y0, (size, size)):
+                scales[item] = scale
+        if len(scales) == len(own) and (laid := _laid(own, scales, area)):
             best = laid
             if len(laid) == 1:
                 break
@@ -46,7 +45,7 @@ def pages(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[Shown]]
 
 
 def _laid(
-    own: Mapping[int, Sequence[Polyline]], scales: Mapping[int, tuple[int, int]], area: Box
+    own: Mapping[int, Sequence[Polyline]], scales: Mapping[int, Scale], area: Box
 ) -> list[list[Shown]] | None:
     """The parts in rows from the left, the rows below each other; None where one is too large for the
     area."""
@@ -76,35 +75,28 @@ def _laid(
 
 def _cell(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
     """Width and height that a part takes with its balloon, its scale and the gap."""
-    x0, y0, x1, y1 = _box(lines)
+    x0, y0, x1, y1 = bounds_of(lines)
     left, right = _sides(lines, f)
     return right - left + GAP, (y1 - y0) * f + ABOVE + BELOW + GAP
 
 
 def _sides(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
     """Of the part at its scale and the balloon over its topmost point."""
-    x0, _, x1, _ = _box(lines)
+    x0, _, x1, _ = bounds_of(lines)
     tip = _topmost(lines)[0] * f
     return min(x0 * f, tip - RADIUS), max(x1 * f, tip + RADIUS)
 
 
-def _topmost(lines: Sequence[Polyline]) -> tuple[float, float]:
+def _topmost(lines: Sequence[Polyline]) -> Point:
     return max((p for line in lines for p in line), key=lambda p: (round(p[1], 6), -p[0]))
 
 
-def _box(lines: Sequence[Polyline]) -> Box:
-    xs, ys = zip(*(p for line in lines for p in line))
-    return (min(xs), min(ys), max(xs), max(ys))
-
-
-def _shown(
-    item: int, lines: Sequence[Polyline], scale: tuple[int, int], corner: tuple[float, float]
-) -> Shown:
+def _shown(item: int, lines: Sequence[Polyline], scale: Scale, corner: Point) -> Shown:
     """A part whose cell has its lower left corner there; the leader goes straight down to its topmost
     point."""
     f = factor(scale)
     left, right = _sides(lines, f)
-    dx, dy = corner[0] + GAP / 2 - left, corner[1] + GAP / 2 + BELOW - f * _box(lines)[1]
+    dx, dy = corner[0] + GAP / 2 - left, corner[1] + GAP / 2 + BELOW - f * bounds_of(lines)[1]
     placed = tuple(tuple((x * f + dx, y * f + dy) for x, y in line) for line in lines)
     tip = _topmost(placed)
     below = ((left + right) / 2 + dx, corner[1] + GAP / 2)

@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure, InputError
 
+from .boxes import Box, bounds, scaled
+
 if TYPE_CHECKING:
     from matplotlib.ft2font import FT2Font
 
 FAMILY = "DejaVu Sans"
 _FILE = Path("mpl-data", "fonts", "ttf", "DejaVuSans.ttf")
-
-Box = tuple[float, float, float, float]
 
 
 def font_file() -> Path:
@@ -86,14 +86,10 @@ def ink_box(text: str, height: float) -> Box:
 
     Raises CheckFailure where the font lacks a letter.
     """
-    pen, boxes = 0.0, []
+    pen, corners = 0.0, []
     for letter in text:
         advance, (x0, y0, x1, y1) = _glyph(letter)
         if x1 > x0:
-            boxes.append((pen + x0, y0, pen + x1, y1))
+            corners += [(pen + x0, y0), (pen + x1, y1)]
         pen += advance
-    if not boxes:
-        return (0.0, 0.0, 0.0, 0.0)
-    x0s, y0s, x1s, y1s = zip(*boxes)
-    size = em(height)
-    return (min(x0s) * size, min(y0s) * size, max(x1s) * size, max(y1s) * size)
+    return scaled(bounds(corners), em(height)) if corners else (0.0, 0.0, 0.0, 0.0)

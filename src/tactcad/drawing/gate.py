@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from tactcad.parts.description import Characteristic, Part
 
-from .ink import Sheet
-from .layout import layout_faults
+from .ink import DrawnSheet
+from .layout_check import layout_faults
 
 SAME = 1e-9  # mm
 _VALUE = re.compile(
@@ -29,7 +29,7 @@ def pdf_runs(data: bytes) -> list[list[str]]:
     return pages
 
 
-def drawing_faults(data: bytes, sheet: Sheet, part: Part, revision: str) -> list[str]:
+def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) -> list[str]:
     """What is wrong with a part's PDF: pages, number and revision, layout, or a key characteristic."""
     pages = pdf_runs(data)
     if len(pages) != 1:

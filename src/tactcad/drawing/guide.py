@@ -4,15 +4,16 @@ scene."""
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from html import escape
 
 from tactcad.design.tree import Design
 from tactcad.parts import seating
-from tactcad.parts.description import Part, Vector
+from tactcad.parts.description import Part
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes.scene import Placement, Scene, Step
+
+from .extent import moved_by
 
 _SCREW = re.compile(r"ISO(4762|4026)-(M[\d.]+)x")
 _STYLE = """
@@ -52,18 +53,15 @@ def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Pla
 def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
     placed = {p.designator: p for p in scene.placements}
     count = len(step.designators)
+    shares = [0.5 + (n + 1) / count / 2 if step.fan else 1.0 for n in range(count)]
     return tuple(
-        _moved(placed[d], step.explode, 0.5 + (n + 1) / count / 2 if step.fan else 1.0)
-        for n, d in enumerate(step.designators)
+        moved_by(placed[d], [share * w for w in step.explode]) for d, share in zip(step.designators, shares)
     )
 
 
-def _moved(p: Placement, way: Vector, share: float) -> Placement:
-    return replace(p, origin=tuple(round(o + share * w, 9) for o, w in zip(p.origin, way)))
-
-
 def torque(part: Part, design: Design) -> float | None:
-    """Tightening torque of a cap or set screw, N m; None for other parts, 0 for a set screw that only touches."""
+    """Tightening torque of a cap or set screw, N m; None for other parts, 0 for a set screw that only
+    touches."""
     match = _SCREW.match(part.part_no)
     if not match:
         return None

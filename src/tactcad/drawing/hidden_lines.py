@@ -7,65 +7,47 @@ from collections.abc import Sequence
 from math import atan2, degrees, hypot
 
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.BRepLib import BRepLib
 from OCP.GeomAbs import GeomAbs_Circle
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-from OCP.HLRAlgo import HLRAlgo_Projector
-from OCP.TopAbs import TopAbs_EDGE
-from OCP.TopExp import TopExp_Explorer
+from OCP.gp import gp_Pnt
 from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.parts.description import Vector
-from tactcad.solids.occt import as_edge
 
-from .ink import HIDDEN, VISIBLE, Arc, LineType, Point, Role, Stroke
-from .picture import exact, on_curve
+from .ink import HIDDEN, VISIBLE, DrawnArc, LineType, Point, Role, Stroke
+from .picture import compound, curves_of, exact, on_curve, projector
 
 CHORD = 0.001  # mm of the part: what is neither line nor circle is drawn as chords this close
 SAME = 1e-4  # mm: edges nearer than this are one
 
-Curve = Stroke | Arc
 
-
-def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Curve]:
+def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Stroke | DrawnArc]:
     """Visible edges, then hidden ones that no visible one covers, in the view's plane (mm of the part),
     sorted.
 
     Edges between tangent faces are left out, as ISO 128-3 lets.
     """
-    axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(*eye), gp_Dir(*right))
-    result = exact([shape], HLRAlgo_Projector(axes))
+    result = exact([compound([shape])], projector(eye, right))
     seen = _once(_curves((result.VCompound(), result.OutLineVCompound()), VISIBLE, "outline"))
     behind = _once(_curves((result.HCompound(), result.OutLineHCompound()), HIDDEN, "hidden"))
     return seen + [piece for curve in behind for piece in _uncovered(curve, seen)]
 
 
-def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role) -> list[Curve]:
-    curves: list[Curve] = []
-    for compound in compounds:
-        if compound is None or compound.IsNull():
-            continue
-        BRepLib.BuildCurves3d_s(compound)
-        explorer = TopExp_Explorer(compound, TopAbs_EDGE)
-        while explorer.More():
-            curve = _curve(BRepAdaptor_Curve(as_edge(explorer.Current())), line, role)
-            if curve:
-                curves.append(curve)
-            explorer.Next()
-    return curves
+def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role) -> list[Stroke | DrawnArc]:
+    drawn = (_curve(curve, line, role) for compound in compounds for curve in curves_of(compound))
+    return [curve for curve in drawn if curve]
 
 
-def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Curve | None:
+def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Stroke | DrawnArc | None:
     first, last = curve.FirstParameter(), curve.LastParameter()
     if curve.GetType() == GeomAbs_Circle:
         circle = curve.Circle()
         centre = _point(circle.Location())
         a, b = (_point(curve.Value(t)) for t in (first, last))
         if abs(last - first) >= 6.283185:
-            return Arc(centre, round(circle.Radius(), 6), 0.0, 360.0, line, role)
+            return DrawnArc(centre, round(circle.Radius(), 6), 0.0, 360.0, line, role)
         if circle.Axis().Direction().Z() < 0:
             a, b = b, a
-        return Arc(centre, round(circle.Radius(), 6), _angle(centre, a), _angle(centre, b), line, role)
+        return DrawnArc(centre, round(circle.Radius(), 6), _angle(centre, a), _angle(centre, b), line, role)
     points = [_point(p) for p in on_curve(curve, CHORD)]
     if _straight(points):
         points = [points[0], points[-1]]
@@ -89,18 +71,20 @@ def _angle(centre: Point, p: Point) -> float:
     return round(degrees(atan2(p[1] - centre[1], p[0] - centre[0])) % 360.0, 6)
 
 
-def _once(curves: Sequence[Curve]) -> list[Curve]:
+def _once(curves: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
     """Each curve once, in canonical order."""
-    return sorted(set(curves), key=lambda c: (isinstance(c, Arc), repr(c)))
+    return sorted(set(curves), key=lambda c: (isinstance(c, DrawnArc), repr(c)))
 
 
-def _uncovered(curve: Curve, seen: Sequence[Curve]) -> list[Curve]:
+def _uncovered(curve: Stroke | DrawnArc, seen: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
     """What of a hidden curve no visible one covers."""
-    if isinstance(curve, Arc):
+    if isinstance(curve, DrawnArc):
         same = [
             s
             for s in seen
-            if isinstance(s, Arc) and _near(s.centre, curve.centre) and abs(s.radius - curve.radius) < SAME
+            if isinstance(s, DrawnArc)
+            and _near(s.centre, curve.centre)
+            and abs(s.radius - curve.radius) < SAME
         ]
         middle = curve.start + curve.sweep / 2
         return [] if any((middle - s.start) % 360.0 <= s.sweep + 1e-6 for s in same) else [curve]
@@ -111,7 +95,7 @@ def _uncovered(curve: Curve, seen: Sequence[Curve]) -> list[Curve]:
     ux, uy = (b[0] - a[0]) / size, (b[1] - a[1]) / size
     open_parts = [(0.0, size)]
     for s in seen:
-        if isinstance(s, Arc) or len(s.points) > 2:
+        if isinstance(s, DrawnArc) or len(s.points) > 2:
             continue
         if any(abs(ux * (y - a[1]) - uy * (x - a[0])) > SAME for x, y in s.points):
             continue

@@ -3,17 +3,18 @@ text."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isclose
 
 from tactcad.design.tree import Design
-from tactcad.parts.description import Extrusion, Hole, Part, Vector
+from tactcad.parts.description import Hole, Part, Vector
 
+from .contours import axis_of
 from .keys import Owner, Quantity, Values
-from .measure import axis_of, size
-from .plan import Dimension
+from .measures import size
+from .sheet_plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
 EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a micrometre's thousandth
@@ -32,8 +33,7 @@ class Round:
 
 def rounds(part: Part, design: Design) -> list[Round]:
     """Round openings and holes of an extruded part."""
-    body = part.body
-    assert isinstance(body, Extrusion)
+    body = part.extrusion
     holes = []
     for i, opening in enumerate(body.openings):
         if circle := opening.as_circle():
@@ -57,6 +57,11 @@ def rounds(part: Part, design: Design) -> list[Round]:
     return holes
 
 
+def widest(h: Hole) -> float:
+    """Diameter of a hole, or of its counterbore, mm."""
+    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0)
+
+
 @dataclass(frozen=True)
 class Group:
     """Equal holes, the lines of their callout, and the dimensions that stand in the lines."""
@@ -70,7 +75,7 @@ class Group:
         return self.holes[0].axis
 
 
-def groups(holes: Sequence[Round], values: Values, eye_of: dict[int, Vector]) -> list[Group]:
+def groups(holes: Sequence[Round], values: Values, eye_of: Mapping[int, Vector]) -> list[Group]:
     """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as
     circles."""
     kinds: dict[tuple, list[Round]] = {}
@@ -108,9 +113,7 @@ def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]
             continue
         del left[(axis, spec)]
         opposite = (tuple(-a + 0.0 for a in axis), spec)
-        other = next(
-            (key for key in left if key[1] == spec and all(a == b for a, b in zip(key[0], opposite[0]))), None
-        )
+        other = opposite if opposite in left else None
         k = next(i for i, a in enumerate(axis) if a)
 
         def places(rounds_: Sequence[Round]) -> set[tuple]:
@@ -123,12 +126,12 @@ def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]
     return result
 
 
-def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vector]) -> Group:
+def _group(some: list[Round], both: bool, values: Values, eye_of: Mapping[int, Vector]) -> Group:
     h, label = some[0].hole, some[0].label
 
-    def dimension(what: Quantity, sign: str, **more: object) -> Dimension:
+    def dimension(what: Quantity, sign: str, counted: bool = False) -> Dimension:
         rows = tuple(size(r.owner.size(what)) for r in some)
-        return Dimension(f"{label} {what}", rows, sign, **more)
+        return Dimension(f"{label} {what}", rows, sign, counted=counted)
 
     limits, modelled, words = _tolerance(h.tolerance)
     fit, _, remark = words.partition(", ")
@@ -136,38 +139,29 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: dict[int, Vect
         # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre
         # away
         modelled = round(h.diameter - round(h.diameter, 1), 9)
-    bore = dimension(
-        Quantity.DIAMETER,
-        "⌀",
-        limits=limits,
-        modelled=modelled,
-        fit=fit,
-        counted=not h.thread and not _entered(h),
-    )
+    # the count of a thread stands before the thread, or before the counterbore that it is entered by
+    bore = dimension(Quantity.DIAMETER, "⌀", counted=not h.thread)
+    bore = replace(bore, limits=limits, modelled=modelled, fit=fit)
     used = [bore]
-    depth = None if h.through else dimension(Quantity.DEPTH, "↧", counted=False)
+    depth = None if h.through else dimension(Quantity.DEPTH, "↧")
     ending = " through" if depth is None else f" {depth.text(values)}"
     cone = ", point 118°" if h.drill_point else ""
     used += [depth] if depth else []
     count = f"{len(some)}× " if len(some) > 1 else ""
     lines: list[str] = []
     if h.counterbore:
-        wide, deep = (
-            dimension(Quantity.WIDE, "⌀", counted=False),
-            dimension(Quantity.DEEP, "↧", counted=False),
-        )
+        wide, deep = dimension(Quantity.WIDE, "⌀"), dimension(Quantity.DEEP, "↧")
         used += [wide, deep]
         wider = f"{wide.text(values)} {deep.text(values)}"
     if h.thread:
-        thread = None if h.thread_depth >= h.depth else dimension(Quantity.THREAD, "↧", counted=False)
+        thread = None if h.thread_depth >= h.depth else dimension(Quantity.THREAD, "↧")
         used += [thread] if thread else []
+        deep_thread = thread.text(values) if thread else ""
         if h.counterbore:
-            lines += [
-                f"{count}{wider}, below it",
-                f"{h.thread}-6H, full thread {thread.text(values).removeprefix('↧')} long",
-            ]
+            lines += [f"{count}{wider}, below it"]
+            lines += [f"{h.thread}-6H, full thread {deep_thread.removeprefix('↧')} long"]
         else:
-            lines.append(f"{count}{h.thread}-6H {thread.text(values) if thread else 'through'}")
+            lines.append(f"{count}{h.thread}-6H {deep_thread or 'through'}")
         lines.append(f"drill {bore.text(values)}{ending}{cone}")
     else:
         lines.append(f"{bore.text(values)}{ending}{cone}")
@@ -196,11 +190,6 @@ def regular_rows(called: Sequence[Group], k: int) -> list[list[Round]]:
             if len(line) >= LEAST_ROW and max(steps) - min(steps) < EVEN:
                 rows.append(line)
     return rows
-
-
-def _entered(h: Hole) -> bool:
-    """Whether the count stands at the counterbore instead."""
-    return bool(h.counterbore and h.thread)
 
 
 def _tolerance(text: str) -> tuple[tuple[float, float] | None, float, str]:

@@ -5,14 +5,14 @@ Line types and widths of ISO 128-2:2020, group 0.5 (thick 0.5, thin 0.25); dashe
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, cos, hypot, radians, sin, sqrt
 from typing import Literal
 
+from .boxes import Box, Chord, Point, bounds_of, corners, grown
 from .fonts import ink_box, width
-
-Point = tuple[float, float]
 
 # What a line or text is for. Texts of the part and of the paper alike may not touch any line; a watermark
 # may.
@@ -61,14 +61,14 @@ class Stroke:
     role: Role = "outline"
     closed: bool = False
 
-    def chords(self) -> tuple[tuple[Point, Point], ...]:
+    def chords(self) -> tuple[Chord, ...]:
         """Its straight pieces."""
         ends = self.points[1:] + (self.points[:1] if self.closed else ())
         return tuple(zip(self.points, ends))
 
 
 @dataclass(frozen=True)
-class Arc:
+class DrawnArc:
     """A circular arc from angle `start` counter-clockwise to `end`, degrees; 0 to 360 is the full circle."""
 
     centre: Point
@@ -87,7 +87,7 @@ class Arc:
         """The point in the direction `angle`, degrees."""
         return polar(self.centre, self.radius, angle)
 
-    def chords(self) -> tuple[tuple[Point, Point], ...]:
+    def chords(self) -> tuple[Chord, ...]:
         """Straight pieces that stay within a hundredth of a millimetre."""
         step = 2 * (2 * 0.01 / max(self.radius, 0.02)) ** 0.5  # sagitta r w^2/8
         count = max(4, ceil(radians(self.sweep) / step))
@@ -102,7 +102,7 @@ class Fill:
     points: tuple[Point, ...]
     role: Role = "dimension"
 
-    def chords(self) -> tuple[tuple[Point, Point], ...]:
+    def chords(self) -> tuple[Chord, ...]:
         return tuple(zip(self.points, self.points[1:] + self.points[:1]))
 
 
@@ -131,16 +131,15 @@ class Text:
 
     def corners(self, around: float = 0.0) -> tuple[Point, Point, Point, Point]:
         """Corners of the ink's box, counter-clockwise, `around` mm larger on every side."""
-        x0, y0, x1, y1 = ink_box(self.text, self.height)
+        ink = ink_box(self.text, self.height)
         x, y = self.origin
         c, s = cos(radians(self.angle)), sin(radians(self.angle))
-        local = (
-            (x0 - around, y0 - around),
-            (x1 + around, y0 - around),
-            (x1 + around, y1 + around),
-            (x0 - around, y1 + around),
-        )
-        return tuple((x + c * u - s * v, y + s * u + c * v) for u, v in local)
+
+        def turned(p: Point) -> Point:
+            return (x + c * p[0] - s * p[1], y + s * p[0] + c * p[1])
+
+        first, second, third, fourth = map(turned, corners(grown(ink, around)))
+        return (first, second, third, fourth)
 
 
 @dataclass(frozen=True)
@@ -155,15 +154,15 @@ class Hatch:
     @cached_property
     def spacing(self) -> float:
         """mm between lines: an eighth of the face's narrower extent, in HATCHING."""
-        extents = [max(values) - min(values) for values in zip(*(p for loop in self.loops for p in loop))]
-        return min(max(min(extents) / 8, HATCHING[0]), HATCHING[1])
+        x0, y0, x1, y1 = bounds_of(self.loops)
+        return min(max(min(x1 - x0, y1 - y0) / 8, HATCHING[0]), HATCHING[1])
 
-    def chords(self) -> tuple[tuple[Point, Point], ...]:
+    def chords(self) -> tuple[Chord, ...]:
         """The hatching lines, y - x = k sqrt(2) spacing: of one pattern for all areas of the face."""
         return self._lines
 
     @cached_property
-    def _lines(self) -> tuple[tuple[Point, Point], ...]:
+    def _lines(self) -> tuple[Chord, ...]:
         step = self.spacing * sqrt(2.0)
         met: dict[int, list[float]] = {}  # x + y where the outlines meet line k
         for (ax, ay), (bx, by) in self.outlines():
@@ -171,37 +170,30 @@ class Hatch:
             for k in range(ceil(min(a, b)), ceil(max(a, b))):
                 share = (k - a) / (b - a)
                 met.setdefault(k, []).append(ax + ay + share * (bx + by - ax - ay))
-        lines = []
+        lines: list[Chord] = []
         for k, places in sorted(met.items()):
             places.sort()
-            lines += [
-                tuple(((w - k * step) / 2, (w + k * step) / 2) for w in ends)
-                for ends in zip(places[::2], places[1::2])
-            ]
+            points = [((w - k * step) / 2, (w + k * step) / 2) for w in places]
+            lines += zip(points[::2], points[1::2])
         return tuple(lines)
 
-    def outlines(self) -> list[tuple[Point, Point]]:
+    def outlines(self) -> list[Chord]:
         """Sides of the polygons."""
         return [side for loop in self.loops for side in zip(loop, loop[1:] + loop[:1])]
 
     def holds(self, p: Point) -> bool:
         """Whether a point lies in the hatched area."""
         x, y = p
-        return (
-            sum(
-                (a[1] > y) != (b[1] > y) and x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
-                for a, b in self.outlines()
-            )
-            % 2
-            == 1
-        )
+        passed = [(a, b) for a, b in self.outlines() if (a[1] > y) != (b[1] > y)]
+        return sum(x < a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]) for a, b in passed) % 2 == 1
 
 
-Item = Stroke | Arc | Fill | Hatch | Text
+Curve = Stroke | DrawnArc | Hatch
+Item = Stroke | DrawnArc | Fill | Hatch | Text
 
 
 @dataclass(frozen=True)
-class Sheet:
+class DrawnSheet:
     """One sheet: its paper's size (mm), number and title, and everything on it in drawing order.
 
     `keys` are the texts of its key characteristics, each of which has to stand on it exactly once.
@@ -236,9 +228,9 @@ def segment(a: Point, b: Point, line: LineType = THIN, role: Role = "dimension")
     return Stroke((a, b), line, role)
 
 
-def box(x: float, y: float, w: float, h: float, line: LineType = THIN, role: Role = "table") -> Stroke:
+def rectangle(x: float, y: float, w: float, h: float, line: LineType = THIN, role: Role = "table") -> Stroke:
     """A rectangle from its lower left corner."""
-    return Stroke(((x, y), (x + w, y), (x + w, y + h), (x, y + h)), line, role, closed=True)
+    return Stroke(corners((x, y, x + w, y + h)), line, role, closed=True)
 
 
 def arrow(tip: Point, towards: Point, length: float = 2.5, role: Role = "dimension") -> Fill:
@@ -263,7 +255,7 @@ def moved(item: Item, dx: float, dy: float) -> Item:
     def shifted(p: Point) -> Point:
         return (p[0] + dx, p[1] + dy)
 
-    if isinstance(item, Arc):
+    if isinstance(item, DrawnArc):
         return replace(item, centre=shifted(item.centre))
     if isinstance(item, Text):
         return replace(item, at=shifted(item.at))
@@ -272,7 +264,12 @@ def moved(item: Item, dx: float, dy: float) -> Item:
     return replace(item, points=tuple(shifted(p) for p in item.points))
 
 
-def preliminary(sheet: Sheet) -> Sheet:
+def bounds_of_items(items: Iterable[Item]) -> Box:
+    """The least box that holds the items."""
+    return bounds_of(map(points_of, items))
+
+
+def preliminary(sheet: DrawnSheet) -> DrawnSheet:
     """The sheet as a draft: PRELIMINARY across it, under everything else."""
     w, h = sheet.size
     angle = 35.0 if w > h else 55.0

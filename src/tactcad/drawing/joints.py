@@ -8,18 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
 from tactcad.parts.description import Revolution
 from tactcad.scenes.scene import Contact, Placement
 
-from .extent import part_box, placed
+from .extent import box_corners, part_box, placed
 
 TOUCH = 0.01  # mm: boxes that overlap by no more meet face to face
 
-Box = np.ndarray  # least and largest corner, (2, 3), mm
+Extent = np.ndarray  # least and largest corner, (2, 3), mm
 
 
 @dataclass(frozen=True)
@@ -31,9 +30,9 @@ class Joint:
     axis: int
 
 
-def box_of(p: Placement) -> Box:
+def box_of(p: Placement) -> Extent:
     """Of a placed part, in the scene; exact where it is not turned by odd angles."""
-    corners = np.array([placed(p, corner) for corner in product(*zip(*part_box(p.part)))])
+    corners = np.array([placed(p, corner) for corner in box_corners(part_box(p.part))])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
@@ -62,7 +61,7 @@ def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> l
     return joints
 
 
-def way_off(first: Placement, second: Placement, boxes: Mapping[str, Box]) -> tuple[int, int]:
+def way_off(first: Placement, second: Placement, boxes: Mapping[str, Extent]) -> tuple[int, int]:
     """Axis and sign along which the second part comes off the first."""
     a, b = boxes[first.designator], boxes[second.designator]
     ways = np.array([a[1] - b[0], b[1] - a[0]])  # to go, up and down, along each axis
@@ -80,13 +79,13 @@ def axis_of(p: Placement) -> int | None:
     return int(np.abs([row[2] for row in p.rotation]).argmax())
 
 
-def _out_of_thread(screw: Placement, its_box: Box, into: Box) -> tuple[int, int] | None:
+def _out_of_thread(screw: Placement, its_box: Extent, into: Extent) -> tuple[int, int] | None:
     """Axis and sign along which a screw leaves what it is screwed into; None where it is no turned part."""
     axis = axis_of(screw)
     return None if axis is None else (axis, 1 if its_box[:, axis].sum() > into[:, axis].sum() else -1)
 
 
-def _inside(a: Box, b: Box, axis: int) -> bool:
+def _inside(a: Extent, b: Extent, axis: int) -> bool:
     """Whether one's section across the axis lies inside the other's."""
     across = [k for k in range(3) if k != axis]
     return any(

@@ -40,7 +40,7 @@ def _wire_cut(part: Part) -> list[str]:
     lines = [
         "The DXF file holds the nominal contour, limits at their middle; wire compensation at the machine"
     ]
-    if part.body.openings:
+    if part.extrusion.openings:
         lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
     if part.material.name in ALLOYS and part.material.density < 3000:  # aluminium
         lines.append("Anti-electrolysis supply")

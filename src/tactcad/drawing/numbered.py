@@ -15,15 +15,16 @@ from tactcad.scenes.scene import Placement, Scene
 
 from . import balloons, family, parts_list
 from .apart import Piece, pieces_of, pulled_apart
+from .boxes import grown
 from .exploded import (
     Exploded,
     alike,
     exploded_page,
     exploded_view,
-    length,
     lengths_alone,
     room,
     seen_of_pieces,
+    total_length,
 )
 from .guide import exploded
 from .ink import Item, Stroke, Text
@@ -42,8 +43,6 @@ GAP_OF_UNITS = 0.2  # and where all of it are sub-assemblies
 SEEN = 0.5  # a part counts as seen where this share of its edges is
 WELL = 0.8  # leaders go to parts that are seen nearly as well as the best one like it
 FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance for what is not seen
-
-Box = tuple[float, float, float, float]
 
 
 def numbered_pages(
@@ -114,7 +113,7 @@ def numbered_pages(
 
 def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
     """Which items of the view have their numbers in one before it."""
-    items = [label for label in view.own if label in where]
+    items = [label for label in view.own if isinstance(label, int) and label in where]
     return [f"Also here: {', '.join(f'{n} (see {where[n]})' for n in items)}"] if items else []
 
 
@@ -133,7 +132,7 @@ def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, T
     for farther in FARTHER:
         moved = pulled_apart(unit.scene, pieces, gap, more)
         seen = seen_of_pieces(moved, shapes, ABOVE)
-        shares = [length(some) / whole for some, whole in zip(seen, alone)]
+        shares = [total_length(some) / whole for some, whole in zip(seen, alone)]
         hidden = [n for n, best in enumerate(_best_of_alike(pieces, shares)) if best < SEEN]
         tried.append((len(hidden), moved, seen, shares))
         if not hidden:
@@ -181,7 +180,8 @@ def _family_pages(
         n: drawing([placed_shape(shapes[p.part.part_no], p.origin, p.rotation)], ABOVE).sharp
         for n, p in sorted(first.items())
     }
-    x0, y0, x1, y1 = (v + m for v, m in zip(room(A3, False), (MARGIN, MARGIN, -MARGIN, -MARGIN - 8.0)))
+    x0, y0, x1, y1 = grown(room(A3, False), -MARGIN)
+    y1 -= 8.0  # for the title
     made = family.pages(own, (x0, y0, x1, y1))
     if not made:
         raise CheckFailure(

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from tactcad.scenes.scene import Placement
 
+from .boxes import Polyline
 from .ink import Item, LineType, Stroke
 from .paper import Paper
-from .windows import Polyline
 
 EDGE = LineType("edge", 0.35)  # visible edges of an assembly: the thinner line group of ISO 128-2
 MARGIN = 5.0  # from the frame to anything

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .ink import FRAME, THIN, Item, Text, box, segment
+from .boxes import Box
+from .ink import FRAME, THIN, Item, Text, rectangle, segment
 
 LEFT, OTHER = 20.0, 10.0  # borders outside the frame: filing margin, and the others
 ZONE = 50.0  # length of a zone, from the centring marks outwards
 MARK = 10.0  # length of the centring marks, outwards from the frame
 GRID = 5.0  # width of the strip that carries the zones' letters
 LETTERS = "ABCDEFGHJKLMNPQRSTUVWXYZ"  # without I and O
-
-Area = tuple[float, float, float, float]  # x_min, y_min, x_max, y_max
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ class Paper:
         return (self.width, self.height)
 
     @property
-    def area(self) -> Area:
+    def area(self) -> Box:
         """Inside of the frame."""
         return (LEFT, OTHER, self.width - OTHER, self.height - OTHER)
 
@@ -48,8 +47,8 @@ def frame(paper: Paper) -> list[Item]:
     x0, y0, x1, y1 = paper.area
     xm, ym = paper.width / 2, paper.height / 2
     items: list[Item] = [
-        box(x0, y0, x1 - x0, y1 - y0, FRAME, "frame"),
-        box(x0 - GRID, y0 - GRID, x1 - x0 + 2 * GRID, y1 - y0 + 2 * GRID, THIN, "frame"),
+        rectangle(x0, y0, x1 - x0, y1 - y0, FRAME, "frame"),
+        rectangle(x0 - GRID, y0 - GRID, x1 - x0 + 2 * GRID, y1 - y0 + 2 * GRID, THIN, "frame"),
     ]
     for a, b in (
         ((xm, y1), (xm, y1 + MARK)),
@@ -58,16 +57,17 @@ def frame(paper: Paper) -> list[Item]:
         ((x1, ym), (x1 + MARK, ym)),
     ):
         items.append(segment(a, b, FRAME, "frame"))
-    for n, (a, b) in enumerate(_zones(x0, x1, xm)):
+    for n, (west, east) in enumerate(_zones(x0, x1, xm)):
         for y in (y1, y0 - GRID):
-            items.append(Text(((a + b) / 2, y + 1.4), str(n + 1), 2.5, "middle", role="frame"))
-            if b < x1:
-                items.append(segment((b, y), (b, y + GRID), THIN, "frame"))
-    for n, (a, b) in enumerate(reversed(_zones(y0, y1, ym))):
+            items.append(Text(((west + east) / 2, y + 1.4), str(n + 1), 2.5, "middle", role="frame"))
+            if east < x1:
+                items.append(segment((east, y), (east, y + GRID), THIN, "frame"))
+    for n, (south, north) in enumerate(reversed(_zones(y0, y1, ym))):
         for x in (x0 - GRID, x1):
-            items.append(Text((x + GRID / 2, (a + b) / 2 - 1.25), LETTERS[n], 2.5, "middle", role="frame"))
-            if a > y0:
-                items.append(segment((x, a), (x + GRID, a), THIN, "frame"))
+            middle = (x + GRID / 2, (south + north) / 2 - 1.25)
+            items.append(Text(middle, LETTERS[n], 2.5, "middle", role="frame"))
+            if south > y0:
+                items.append(segment((x, south), (x + GRID, south), THIN, "frame"))
     items.append(Text((x1, y0 - GRID - 3.7), paper.name, 2.5, "end", role="frame"))
     return items
 
@@ -75,8 +75,7 @@ def frame(paper: Paper) -> list[Item]:
 def _zones(low: float, high: float, middle: float) -> list[tuple[float, float]]:
     """Fields of ZONE length either way from the middle; what is left over joins the outermost."""
     # ISO 5457 counts them on the whole sheet: 8 x 6 on A3, 24 x 16 on A0. It has no turned sheets: there the
-    # filing
-    # margin counts, so that no outermost field is much shorter than the others.
+    # filing margin counts, so that no outermost field is much shorter than the others.
     turned = low == LEFT and 2 * middle == A4.height
     half = int((middle - low) / ZONE + 0.4) if turned else round(middle / ZONE)
     inner = [middle + ZONE * i for i in range(1 - half, round(middle / ZONE))]

@@ -9,7 +9,7 @@ from itertools import cycle
 from tactcad.scenes.bom import BomRow
 
 from .fonts import width
-from .ink import FRAME, THIN, Item, Point, Text, box, segment
+from .ink import FRAME, THIN, Item, Point, Text, rectangle, segment
 from .title import wrapped
 
 HEADS = ("Item", "Qty", "Part number", "Description", "Material or standard")
@@ -104,4 +104,4 @@ def drawn(list_: Laid, rows: range, at: Point) -> tuple[list[Item], float]:
         y -= list_.height(n)
         items.append(segment((x0, y), (xs[-1], y), THIN, "table"))
     items += [segment((x, y), (x, top), THIN, "table") for x in xs[1:-1]]
-    return [*items, box(x0, y, WIDTH, top - y, FRAME, "table")], top - y
+    return [*items, rectangle(x0, y, WIDTH, top - y, FRAME, "table")], top - y

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from .fonts import em, font_file
-from .ink import Arc, Fill, Hatch, Item, LineType, Sheet, Stroke, Text
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, LineType, Stroke, Text
 
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
@@ -21,7 +21,7 @@ FONT = "DejaVuSans"
 EPOCH = "SOURCE_DATE_EPOCH"
 
 
-def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str, date: str) -> bytes:
+def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) -> bytes:
     """The sheets, a page each at the paper's size, dated midnight (UTC) of `date` (YYYY-MM-DD).
 
     Raises CheckFailure where the font is missing.
@@ -50,7 +50,8 @@ def pdf_bytes(sheets: Sequence[Sheet], title: str, author: str, date: str) -> by
 
 @contextmanager
 def _dated(date: str) -> Iterator[None]:
-    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for others."""
+    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for
+    others."""
     given = os.environ.pop(EPOCH, None)
     os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
     try:
@@ -66,7 +67,7 @@ def _draw(canvas: Canvas, item: Item) -> None:
         _write(canvas, item)
         return
     path = canvas.beginPath()
-    if isinstance(item, Arc):
+    if isinstance(item, DrawnArc):
         (x, y), r = item.centre, item.radius
         path.arc(x - r, y - r, x + r, y + r, item.start, item.sweep)
     elif isinstance(item, Hatch):

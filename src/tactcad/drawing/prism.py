@@ -13,19 +13,19 @@ from dataclasses import replace
 from tactcad.contour import Contour, Line
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import Extrusion, Part, Pocket, Vector
+from tactcad.parts.description import Part, Pocket, Vector
 
+from .boxes import Point
 from .broken import breaks_of
-from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline, widest
+from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline
 from .contours import contours
-from .holes import Group, Round, groups, regular_rows, rounds
-from .ink import Point
+from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
-from .measure import Difference, Level, Span, conventions, halfway, in_part, level, size
-from .plan import Datum, Dimension, Linear, Plan, View, seen
+from .measures import Difference, Level, Span, conventions, halfway, level, size
 from .running import depth_running, face_running, filled, running_along
-from .section import section_of, section_view
-from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_box
+from .section_view import section_of, section_view
+from .sheet_plan import Datum, Dimension, Linear, SheetPlan, Side, View, opposite, seen
+from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_of
 
 FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
@@ -33,7 +33,7 @@ BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 
 def prism_plan(
     part: Part, design: Design, notes: Sequence[str], cut: bool = True, shortened: bool = False
-) -> Plan | None:
+) -> SheetPlan | None:
     """The plan of any extruded part.
 
     Parameters
@@ -49,8 +49,7 @@ def prism_plan(
     CheckFailure
         Where a characteristic or a variable of the part stays without dimension.
     """
-    body = part.body
-    assert isinstance(body, Extrusion)
+    body = part.extrusion
     sketch = Sketch(part)
     for name, contour in contours(part):
         for row in conventions(name, contour):
@@ -61,11 +60,11 @@ def prism_plan(
     )
     right = View("", eye, up, (0, 0, 0, 0)).right
     below = _below_eye(holes, up)
-    eyes = {2: eye, 1: below or up, 0: tuple(-r for r in right)}
+    eyes = {2: eye, 1: below or up, 0: opposite(right)}
     called = groups(holes, sketch.values, eyes)
     breaks, rows = None, []
     if shortened:
-        x0, y0, x1, y1 = part.body.outer.box
+        x0, y0, x1, y1 = body.outer.box
         rows = regular_rows(called, 0 if x1 - x0 > y1 - y0 else 1)
         breaks = breaks_of(part, holes, {r.owner for row in rows for r in row[2:-2]})
         if breaks is None:
@@ -83,10 +82,9 @@ def prism_plan(
         side = side_view(sketch, part, front, called if aside else [])
         views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
     if section and (below or section.axis == 1):
-        view = section_view(front, below, section)
-        views.append(replace(view, box=view_box(view, part)))
+        views.append(section_view(part, front, below, section))
     closed(sketch)
-    return Plan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
 
 
 def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
@@ -103,7 +101,7 @@ def _below_eye(holes: Sequence, up: Vector) -> Vector | None:
     lower = sum(1 for r in holes if r.axis[1] > 0)
     if not upper + lower:
         return None
-    return up if upper >= lower else tuple(-u for u in up)
+    return up if upper >= lower else opposite(up)
 
 
 # --- front view ---
@@ -117,8 +115,7 @@ def _front_view(
     called: Sequence[Group],
     rows: Sequence[Sequence[Round]],
 ) -> View:
-    view = View("front", eye, up, (0, 0, 0, 0))
-    view = replace(view, box=view_box(view, part))
+    view = view_of(part, "front", eye, up)
     along_z = [g for g in called if g.axis[2]]
     callouts = [hole_callout(sketch, view, g) for g in along_z]
     callouts += pocket_callouts(sketch, view, part)
@@ -129,29 +126,28 @@ def _front_view(
         for r in g.holes
         for k in (0, 1)
     ]
-    disc = part.body.outer.as_circle()
+    outer = part.extrusion.outer
+    disc = outer.as_circle()
     linears: list[Linear] = []
     if disc:
-        callouts.insert(0, round_outline(sketch, part))
+        callouts.insert(0, round_outline(sketch, *disc))
         linears = _lands(sketch, view, part)
     along = 0 if rows and rows[0][0].at[1] == rows[0][1].at[1] else 1
     repeated = {r.owner.place(along) for row in rows for r in row[1:-1]}
     repeated |= {r.owner.place(1 - along) for row in rows for r in row[:-1]}
     runnings = []
-    for k, side in ((0, "top"), (1, "right")):
-        mine = [
-            c
-            for c in points
-            if c.variable.quantity == PLACES[k] and not _is_centre(c) and c.variable not in repeated
-        ]
-        runnings.append(running_along(sketch, view, side, k, mine, "outer" if disc else None))
+    sides: tuple[Side, Side] = ("top", "right")
+    for k, side in enumerate(sides):
+        own = [c for c in points if c.quantity == PLACES[k] and not _is_centre(c)]
+        new = [c for c in own if c.variable not in repeated]
+        runnings.append(running_along(sketch, view, side, k, new))
     if rows:
         linears += _spaces(sketch, view, rows, along)
     callouts += radius_callouts(sketch, view, part)
-    for k, index in ((0, 0), (1, 1)):
-        rest = [c for c in points if c.variable.quantity == PLACES[k]]
-        runnings[index] = filled(sketch, view, runnings[index], k, rest)
-    datums = () if disc else _datums(view, part.body.outer)
+    for k in (0, 1):
+        rest = [c for c in points if c.quantity == PLACES[k]]
+        runnings[k] = filled(sketch, view, runnings[k], k, rest)
+    datums = () if disc else _datums(view, outer)
     return replace(
         view,
         linears=tuple(linears),
@@ -200,7 +196,7 @@ def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
 
 
 def _is_centre(c: Coordinate) -> bool:
-    return isinstance(c.variable.of, Spot) and c.variable.of.centre
+    return c.variable is not None and isinstance(c.variable.of, Spot) and c.variable.of.centre
 
 
 def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
@@ -227,19 +223,20 @@ def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
 def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
     """Length and width of a rectangular land left standing in the middle of a disc, on its centre lines."""
     linears = []
-    for k, f in enumerate(part.features):
-        for i, island in enumerate(f.island if isinstance(f, Pocket) else ()):
-            if len(island) != 4 or island.as_circle():
-                continue
-            x0, y0, x1, y1 = in_part(f, island).box
-            for axis, low, high, side, p, q in (
-                (0, x0, x1, "top", (x0, y1), (x1, y1)),
-                (1, y0, y1, "right", (x1, y0), (x1, y1)),
-            ):
-                a, b = (edge_level(sketch, Owner("island", k, i), axis, v) for v in (low, high))
-                sketch.convention(Span(halfway(a, b), level(OUTER.place(axis))))
-                d = sketch.stating(f"{f.name.removeprefix('around_')} along {'xy'[axis]}", (Span(a, b),))
-                linears.append(Linear(sketch.must(d), side, seen(view, (*p, 0.0)), seen(view, (*q, 0.0))))
+    for owner, contour in contours(part):
+        if owner.kind != "island" or len(contour) != 4 or contour.as_circle():
+            continue
+        name = part.features[owner.number or 0].name.removeprefix("around_")
+        x0, y0, x1, y1 = contour.box
+        sides: tuple[tuple[Side, Point, Point], ...] = (
+            ("top", (x0, y1), (x1, y1)),
+            ("right", (x1, y0), (x1, y1)),
+        )
+        for k, (side, p, q) in enumerate(sides):
+            a, b = (edge_level(sketch, owner, k, end[k]) for end in (p, q))
+            sketch.convention(Span(halfway(a, b), level(OUTER.place(k))))
+            d = sketch.must(sketch.stating(f"{name} along {'xy'[k]}", (Span(a, b),)))
+            linears.append(Linear(d, side, seen(view, (*p, 0.0)), seen(view, (*q, 0.0))))
     return linears
 
 
@@ -252,19 +249,15 @@ def _sunk_view(
     """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of
     them."""
     sign = 1.0 if name == "below" else -1.0
-    up = tuple(-sign * e for e in front.eye)
-    view = View(name, eye, up, (0, 0, 0, 0))
-    view = replace(view, box=view_box(view, part))
+    up = opposite(front.eye, sign)
+    view = view_of(part, name, eye, up)
     mine = [g for g in called if g.axis[1]]
     callouts = [hole_callout(sketch, view, g) for g in mine]
-    side = "bottom" if name == "below" else "top"
+    side: Side = "bottom" if name == "below" else "top"
     return replace(
         view,
         callouts=tuple(callouts),
-        runnings=(
-            face_running(sketch, view, part, side, 0, mine),
-            depth_running(sketch, view, part, "left", mine),
-        ),
+        runnings=(face_running(sketch, view, side, 0, mine), depth_running(sketch, view, part, "left", mine)),
         centres=tuple((seen(view, r.at), widest(r.hole)) for g in mine for r in g.holes),
         datums=_underside(view, part),
         threads=_threads(view, mine),
@@ -285,8 +278,7 @@ def side_view(
     sketch: Sketch, part: Part, front: View, called: Sequence[Group], thickness: Dimension | None = None
 ) -> View:
     """The view from the left, beside the front view: thickness, and holes of the x faces."""
-    view = View("right", tuple(-r for r in front.right), front.up, (0, 0, 0, 0))
-    view = replace(view, box=view_box(view, part))
+    view = view_of(part, "right", opposite(front.right), front.up)
     mine = [g for g in called if g.axis[0]]
     if mine:
         raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+Scale = tuple[int, int]
+
 # paper : part, the largest first
 SERIES = ((50, 1), (20, 1), (10, 1), (5, 1), (2, 1), (1, 1), (1, 2), (1, 5), (1, 10))
 ASSEMBLIES = (*SERIES, (1, 20), (1, 50), (1, 100))
 
 
-def shown(scale: tuple[int, int]) -> str:
+def shown(scale: Scale) -> str:
     return f"{scale[0]}:{scale[1]}"
 
 
-def factor(scale: tuple[int, int]) -> float:
+def factor(scale: Scale) -> float:
     return scale[0] / scale[1]
 
 
-def largest_fitting(width: float, height: float, room: tuple[float, float]) -> tuple[int, int] | None:
+def largest_fitting(width: float, height: float, room: tuple[float, float]) -> Scale | None:
     """The largest scale for an assembly at which width x height (mm of it) fits the room (mm of paper); None
     where none does."""
     return next(

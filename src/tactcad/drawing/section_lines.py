@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from math import hypot
 
 from .board import AROUND, FORBIDDEN, Board
+from .boxes import Box, Chord, Point
 from .dimension_lines import ABOVE
-from .ink import CENTRE, CUTTING, THIN, VISIBLE, Hatch, Item, Point, Stroke, Text, arrow, segment
-from .plan import Bore, Box, Section
+from .ink import CENTRE, CUTTING, THIN, VISIBLE, Hatch, Item, Stroke, Text, arrow, segment
+from .sheet_plan import Bore, SectionPlane
 
 LETTER = 3.5  # height of the letters: a size above that of the dimensions (ISO 128-3)
 PAST = 2.0  # of an axis beyond its hole
@@ -19,7 +20,7 @@ OUT = (6.5, 6.0, 7.0, 8.0, 9.5, 11.0, 13.0, 17.0)  # from the outline to the arr
 TAILS = (6.0, 7.5, 9.0, 11.0, 13.0, 16.0, 20.0)  # lengths of the arrows
 
 
-def letters(section: Section) -> str:
+def letters(section: SectionPlane) -> str:
     return f"{section.letter}-{section.letter}"
 
 
@@ -45,7 +46,7 @@ def bore_lines(bore: Bore, f: float, face: Hatch) -> list[Item]:
     return items
 
 
-def inside(face: Hatch, a: Point, b: Point) -> list[tuple[Point, Point]]:
+def inside(face: Hatch, a: Point, b: Point) -> list[Chord]:
     """The parts of a straight line that lie in a face."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     shares = {0.0, 1.0}
@@ -66,7 +67,7 @@ def inside(face: Hatch, a: Point, b: Point) -> list[tuple[Point, Point]]:
     return [((a[0] + low * dx, a[1] + low * dy), (a[0] + high * dx, a[1] + high * dy)) for low, high in kept]
 
 
-def mark_plane(board: Board, section: Section, at: float, sight: float, view: Box) -> bool:
+def mark_plane(board: Board, section: SectionPlane, at: float, sight: float, view: Box) -> bool:
     """The cutting plane in the view that it is taken from (its box on the paper), at a coordinate of the
     section's axis: a chain line with thick ends, arrows along that axis in the direction of `sight` (1 or
     -1), a letter at each; False where an end finds no place."""
@@ -77,14 +78,9 @@ def mark_plane(board: Board, section: Section, at: float, sight: float, view: Bo
 
     low, high = view[1 - k], view[3 - k]
     for edge, out in ((high, 1.0), (low, -1.0)):
+        inner = point(at, edge + out * OFF)
         places = [
-            _end(
-                board,
-                section.letter,
-                [point(at, edge + out * OFF), point(at, edge + out * away)],
-                point(sight, 0.0),
-                tail,
-            )
+            _end(board, section.letter, (inner, point(at, edge + out * away)), point(sight, 0.0), tail)
             for away in OUT
             for tail in TAILS
         ]
@@ -97,7 +93,7 @@ def mark_plane(board: Board, section: Section, at: float, sight: float, view: Bo
 
 
 def _end(
-    board: Board, letter: str, thick: Sequence[Point], sight: Point, tail: float
+    board: Board, letter: str, thick: Chord, sight: Point, tail: float
 ) -> tuple[float, Sequence[Item]] | None:
     """One end of the plane's line with an arrow at its outer point, and what it costs; None where it is not
     free."""
@@ -106,9 +102,10 @@ def _end(
     beyond = ABOVE + (LETTER / 2 if uy else 0.0)
     at = (start[0] - beyond * ux, start[1] - beyond * uy - LETTER / 2)
     text = Text(at, letter, LETTER, "middle" if uy else "end" if ux > 0 else "start")
-    costs = [board.passed(stroke) for stroke in (tuple(thick), (start, tip))]
-    if not board.free([text.corners(AROUND)]) or any(cost is None or cost >= FORBIDDEN for cost in costs):
+    tried = [board.passed(chord) for chord in (thick, (start, tip))]
+    costs = [cost for cost in tried if cost is not None and cost < FORBIDDEN]
+    if not board.free([text.corners(AROUND)]) or len(costs) < len(tried):
         return None
-    line = Stroke(tuple(thick), CUTTING, "cutting")
-    items = [line, segment(start, tip, THIN, "cutting"), arrow(tip, start, HEAD, "cutting"), text]
+    line = Stroke(thick, CUTTING, "cutting")
+    items: list[Item] = [line, segment(start, tip, THIN, "cutting"), arrow(tip, start, HEAD, "cutting"), text]
     return tail + hypot(thick[1][0] - thick[0][0], thick[1][1] - thick[0][1]) + sum(costs), items

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import count
+from dataclasses import dataclass, replace
+from itertools import count, product
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
 
-from .keys import Owner, Spot, Variable
-from .measure import Determined, Level, Measure, level, variables
-from .plan import Dimension, View, seen
+from .boxes import bounds
+from .keys import Owner, Quantity, Spot, Variable
+from .measures import Determined, Level, Measure, level, variables
+from .sheet_plan import Dimension, View, seen
 
 ALIKE = 1e-6  # mm: coordinates nearer than this are one
 
@@ -18,13 +19,24 @@ ALIKE = 1e-6  # mm: coordinates nearer than this are one
 @dataclass(frozen=True)
 class Coordinate:
     """A feature's coordinate along one axis of the part, a point of it in the part (x, y, z), and an edge's
-    other end; whether it is a mere corner between edges. None is the coordinate 0."""
+    other end; whether it is a mere corner between edges. None is the coordinate 0. `states` names the part's
+    characteristic that it is."""
 
     name: str
     variable: Variable | None
     at: Vector
     other: Vector | None = None
     corner: bool = False
+    states: str = ""
+
+    @property
+    def contour(self) -> Owner | None:
+        """What it belongs to."""
+        return self.variable.contour if self.variable else None
+
+    @property
+    def quantity(self) -> Quantity | None:
+        return self.variable.quantity if self.variable else None
 
     @property
     def level(self) -> Level:
@@ -86,11 +98,13 @@ def closed(sketch: Sketch) -> None:
         raise CheckFailure(f"drawings: {sketch.part.part_no}: {missing} dimensions are missing")
 
 
-def view_box(view: View, part: Part) -> tuple[float, float, float, float]:
-    x0, y0, x1, y1 = part.body.outer.box
-    points = [seen(view, (x, y, z)) for x in (x0, x1) for y in (y0, y1) for z in (0.0, part.body.thickness)]
-    us, vs = zip(*points)
-    return (min(us), min(vs), max(us), max(vs))
+def view_of(part: Part, name: str, eye: Vector, up: Vector) -> View:
+    """The bare view of a part, as large as the part is."""
+    view = View(name, eye, up, (0.0, 0.0, 0.0, 0.0))
+    body = part.extrusion
+    x0, y0, x1, y1 = body.outer.box
+    corners = product((x0, x1), (y0, y1), (0.0, body.thickness))
+    return replace(view, box=bounds(seen(view, corner) for corner in corners))
 
 
 def edge_level(sketch: Sketch, contour: Owner, k: int, value: float) -> Level:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from html import escape
 
 from .fonts import FAMILY, em
-from .ink import Arc, Fill, Hatch, Item, LineType, Point, Sheet, Text
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, LineType, Point, Text
 
 GREY = "#c9ced4"
 
 
-def svg_bytes(sheet: Sheet) -> bytes:
+def svg_bytes(sheet: DrawnSheet) -> bytes:
     """The sheet as SVG; units of the view box are millimetres."""
     w, h = sheet.size
     lines = [
@@ -32,7 +32,7 @@ def _drawn(item: Item, h: float) -> str:
         return _text(item, h)
     if isinstance(item, Fill):
         return f'<path class="{item.role}" fill="#000000" d="{_polyline(item.points, h)}Z"/>'
-    if isinstance(item, Arc):
+    if isinstance(item, DrawnArc):
         return f'<path class="{item.role}" {_pen(item.line)} d="{_arc(item, h)}"/>'
     if isinstance(item, Hatch):
         lines = "".join(_polyline(chord, h) for chord in item.chords())
@@ -50,7 +50,7 @@ def _polyline(points: tuple[Point, ...], h: float) -> str:
     return "M" + "L".join(f"{x:.3f},{h - y:.3f}" for x, y in points)
 
 
-def _arc(arc: Arc, h: float) -> str:
+def _arc(arc: DrawnArc, h: float) -> str:
     """In two halves: a full circle has no one arc in SVG."""
     stops = [arc.at(arc.start + arc.sweep * share) for share in (0.0, 0.5, 1.0)]
     (x0, y0), *rest = [(x, h - y) for x, y in stops]

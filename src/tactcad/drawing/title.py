@@ -1,4 +1,4 @@
-"""Title block after ISO 7200:2004, 180 mm wide, in the lower right corner, and blocks of notes and tables."""
+"""Title block after ISO 7200:2004, 180 mm wide, in the lower right corner, and numbered notes."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Identity
 
 from .fonts import width
-from .ink import CENTRE, FRAME, THIN, VISIBLE, Arc, Item, Point, Stroke, Text, box, segment
+from .ink import CENTRE, FRAME, THIN, VISIBLE, DrawnArc, Item, Point, Stroke, Text, rectangle, segment
 from .paper import Paper
 
 WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
@@ -27,9 +28,9 @@ class TitleBlock:
     title: str
     supplementary: str  # the design that the sheet belongs to
     creator: str
-    document_type: str
     status: str
-    scale: str
+    document_type: str = ""
+    scale: str = ""
     sheet: int = 1
     sheets: int = 1
     approval: str = ""  # empty: signed by hand
@@ -39,10 +40,24 @@ class TitleBlock:
     language: str = "en"
 
 
+def block_of(identity: Identity, number: str, title: str, draft: bool) -> TitleBlock:
+    """What the title blocks of all sheets of a design have in common."""
+    return TitleBlock(
+        legal_owner=identity.organisation,
+        number=number,
+        revision=identity.revision,
+        date=identity.date,
+        title=title,
+        supplementary=identity.title,
+        creator=identity.author,
+        status="draft" if draft else "for manufacture",
+    )
+
+
 def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
     """The block's lines and texts. Raises CheckFailure where a text does not fit its cell."""
     x0, y0 = paper.area[2] - WIDTH, paper.area[1]
-    items: list[Item] = [box(x0, y0, WIDTH, HEIGHT, FRAME, "table")]
+    items: list[Item] = [rectangle(x0, y0, WIDTH, HEIGHT, FRAME, "table")]
     mass = "" if t.mass is None else f"{t.mass:.3g} g" if t.mass < 1000 else f"{t.mass / 1000:.3g} kg"
     rows = (  # height, cells of width, heading, value
         (
@@ -102,7 +117,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
 
 def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tuple[str, ...]) -> list[Item]:
     items: list[Item] = [
-        box(x, y, w, h, THIN, "table"),
+        rectangle(x, y, w, h, THIN, "table"),
         Text((x + 1.0, y + h - LABEL - 0.9), heading, LABEL, role="table"),
     ]
     lines, size = _fitted((value,) if isinstance(value, str) else value, w - 2.0, h - LABEL - 2.4)
@@ -141,8 +156,8 @@ def _first_angle(at: Point) -> list[Item]:
             True,
         ),
         segment((left - 1.0, y), (right + 1.0, y), CENTRE, "symbol"),
-        Arc((circle, y), small, line=VISIBLE, role="symbol"),
-        Arc((circle, y), large, line=VISIBLE, role="symbol"),
+        DrawnArc((circle, y), small, line=VISIBLE, role="symbol"),
+        DrawnArc((circle, y), large, line=VISIBLE, role="symbol"),
         segment((circle - large - 1.0, y), (circle + large + 1.0, y), CENTRE, "symbol"),
         segment((circle, y - large - 1.0), (circle, y + large + 1.0), CENTRE, "symbol"),
     ]
@@ -181,28 +196,3 @@ def notes(at: Point, lines: Sequence[str], room: float, height: float = 2.5) -> 
             items.append(Text((x + indent, y), piece, height))
         y -= 0.3 * height
     return items, at[1] - y
-
-
-def table(
-    at: Point, heads: Sequence[str], rows: Sequence[Sequence[str]], height: float = 2.5
-) -> tuple[list[Item], float, float]:
-    """A grid of texts from the upper left corner `at`; the items, its width and its height (mm)."""
-    columns = list(zip(heads, *rows))
-    widths = [max(width(cell, height) for cell in column) + 2 * height * 0.6 for column in columns]
-    step = 2.0 * height
-    x0, y0 = at
-    items: list[Item] = []
-    for r, row in enumerate([heads, *rows]):
-        x = x0
-        for w, cell in zip(widths, row):
-            items.append(
-                Text((x + 0.6 * height, y0 - (r + 1) * step + 0.55 * height), cell, height, role="table")
-            )
-            x += w
-    total, down = sum(widths), step * (len(rows) + 1)
-    xs = [x0 + sum(widths[:i]) for i in range(len(widths) + 1)]
-    items += [segment((x, y0), (x, y0 - down), THIN, "table") for x in xs]
-    items += [
-        segment((x0, y0 - step * r), (x0 + total, y0 - step * r), THIN, "table") for r in range(len(rows) + 2)
-    ]
-    return items, total, down

@@ -5,21 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .ink import THIN, Arc, Point, Stroke
-from .plan import Box
-
-Curve = Stroke | Arc
+from .boxes import Box, Chord, Point
+from .ink import THIN, DrawnArc, Stroke
 
 
-def windowed(curves: Sequence[Curve], window: Box) -> list[Curve]:
+def windowed(curves: Sequence[Stroke | DrawnArc], window: Box) -> list[Stroke | DrawnArc]:
     """What of the curves lies in the window, and thin lines where it cuts through the material."""
-    kept: list[Curve] = []
+    kept: list[Stroke | DrawnArc] = []
     ends: list[Point] = []
     for curve in curves:
-        if isinstance(curve, Arc) and all(_inside(p, window) for chord in curve.chords() for p in chord):
+        if isinstance(curve, DrawnArc) and all(_inside(p, window) for chord in curve.chords() for p in chord):
             kept.append(curve)
             continue
-        chords = fine(curve) if isinstance(curve, Arc) else curve.chords()
+        chords = fine(curve) if isinstance(curve, DrawnArc) else curve.chords()
         for chord in chords:
             cut = clipped(chord, window)
             if cut:
@@ -28,16 +26,16 @@ def windowed(curves: Sequence[Curve], window: Box) -> list[Curve]:
     return kept + _breaks(ends, window)
 
 
-def fine(arc: Arc) -> list[tuple[Point, Point]]:
+def fine(arc: DrawnArc) -> list[Chord]:
     """An arc as straight pieces to be clipped."""
     points = [arc.at(arc.start + arc.sweep * i / 64) for i in range(65)]
     return list(zip(points, points[1:]))
 
 
-def _breaks(ends: Sequence[Point], window: Box) -> list[Curve]:
+def _breaks(ends: Sequence[Point], window: Box) -> list[Stroke | DrawnArc]:
     """Break lines between pairs of cut edges on each side of the window, with a zigzag in the middle."""
     x0, y0, x1, y1 = window
-    lines: list[Curve] = []
+    lines: list[Stroke | DrawnArc] = []
     for fixed, k in ((x0, 0), (x1, 0), (y0, 1), (y1, 1)):
         along = sorted({round(p[1 - k], 6) for p in ends if abs(p[k] - fixed) < 1e-9})
         for low, high in zip(along[::2], along[1::2]):
@@ -48,7 +46,7 @@ def _breaks(ends: Sequence[Point], window: Box) -> list[Curve]:
     return lines
 
 
-def clipped(chord: tuple[Point, Point], window: Box) -> tuple[Point, Point] | None:
+def clipped(chord: Chord, window: Box) -> Chord | None:
     """What of a straight piece lies in a box (Liang and Barsky); None where nothing does."""
     (ax, ay), (bx, by) = chord
     dx, dy = bx - ax, by - ay
@@ -70,6 +68,4 @@ def _inside(p: Point, window: Box) -> bool:
 
 
 def _on_edge(p: Point, window: Box) -> bool:
-    return (
-        min(abs(p[0] - window[0]), abs(p[0] - window[2]), abs(p[1] - window[1]), abs(p[1] - window[3])) < 1e-9
-    )
+    return min(abs(p[k % 2] - window[k]) for k in range(4)) < 1e-9

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from tactcad.account import under_way
 
-Polyline = tuple[tuple[float, float], ...]
+from .boxes import Chord, Point, Polyline
+
 Lines = tuple[list[Polyline], list[Polyline]]  # sharp, smooth
 
 PER_WINDOW = 300  # shapes whose middle lies in one strip
@@ -32,7 +33,8 @@ def draw_in_windows(boxes: NDArray[np.float64], draw: Callable[[NDArray[np.intp]
     middles = np.sort((low + high) / 2)
     count = ceil(len(boxes) / PER_WINDOW)
     borders = [np.floor(middles[len(boxes) * k // count] * 1e3) / 1e3 + OFF_GRID for k in range(1, count)]
-    sharp, smooth = [], []
+    sharp: list[Polyline] = []
+    smooth: list[Polyline] = []
     for n, (left, right) in enumerate(zip([-np.inf, *borders], [*borders, np.inf]), start=1):
         if left == right:
             continue
@@ -44,7 +46,7 @@ def draw_in_windows(boxes: NDArray[np.float64], draw: Callable[[NDArray[np.intp]
 
 def clipped(line: Polyline, axis: int, left: float, right: float) -> Iterator[Polyline]:
     """The pieces of a line between two borders, to a micrometre; none that is a point."""
-    piece: list[tuple[float, float]] = []
+    piece: list[Point] = []
     for a, b in zip(line, line[1:]):
         inside = _within(a, b, axis, left, right)
         if inside is None:
@@ -60,17 +62,18 @@ def clipped(line: Polyline, axis: int, left: float, right: float) -> Iterator[Po
         yield tuple(piece)
 
 
-def _within(a, b, axis: int, left: float, right: float):
+def _within(a: Point, b: Point, axis: int, left: float, right: float) -> Chord | None:
     """Both ends of what lies between the borders of the segment from a to b, None where nothing does."""
     p, q = a[axis], b[axis]
     if max(p, q) < left or min(p, q) > right:
         return None
 
-    def moved(c: float) -> tuple[float, float]:
+    def moved(c: float) -> Point:
         limit = min(max(c, left), right)
         if limit == c:
             return a if c == p else b
         share = (limit - p) / (q - p)
-        return tuple(round(u + share * (v - u), 3) + 0.0 for u, v in zip(a, b))
+        x, y = (round(u + share * (v - u), 3) + 0.0 for u, v in zip(a, b))
+        return (x, y)
 
     return moved(p), (b if p == q else moved(q))

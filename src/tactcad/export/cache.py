@@ -1,13 +1,14 @@
 """Bytes by key, kept from run to run; every entry is verified when it is read.
 
 The key names everything that the bytes depend on (see inputs.py), so an entry is never out of date, only
-absent. An entry is one file: a header line with the digest of key and bytes, then the bytes; name and digest are
-keyed with a secret that lies beside the entries and that only its owner reads. What was truncated, altered, made
-without the secret or put under another key is reported, removed and built again.
+absent. An entry is one file: a header line with the digest of key and bytes, then the bytes; name and digest
+are keyed with a secret that lies beside the entries and that only its owner reads. What was truncated,
+altered, made without the secret or put under another key is reported, removed and built again.
 
 The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own nothing
-but regular files that are named as entries is read or removed. The cache is a help, not a need: where it cannot be
-written the work is done without it. An export ends by taking out what was used least recently beyond a bound.
+but regular files that are named as entries is read or removed. The cache is a help, not a need: where it
+cannot be written the work is done without it. An export ends by taking out what was used least recently
+beyond a bound.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ SECRET_NAME, SECRET_BYTES = "secret", 32
 
 
 class Cache:
-    """A folder of entries; `say` gets one line when an entry is damaged, and one when the folder is of no use.
+    """A folder of entries; `say` gets one line when an entry is damaged, and one when the folder is of no
+    use.
 
     Raises InputError where `root` holds anything and is not marked as tactcad's.
     """
@@ -49,7 +51,7 @@ class Cache:
         self, root: Path, say: Callable[[str], None] = lambda text: print(text, file=sys.stderr)
     ) -> None:
         self.root, self.say = root, say
-        self._secret: bytes | None = None  # None: nothing is read or kept
+        self._secret = b""  # empty: nothing is read or kept
         self._trouble: OSError | None = None  # why, to be said at the first use
         self._complained = False
         try:
@@ -61,7 +63,7 @@ class Cache:
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
-        if self._secret is None:
+        if self._trouble:
             self._complain(self._trouble)
             return None
         path = self._path(key)
@@ -81,7 +83,7 @@ class Cache:
 
     def put(self, key: str, data: bytes) -> None:
         """Keep the bytes under the key, whole or not at all."""
-        if self._secret is None:
+        if self._trouble:
             return
         path = self._path(key)
         try:
@@ -111,11 +113,13 @@ class Cache:
         return data
 
     def trim(self, most_bytes: int = MOST_BYTES) -> int:
-        """Take out what was used least recently until `most_bytes` are left, and what killed runs left half written.
+        """Take out what was used least recently until `most_bytes` are left, and what killed runs left half
+        written.
 
-        Returns how many entries went. Another process may read or write meanwhile: what is gone for it is built again.
+        Returns how many entries went. Another process may read or write meanwhile: what is gone for it is
+        built again.
         """
-        if self._secret is None:
+        if self._trouble:
             return 0
         entries = []
         for path in _own_files(self.root):
@@ -196,8 +200,8 @@ def _secret(path: Path) -> bytes:
 
 
 def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file, None where it is something else or larger than the whole cache. Its use is noted:
-    `trim` goes by it."""
+    """The bytes of a regular file, None where it is something else or larger than the whole cache. Its use is
+    noted: `trim` goes by it."""
     with open(path, "rb", opener=_without_waiting) as file:
         state = os.fstat(file.fileno())
         if not stat.S_ISREG(state.st_mode) or state.st_size > MOST_BYTES:

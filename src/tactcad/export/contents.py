@@ -1,9 +1,11 @@
-"""What lies in a folder that tactcad wrote, held against the folder's own manifest.json: ours unchanged, or somebody's.
+"""What lies in a folder that tactcad wrote, held against the folder's own manifest.json: ours unchanged, or
+somebody's.
 
-Every folder that tactcad writes has a manifest.json with `schema`, `files: [{path, sha256, ...}]` and, last, `seal`:
-the SHA-256 of the manifest's text without it, so that an edited manifest is seen too. Ours is a file with its
-listed digest, and a folder that holds one. All else is somebody's: a file that was added or changed, a link in
-a file's place, an empty folder; and what was write-protected, because whoever did that wants it kept.
+Every folder that tactcad writes has a manifest.json with `schema`, `files: [{path, sha256, ...}]` and, last,
+`seal`: the SHA-256 of the manifest's text without it, so that an edited manifest is seen too. Ours is a file
+with its listed digest, and a folder that holds one. All else is somebody's: a file that was added or changed,
+a link in a file's place, an empty folder; and what was write-protected, because whoever did that wants it
+kept.
 """
 
 from __future__ import annotations
@@ -29,9 +31,11 @@ State = tuple[int, ...]  # of one file: mode, inode, size, times; another state 
 
 @dataclass(frozen=True)
 class Contents:
-    """A folder's entries by path: all with their states, the somebody's with what they are (see the words above).
+    """A folder's entries by path: all with their states, the somebody's with what they are (see the words
+    above).
 
-    `record` is the manifest, None where there is none or it is not as we wrote it; `missing` is listed but not there.
+    `record` is the manifest, None where there is none or it is not as we wrote it; `missing` is listed but
+    not there.
     """
 
     states: Mapping[str, State]
@@ -130,7 +134,8 @@ def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
 
 
 def remove(folder: Path, seen: Contents) -> bool:
-    """Remove the folder with what was seen in it; False where something is there that was not, or is another now.
+    """Remove the folder with what was seen in it; False where something is there that was not, or is another
+    now.
 
     What is left when this is cut short is still known for ours: the manifest goes last.
     """

@@ -13,10 +13,8 @@ from .difference import Change, shown
 from .geometry import contour_of
 from .sides import Side, not_compared
 
-OLD, NEW = (
-    "#D55E00",
-    "#0072B2",
-)  # Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+# Okabe and Ito: told apart by colour-blind readers; the old one is dashed as well
+OLD, NEW = "#D55E00", "#0072B2"
 STYLE = f"""
 :root{{color-scheme:light}}
 body{{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}}
@@ -25,8 +23,10 @@ h1{{font-size:26px;margin:0 0 8px}}
 h2{{font-size:20px;margin:40px 0 6px;padding-top:12px;border-top:2px solid {NEW}}}
 h3{{font-size:16px;margin:22px 0 4px}}
 p.note{{color:#4a525b;font-size:14px;margin:4px 0}}
-table{{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;width:100%;table-layout:fixed}}
-th,td{{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:left;vertical-align:top;overflow-wrap:anywhere}}
+table{{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums;\
+width:100%;table-layout:fixed}}
+th,td{{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:left;vertical-align:top;\
+overflow-wrap:anywhere}}
 th{{border-bottom:2px solid #6a737d}}
 col.kind{{width:90px}} col.remark{{width:150px}} col.path{{width:32%}}
 td.old{{color:#8a3d00}} td.new{{color:#00527f}}
@@ -113,8 +113,9 @@ def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
         yield f"<h3>{escape(c.path[1])}</h3>"
         before, after = _contours(c.old or ()), _contours(c.new or ())
         box = _box([*before, *after])
-        yield f'<div class="pair"><figure>{_drawing(before, after, box)}<figcaption>the whole part</figcaption></figure>'
-        if c.at is not None:
+        drawing = _drawing(before, after, box)
+        yield f'<div class="pair"><figure>{drawing}<figcaption>the whole part</figcaption></figure>'
+        if c.at is not None and c.moved is not None:
             half = max(BEYOND * c.moved, LEAST_WINDOW * max(box[2] - box[0], box[3] - box[1]))
             window = (c.at[0] - half, c.at[1] - half * 0.6, c.at[0] + half, c.at[1] + half * 0.6)
             caption = (
@@ -123,7 +124,7 @@ def _overlays(old: Side, new: Side, changes: Sequence[Change]) -> Iterable[str]:
             yield f"<figure>{_drawing(before, after, window)}<figcaption>{caption}</figcaption></figure>"
         yield "</div>"
     for c in alone:
-        before, after = (_contours(part["contours"]) if part else () for part in (c.old, c.new))
+        before, after = (_contours(part["contours"] if part else ()) for part in (c.old, c.new))
         yield f"<h3>{escape(c.path[1])}: {c.kind}</h3>"
         yield f'<div class="pair"><figure>{_drawing(before, after, _box([*before, *after]))}</figure></div>'
 

@@ -1,8 +1,8 @@
 """The cut file of a part that is cut from sheet or plate, written from its contours and read back.
 
-AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities
-follow each contour head to tail; openings come before the outline, as they are cut, since the part drops
-with the last cut. The file holds the nominal contour: wire compensation belongs to the machine.
+AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities follow each
+contour head to tail; openings come before the outline, as they are cut, since the part drops with the last
+cut. The file holds the nominal contour: wire compensation belongs to the machine.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import degrees, dist, isclose
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.description import Part
+from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.section import cut_section
 
 if TYPE_CHECKING:
@@ -57,8 +57,16 @@ class CutFile:
         return self.outer.length + sum(c.length for c in self.openings)
 
 
+def _section(part: Part) -> Extrusion:
+    cut = cut_section(part)
+    if cut is None:
+        raise ValueError(f"{part.part_no} is not cut along a contour")
+    return cut
+
+
 def dxf_bytes(part: Part) -> bytes:
-    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and home."""
+    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and
+    home."""
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing
@@ -68,7 +76,7 @@ def dxf_bytes(part: Part) -> bytes:
         drawing.header["$INSUNITS"] = MILLIMETRES
         drawing.header["$MEASUREMENT"] = METRIC
         drawing.layers.add(LAYER, color=7)
-        cut = cut_section(part)
+        cut = _section(part)
         for contour in (*cut.openings, cut.outer):
             _add(drawing, contour)
         _set_extents(drawing, cut.outer.box)
@@ -125,11 +133,11 @@ def read_dxf(file: str | Path | bytes) -> CutFile:
 
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it says of a damaged file is in our one line
     try:
-        as_text = io.StringIO(file.decode("cp1252")) if isinstance(file, bytes) else None
-        drawing = ezdxf.read(as_text) if as_text else ezdxf.readfile(file)
-    except (
-        Exception
-    ) as error:  # its parser raises whatever a damaged file makes it meet: IndexError, StopIteration, ...
+        if isinstance(file, bytes):
+            drawing = ezdxf.read(io.StringIO(file.decode("cp1252")))
+        else:
+            drawing = ezdxf.readfile(file)
+    except Exception as error:  # its parser raises whatever it meets: IndexError, StopIteration, ...
         raise ValueError(f"not readable as DXF: {error}") from error
     read = [_segment(entity) for entity in drawing.modelspace()]
     others = sum(len(layout) for layout in drawing.layouts if layout.name != "Model")
@@ -152,14 +160,14 @@ def read_dxf(file: str | Path | bytes) -> CutFile:
     )
 
 
-def _segment(entity: DXFEntity) -> tuple[str, Segment]:
+def _segment(entity: Any) -> tuple[str, Segment]:
     """Type and geometry of one entity; a circle is an arc that ends where it starts."""
     kind, data = entity.dxftype(), entity.dxf
     if kind == "LINE":
         return kind, Line((data.start.x, data.start.y), (data.end.x, data.end.y))
     if kind == "ARC":
-        ends = entity.start_point, entity.end_point
-        return kind, Arc(*((p.x, p.y) for p in ends), (data.center.x, data.center.y), ccw=True)
+        first, last, centre = ((p.x, p.y) for p in (entity.start_point, entity.end_point, data.center))
+        return kind, Arc(first, last, centre, ccw=True)
     if kind == "CIRCLE":
         centre, east = (data.center.x, data.center.y), (data.center.x + data.radius, data.center.y)
         return kind, Arc(east, east, centre, ccw=True)
@@ -241,7 +249,7 @@ def check_dxf(written: str | Path | bytes, part: Part) -> list[str]:
     if file.gap > ARC_END_MM:
         wrong.append(f"neighbours are {file.gap:.3g} mm apart")
     wrong += _short_or_double(file)
-    cut = cut_section(part)
+    cut = _section(part)
     return wrong + _differences(file, cut.outer, cut.openings)
 
 

@@ -1,7 +1,7 @@
 """The formats that a part is exported in: one entry of PART_FORMATS each, made by a module of its own.
 
-A maker gets the part, the shapes and the file's header, returns bytes that it has read back and compared with the
-part, and raises CheckFailure where they differ. It imports what it needs when it runs.
+A maker gets the part, the shapes and the file's header, returns bytes that it has read back and compared with
+the part, and raises CheckFailure where they differ. It imports what it needs when it runs.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PartFormat:
-    """`kind` in the manifest, `path` below the export's folder, which parts have such a file, and its maker."""
+    """`kind` in the manifest, `path` below the export's folder, which parts have such a file, and its
+    maker."""
 
     kind: str
     path: str
@@ -29,7 +30,7 @@ class PartFormat:
 
 
 def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from .step import part_step
+    from .step_file import part_step
 
     return part_step(part, shapes.of(part), head)
 

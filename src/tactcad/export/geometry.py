@@ -31,7 +31,10 @@ NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
 def geometry(design: Design) -> Record:
-    """{parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}} of a design that keeps its rules."""
+    """What a design that keeps its rules means.
+
+    {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}
+    """
     scenes = [make_scene(design, name) for name in scene_names(design)]
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
@@ -131,7 +134,8 @@ def _placed(scene: Scene) -> Record:
 
 
 def _elements(design: Design) -> Record:
-    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its range."""
+    """Hinge, stiffness (N/mm) and force at yield (N) of every element by the default rung; None outside its
+    range."""
     layout = Layout(design)
     hinges = hinge_section(layout, layout.elements)
     known = ladder.evaluate(hinges, ladder.DEFAULT_RUNG)
@@ -173,14 +177,16 @@ def _hole(hole: Hole) -> Record:
 def _round_openings(part: Part) -> list[Record]:
     if not isinstance(part.body, Extrusion):
         return []
-    found = []
+    round_ones = []
     for opening in part.body.openings:
         circle = opening.as_circle()
         if circle:
             (x, y), radius = circle
             name = opening.segments[0].name or "opening"
-            found.append({"name": name, "at_mm": (x, y, 0.0), "diameter_mm": 2 * radius, "through": True})
-    return found
+            round_ones.append(
+                {"name": name, "at_mm": (x, y, 0.0), "diameter_mm": 2 * radius, "through": True}
+            )
+    return round_ones
 
 
 def _numbered(features: list[Record]) -> Record:

@@ -29,8 +29,8 @@ def faults(record: Any, schema: str) -> str:
             return f"scene {name}: has other tables than placed and bom"
         if not all(_is_flat(row) for table in scene.values() for row in table.values()):
             return f"scene {name}: a row holds more than plain values"
-    wrong = [name for name, row in record["elements"].items() if not _is_flat(row)]
-    return f"element {wrong[0]}: holds more than plain values" if wrong else ""
+    deep = next((name for name, row in record["elements"].items() if not _is_flat(row)), None)
+    return "" if deep is None else f"element {deep}: holds more than plain values"
 
 
 def _part_fault(part: dict[str, Any]) -> str:
@@ -43,21 +43,15 @@ def _part_fault(part: dict[str, Any]) -> str:
     if not isinstance(contours, list):
         return "it has no contours"
     for rows in contours:
-        if not (
-            isinstance(rows, list)
-            and rows
-            and all(isinstance(r, list) and all(map(_is_number, r)) for r in rows)
-        ):
+        lists = isinstance(rows, list) and rows and all(isinstance(row, list) for row in rows)
+        if not lists or not all(_is_number(value) for row in rows for value in row):
             return "a contour is no list of rows of numbers"
         try:
             contour_of(rows)
         except ValueError as error:
             return f"a contour cannot be read: {error}"
-    return (
-        ""
-        if _is_flat({k: v for k, v in part.items() if k not in (*TABLES, "contours")})
-        else "it holds more than plain values"
-    )
+    rest = {k: v for k, v in part.items() if k not in (*TABLES, "contours")}
+    return "" if _is_flat(rest) else "it holds more than plain values"
 
 
 def _is_table_of(value: Any, kind: type) -> bool:

@@ -1,8 +1,8 @@
 """What an output depends on, as digests that are the same in every process, and why it is rebuilt, in words.
 
-An output depends on values (the design, a part's description), on the source of the rooms that make it,
-and on the libraries they use. All three go into the key: a key of values alone would serve
-stale geometry after a change of the code.
+An output depends on values (the design, a part's description), on the source of the rooms that make it, and
+on the libraries they use. All three go into the key: a key of values alone would serve stale geometry after a
+change of the code.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ def digest(value: object) -> str:
 def _canonical(value: object, known: dict[int, bytes]) -> bytes:
     """Unambiguous encoding: a tag, and lengths before contents.
 
-    `known` holds the digest of every dataclass met, by identity, so that a part placed a
-    thousand times is encoded once.
+    `known` holds the digest of every dataclass met, by identity, so that a part placed a thousand times is
+    encoded once.
     """
     match value:
         case None | bool() | int() | float():
@@ -86,15 +86,22 @@ def _is_source(path: Path) -> bool:
     return path.is_file() and path.suffix != ".pyc" and not path.name.startswith(".")
 
 
+def first_installed(*names: str) -> str:
+    """Of libraries that stand for each other the first that is installed; the first of all where none is."""
+    return next((name for name in names if _version(name) != ABSENT), names[0])
+
+
 def library_versions(names: Iterable[str]) -> dict[str, str]:
     """Installed version of each library, and Python's own; an absent library has the version "(absent)"."""
     versions = {"python": "{}.{}.{}".format(*sys.version_info)}
-    for name in sorted(names):
-        try:
-            versions[name] = metadata.version(name)
-        except metadata.PackageNotFoundError:
-            versions[name] = ABSENT
-    return versions
+    return versions | {name: _version(name) for name in sorted(names)}
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return ABSENT
 
 
 def flattened(value: object, path: str = "") -> dict[str, Any]:
@@ -137,7 +144,7 @@ def inputs_of(design: object, rooms: Iterable[str], libraries: Iterable[str]) ->
     )
 
 
-def inputs_from_json(record: object) -> Inputs | None:
+def inputs_from_json(record: Any) -> Inputs | None:
     """The inputs that an earlier export recorded (`Inputs.as_json`), None where they cannot be understood."""
     try:
         groups = [record["values"], record["sources"], record["libraries"]]
@@ -147,7 +154,8 @@ def inputs_from_json(record: object) -> Inputs | None:
 
 
 def reasons(before: Inputs | None, now: Inputs) -> list[str]:
-    """Why an output made from `before` has to be made again from `now`, a line each; none where nothing changed.
+    """Why an output made from `before` has to be made again from `now`, a line each; none where nothing
+    changed.
 
     Raises nothing: a record that cannot be understood (None) is a reason too.
     """

@@ -1,7 +1,9 @@
-"""The inspection sheet: a CSV file with one row for every dimension of every numbered element, to fill in and send back.
+"""The inspection sheet: a CSV file with one row for every dimension of every numbered element, to fill in and
+send back.
 
-The first line names the columns and every row says which design and revision it belongs to, so that a spreadsheet
-can sort, filter and print it. `measured` and `uncertainty_k2` are left blank; tactcad.lab.inspection_sheet reads it back.
+The first line names the columns and every row says which design and revision it belongs to, so that a
+spreadsheet can sort, filter and print it. `measured` and `uncertainty_k2` are left blank;
+tactcad.lab.inspection_sheet reads it back.
 """
 
 from __future__ import annotations

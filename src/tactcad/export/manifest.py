@@ -26,7 +26,8 @@ KINDS = {f.kind for f in PART_FORMATS} | {
 
 @dataclass(frozen=True)
 class FileRecord:
-    """One file: path below the export's folder with "/", what it is, the part it shows ("" for a whole scene)."""
+    """One file: path below the export's folder with "/", what it is, the part it shows ("" for a whole
+    scene)."""
 
     path: str
     kind: str
@@ -37,11 +38,11 @@ class FileRecord:
 
 @dataclass(frozen=True)
 class PartRecord:
-    """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and
-    `section_area_mm2` are the cut file's; None where there is none.
+    """One part in its own frame. `area_mm2` is the solid's surface; `cut_length_mm` and `section_area_mm2`
+    are the cut file's; None where there is none.
 
-    `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the most that one of the scenes places: an array
-    moves from rig to rig; each scene's own count stands in its bill of materials.
+    `box_mm` is ((x, y, z) least, (x, y, z) largest). `qty` is the most that one of the scenes places: an
+    array moves from rig to rig; each scene's own count stands in its bill of materials.
     """
 
     part_no: str
@@ -74,7 +75,8 @@ def manifest_bytes(manifest: Manifest) -> bytes:
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """The manifest of an export's folder. Raises ValueError where it is absent, damaged, or of another schema."""
+    """The manifest of an export's folder. Raises ValueError where it is absent, damaged, or of another
+    schema."""
     try:
         record = read_json(folder / NAME, MOST_BYTES, "a manifest")
         if record.pop("schema") != SCHEMA:
@@ -126,9 +128,9 @@ def check_manifest(folder: Path) -> list[str]:
     except ValueError as error:
         return [str(error)]
     named = [file.path for file in manifest.files]
-    there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
+    present = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if not p.is_dir()}
     wrong = [f"{path}: listed twice" for path in sorted(set(named)) if named.count(path) > 1]
-    wrong += [f"{path}: not in the manifest" for path in sorted(there - set(named) - {NAME})]
+    wrong += [f"{path}: not in the manifest" for path in sorted(present - set(named) - {NAME})]
     parts = {part.part_no for part in manifest.parts}
     for file in manifest.files:
         wrong += _file_faults(folder, file, parts)

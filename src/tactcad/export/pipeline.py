@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,20 +14,23 @@ from tactcad.design.tree import Design
 from . import manifest as manifests
 from .cache import Cache, default_root
 from .contents import Contents
-from .inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
+from .inputs import Inputs, digest, first_installed, inputs_from_json, inputs_of, reasons
 from .manifest import FileRecord, Manifest, PartRecord
-from .publish import REFUSE, Work, left_unfinished, looked_at, turn
+from .publication import REFUSE, Work, left_unfinished, looked_at, turn
 
 if TYPE_CHECKING:
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Pose, Scene
 
-    from .products import Product
+    from .products import Output
     from .shapes import Shapes
 
 # What an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
-LIBRARIES = ("build123d", "cadquery-ocp", "ezdxf", "numpy")
+# The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
+# is an empty stand-in for the first.
+KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
+LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
 
 
@@ -44,8 +46,8 @@ class Progress(Protocol):
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export did: its folder, how many files it holds, which were made anew, which parts the
-    kernel built, and why (empty where nothing had changed)."""
+    """What an export did: its folder, how many files it holds, which were made anew, which parts the kernel
+    built, and why (empty where nothing had changed)."""
 
     folder: Path
     files: int
@@ -58,8 +60,8 @@ class Exported:
 class ExportOptions:
     """What of a design is exported, and how; beside the design all that an export is made from.
 
-    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`: `full`
-    or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`:
+    `full` or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
     """
 
     scenes: tuple[str, ...]
@@ -71,31 +73,27 @@ class ExportOptions:
 
 
 def export(
-    design: Design,
-    options: ExportOptions,
-    out: str | os.PathLike[str],
-    progress: Progress,
-    others: str = REFUSE,
+    design: Design, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
 ) -> Exported:
-    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files there that
-    tactcad did not write so (publish.py).
+    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files
+    there that tactcad did not write so (publish.py).
 
-    Nothing is written where the folder already holds just this; the rules between fields, which the
-    earlier export kept, are tried only where something has to be made. Raises InputError where the
-    design breaks a rule, or `out` is not ours to replace or cannot be written, CheckFailure where a
-    file does not read back as it should, or where something in `out` had changed meanwhile and was kept.
+    Nothing is written where the folder already holds just this; the rules between fields, which the earlier
+    export kept, are tried only where something has to be made. Raises InputError where the design breaks a
+    rule, or `out` is not ours to replace or cannot be written, CheckFailure where a file does not read back
+    as it should, or where something in `out` had changed meanwhile and was kept.
     """
     inputs = inputs_of(
         {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())
     )
-    there = looked_at(out, manifests.SCHEMA, others)
-    why = _reasons(there, inputs)
+    earlier = looked_at(out, manifests.SCHEMA, others)
+    why = _reasons(earlier, inputs)
     if why:
         _refuse_broken(design)  # before anything appears on the disk
         if options.drawings:
             _refuse_unprintable(design)
     elif not left_unfinished(out):
-        return _unchanged(out, there, progress)
+        return _unchanged(out, earlier, progress)
     cache = Cache(default_root(), progress.line)
     with turn(out, manifests.SCHEMA, others, progress.line) as work:
         why = _reasons(work.earlier, inputs)
@@ -106,8 +104,9 @@ def export(
         return _rebuild(design, options, Path(out), work, cache, inputs, tuple(why), progress)
 
 
-def _unchanged(out: str | os.PathLike[str], there: Contents, progress: Progress) -> Exported:
-    count = len(there.record["files"]) + 1
+def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Exported:
+    assert earlier.record  # or there would have been reasons
+    count = len(earlier.record["files"]) + 1
     progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
     return Exported(Path(out), count, (), (), ())
 
@@ -127,15 +126,15 @@ def _refuse_unprintable(design: Design) -> None:
     )
 
 
-def _reasons(there: Contents, now: Inputs) -> list[str]:
+def _reasons(earlier: Contents, now: Inputs) -> list[str]:
     """Why the export has to be made anew; empty: it need not."""
-    if not there.states or there.record is None and not there.foreign:
-        return ["there is no earlier export"]
-    wrong = [f"{path}: {why}" for path, why in there.foreign.items()]
-    wrong += [f"{path}: missing" for path in there.missing]
+    wrong = [f"{path}: {why}" for path, why in earlier.foreign.items()]
+    wrong += [f"{path}: missing" for path in earlier.missing]
     if wrong:
         return [f"the earlier export was altered: {wrong[0]}"]
-    return reasons(inputs_from_json(there.record.get("inputs")), now)
+    if earlier.record is None:
+        return ["there is no earlier export"]
+    return reasons(inputs_from_json(earlier.record.get("inputs")), now)
 
 
 def _rebuild(
@@ -182,9 +181,10 @@ def _rebuild(
 
 
 def _write_products(
-    folder: Path, products: Sequence[Product], cache: Cache, progress: Progress
+    folder: Path, products: Sequence[Output], cache: Cache, progress: Progress
 ) -> tuple[str, ...]:
-    """Write every product's bytes, from the cache where it has them; returns the paths that were made anew."""
+    """Write every product's bytes, from the cache where it has them; returns the paths that were made
+    anew."""
     made = []
     for n, product in enumerate(products):
         data = cache.get(product.key)
@@ -205,7 +205,7 @@ def _write_products(
     return tuple(made)
 
 
-def _record(folder: Path, product: Product, design: Design) -> FileRecord:
+def _record(folder: Path, product: Output, design: Design) -> FileRecord:
     sha256 = manifests.sha256_of((folder / product.path).read_bytes())
     return FileRecord(product.path, product.kind, product.part_no, design.design.revision, sha256)
 
@@ -239,7 +239,8 @@ def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
     """The inspection sheet to fill in, and the strength summary: tables of the numbered elements."""
     from tactcad.parts.layout import Layout
 
-    from . import inspection, strength
+    from . import inspection
+    from . import strength_table as strength
 
     layout = Layout(design)
     written = []

@@ -17,17 +17,18 @@ from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
+from .contents import sha256_of
 from .formats import PART_FORMATS, PartFormat
 from .inputs import digest
 from .shapes import Shapes, picture_bytes
 from .step_text import Header
 
 if TYPE_CHECKING:
-    from tactcad.drawing.workers import Written
+    from tactcad.drawing.workers import Named, Written
 
 
 @dataclass(frozen=True)
-class Product:
+class Output:
     """One file of an export: path below its folder, kind and part number for the manifest, what it depends
     on, and the function that makes its bytes and has checked them."""
 
@@ -43,25 +44,25 @@ def header(design: Design, name: str, description: str) -> Header:
     return Header(name, description, d.revision, d.date, d.author, d.organisation)
 
 
-def part_products(design: Design, part: Part, shapes: Shapes) -> list[Product]:
+def part_products(design: Design, part: Part, shapes: Shapes) -> list[Output]:
     """A file of every format that the part has one in (formats.py)."""
     head = header(design, part.part_no, part.name)
 
-    def product(form: PartFormat) -> Product:
+    def product(form: PartFormat) -> Output:
         path = form.path.format(part_no=part.part_no, revision=head.revision)
         key = digest((form.kind, shapes.made_by, part, head))
-        return Product(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
+        return Output(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
 
     return [product(form) for form in PART_FORMATS if form.has(part)]
 
 
-def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
     """The assembly as STEP, and its pictures: from above, from below, and opened."""
     name = f"{design.name}-{scene.name}"
     revision = design.design.revision
     head = header(design, name, f"{design.design.title}: {scene.name}")
     products = [
-        Product(
+        Output(
             f"step/{name}_{revision}.step",
             "step-assembly",
             "",
@@ -75,9 +76,10 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
         ("below", "below", scene.placements),
         ("open", "above", opened),
     ):
-        text = f"{design.design.title}: {scene.name}, {'cover taken off' if label == 'open' else 'from ' + label}"
+        seen = "cover taken off" if label == "open" else f"from {label}"
+        text = f"{design.design.title}: {scene.name}, {seen}"
         products.append(
-            Product(
+            Output(
                 f"pictures/{name}-{label}.svg",
                 "picture",
                 "",
@@ -88,7 +90,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
     return products
 
 
-def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product]:
+def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
     """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
     from tactcad.drawing import guide
 
@@ -99,10 +101,10 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
 
     def picture(
         label: str, title: str, placements: Sequence[Placement], marked: Sequence[Placement]
-    ) -> Product:
+    ) -> Output:
         key = digest(("guide picture", shapes.made_by, placements, marked, title, description))
         make = partial(picture_bytes, placements, "above", shapes, title, description, marked)
-        return Product(guide.picture_path(scene, label), "picture", "", key, make)
+        return Output(guide.picture_path(scene, label), "picture", "", key, make)
 
     products = [
         picture("exploded", f"{design.design.title}: {scene.name}, exploded", guide.exploded(scene), ())
@@ -114,98 +116,53 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Product
                 picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming)
             )
     page = guide.page(design, scene)
-    products.append(Product(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
+    products.append(Output(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
     return products
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its
+    order."""
+
+    stem: str
+    part_no: str
+    key: str
+    order: Callable[[], Named]
 
 
 def drawing_products(
     design: Design,
     parts: Sequence[Part],
     shapes: Shapes,
-    products: Sequence[Product],
+    products: Sequence[Output],
     say: Callable[[int, int, str], None],
     draft: bool = False,
-) -> list[Product]:
-    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name.
-
-    The first one that is asked for makes all that the cache has not, side by side.
-    """
+) -> list[Output]:
+    """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
     from tactcad.drawing.fonts import font_file
+    from tactcad.drawing.notes import MadeFrom
+    from tactcad.drawing.part_sheet import Order, written
 
     font_file()  # a missing font is said before anything is made
-    made_here = [part for part in parts if part.process not in ("bought", "reference")]
     sources = {(p.part_no, p.kind): p for p in products}
-    keys = {
-        part.part_no: digest(
-            (
-                "drawing",
-                shapes.made_by,
-                part,
-                [s.key for s in _made_from(part, sources)],
-                design.design,
-                design.tolerance,
-                design.holes,
-                draft,
-            )
-        )
-        for part in made_here
-    }
-    drawn: dict[str, Written] = {}
+    revision, common = design.design.revision, (design.design, design.tolerance, design.holes, draft)
 
-    def drawing(part_no: str) -> Written:
-        if not drawn:
-            missing = [
-                part
-                for part in made_here
-                if any(shapes.cache.get(f"{keys[part.part_no]} {e}") is None for e in ("pdf", "svg"))
-            ]
-            drawn.update(_drawings(design, missing, shapes, sources, say, draft))
-        return drawn[part_no]
+    def order(part: Part, files: Sequence[Output]) -> Order:
+        from tactcad.solids.bytes import to_bytes
 
-    revision = design.design.revision
-    return [
-        Product(
-            f"drawings/{part.part_no}_{revision}.{ending}",
-            "drawing",
-            part.part_no,
-            f"{keys[part.part_no]} {ending}",
-            lambda part_no=part.part_no, ending=ending: getattr(drawing(part_no), ending),
-        )
-        for part in made_here
-        for ending in ("pdf", "svg")
-    ]
+        made_from = [MadeFrom(f.path, sha256_of(shapes.cache.get_or_make(f.key, f.make))) for f in files]
+        return Order(design, part, to_bytes(shapes.of(part)), tuple(made_from), draft)
 
-
-def _made_from(part: Part, sources: Mapping[tuple[str, str], Product]) -> list[Product]:
-    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model, and their blank
-    from the DXF where there is one."""
-    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
-    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
-
-
-def _drawings(
-    design: Design,
-    parts: Sequence[Part],
-    shapes: Shapes,
-    sources: Mapping[tuple[str, str], Product],
-    say: Callable[[int, int, str], None],
-    draft: bool,
-) -> dict[str, Written]:
-    from tactcad.drawing.notes import MadeFrom
-    from tactcad.drawing.sheets import Order, written
-    from tactcad.drawing.workers import all_written
-    from tactcad.solids.bytes import to_bytes
-
-    from .manifest import sha256_of
-
-    orders = []
+    wanted = []
     for part in parts:
-        files = [
-            MadeFrom(s.path, sha256_of(shapes.cache.get_or_make(s.key, s.make)))
-            for s in _made_from(part, sources)
-        ]
-        orders.append(Order(design, part, to_bytes(shapes.of(part)), tuple(files), draft))
-    return {order.part.part_no: done for order, done in zip(orders, all_written(orders, written, say))}
+        if part.process not in ("bought", "reference"):
+            files = _made_from(part, sources)
+            key = digest(("drawing", shapes.made_by, part, [f.key for f in files], *common))
+            wanted.append(
+                _Wanted(f"{part.part_no}_{revision}", part.part_no, key, partial(order, part, files))
+            )
+    return _drawn(wanted, written, shapes, say)
 
 
 def assembly_products(
@@ -214,60 +171,62 @@ def assembly_products(
     shapes: Shapes,
     say: Callable[[int, int, str], None],
     draft: bool = False,
-) -> list[Product]:
-    """An assembly drawing of every scene, as PDF and SVG; the first one that is asked for makes all that the cache has not."""
-    keys = {
-        s.name: digest(("assembly drawing", shapes.made_by, s, design.design, design.tolerance, draft))
-        for s in scenes
-    }
+) -> list[Output]:
+    """An assembly drawing of every scene, as PDF and SVG."""
+    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
+    from tactcad.scenes.bom import bom_rows
+
+    revision, common = design.design.revision, (design.design, design.tolerance, draft)
+
+    def order(scene: Scene) -> AssemblyOrder:
+        from tactcad.solids.bytes import to_bytes
+
+        solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
+        return AssemblyOrder(design, scene, bom_rows(scene, revision, {}), solids, draft)
+
+    wanted = []
+    for scene in scenes:
+        key = digest(("assembly drawing", shapes.made_by, scene, *common))
+        wanted.append(_Wanted(f"{design.name}-{scene.name}_{revision}", "", key, partial(order, scene)))
+    return _drawn(wanted, assembly_written, shapes, say)
+
+
+def _drawn(
+    wanted: Sequence[_Wanted],
+    make: Callable[..., Written],
+    shapes: Shapes,
+    say: Callable[[int, int, str], None],
+) -> list[Output]:
+    """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by
+    side."""
+    from tactcad.drawing.workers import all_written
+
+    endings = ("pdf", "svg")
     drawn: dict[str, Written] = {}
 
-    def drawing(name: str) -> Written:
+    def made(key: str, ending: str) -> bytes:
         if not drawn:
-            missing = [
-                s
-                for s in scenes
-                if any(shapes.cache.get(f"{keys[s.name]} {e}") is None for e in ("pdf", "svg"))
-            ]
-            drawn.update(_assembly_drawings(design, missing, shapes, say, draft))
-        return drawn[name]
+            missing = [w for w in wanted if any(shapes.cache.get(f"{w.key} {e}") is None for e in endings)]
+            drawn.update(zip((w.key for w in missing), all_written([w.order() for w in missing], make, say)))
+        return getattr(drawn[key], ending)
 
     return [
-        Product(
-            f"drawings/{design.name}-{scene.name}_{design.design.revision}.{ending}",
-            "drawing",
-            "",
-            f"{keys[scene.name]} {ending}",
-            lambda name=scene.name, ending=ending: getattr(drawing(name), ending),
-        )
-        for scene in scenes
-        for ending in ("pdf", "svg")
+        Output(f"drawings/{w.stem}.{e}", "drawing", w.part_no, f"{w.key} {e}", partial(made, w.key, e))
+        for w in wanted
+        for e in endings
     ]
 
 
-def _assembly_drawings(
-    design: Design, scenes: Sequence[Scene], shapes: Shapes, say: Callable[[int, int, str], None], draft: bool
-) -> dict[str, Written]:
-    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
-    from tactcad.drawing.workers import all_written
-    from tactcad.scenes.bom import bom_rows
-    from tactcad.solids.bytes import to_bytes
-
-    orders = [
-        AssemblyOrder(
-            design,
-            scene,
-            bom_rows(scene, design.design.revision, {}),
-            {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts},
-            draft,
-        )
-        for scene in scenes
-    ]
-    return {scene.name: done for scene, done in zip(scenes, all_written(orders, assembly_written, say))}
+def _made_from(part: Part, sources: Mapping[tuple[str, str], Output]) -> list[Output]:
+    """The files that a shop makes the part from: wire-cut parts from the DXF alone, others from the model,
+    and their blank from the DXF where there is one."""
+    kinds = ("dxf",) if part.process == "wire-cut" else ("step-part", "dxf")
+    return [sources[part.part_no, kind] for kind in kinds if (part.part_no, kind) in sources]
 
 
 def part_facts(part: Part, shapes: Shapes, cache: Cache) -> dict:
-    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed forms."""
+    """What the kernel measures on a part (mm): surface area, volume, centre, box; compared with the closed
+    forms."""
     key = f"facts {shapes.made_by} {digest(part)}"
     return json.loads(cache.get_or_make(key, lambda: json.dumps(_measured(part, shapes)).encode()))
 
@@ -294,6 +253,6 @@ def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
 
 
 def _scene_step(scene: Scene, shapes: Shapes, head: Header) -> bytes:
-    from .step import scene_step
+    from .step_file import scene_step
 
     return scene_step(scene, {part.part_no: shapes.of(part) for part in scene.parts}, head)

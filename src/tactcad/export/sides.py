@@ -15,7 +15,7 @@ from tactcad.parts.designs import load
 from .difference import Change, differences
 from .dxf import read_dxf
 from .geometry import Record, bill_line, contour_record, geometry
-from .golden import MOST_BYTES, read_golden
+from .golden_file import MOST_BYTES, read_golden
 from .inputs import flattened, inputs_from_json
 from .manifest import NAME, Manifest, check_manifest, read_manifest
 
@@ -59,7 +59,8 @@ class Side:
 
 
 def named(source: str) -> Path:
-    """The file or folder that `source` names. Raises InputError where it is no path, and no design of that name."""
+    """The file or folder that `source` names. Raises InputError where it is no path, and no design of that
+    name."""
     path = Path(source)
     return path if os.path.isdir(path) or path.suffix == ".json" else find(source)
 
@@ -108,7 +109,8 @@ def _export(source: str, folder: Path) -> Side:
 
 
 def _values(fields: dict[str, Any]) -> dict[str, Any]:
-    """A design's fields without the sources of its values, and without what stands at the head of every side."""
+    """A design's fields without the sources of its values, and without what stands at the head of every
+    side."""
     head = ("design.name", "design.revision")
     return {path: v for path, v in fields.items() if not path.startswith("origin.") and path not in head}
 

@@ -1,7 +1,7 @@
 """STEP text (ISO 10303-21) in canonical form: equal content gives equal bytes, in any process.
 
-The kernel numbers instances by a counter of the whole process and orders styles by memory address.
-Here every entity is numbered anew in the order in which a walk from the top meets it.
+The kernel numbers instances by a counter of the whole process and orders styles by memory address. Here every
+entity is numbered anew in the order in which a walk from the top meets it.
 """
 
 from __future__ import annotations

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .elasticity import line_load
-from .mesh import PlaneMesh, merged, swept
-from .plane import parabola
+from .mapped_mesh import PlaneMesh, merged, swept
+from .plane_elements import parabola
 
 Array = NDArray[np.float64]
 

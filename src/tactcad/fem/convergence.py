@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .plane import PlaneSolution, solve_plane
+from .plane_elements import PlaneSolution, solve_plane
 from .shape import ElementShape
-from .solid import SolidSolution, solve_solid
+from .solid_elements import SolidSolution, solve_solid
 
 # Of nine-node elements' energy on this geometry, observed: 4 but for the clamp's corners (tests/fem).
 ORDER = 4.0

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, onenormest
 
 from . import elasticity
-from .mesh import PlaneMesh
-from .plane import end_nodes, fixed_unknowns, parabola, solve_plane
+from .mapped_mesh import PlaneMesh
+from .plane_elements import end_nodes, fixed_unknowns, parabola, solve_plane
 from .shape import ElementShape
 
 Array = NDArray[np.float64]

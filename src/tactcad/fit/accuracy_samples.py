@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data
@@ -37,7 +37,7 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
     solid."""
     rng = np.random.default_rng(seed)
     groups = ladder_data()["range"]["groups"]
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         g = {k: math.exp(rng.uniform(math.log(low), math.log(high))) for k, (low, high) in groups.items()}
         row = _design(g, full_round=rng.random() < FULL_ROUND_SHARE) | {"two_sided": float(len(rows) % 2)}

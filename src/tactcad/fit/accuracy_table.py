@@ -7,6 +7,7 @@ import math
 import os
 import platform
 import time
+from collections.abc import Callable
 from datetime import date
 
 import numpy as np
@@ -14,16 +15,16 @@ import numpy as np
 from tactcad.mechanics import accuracy, validity
 from tactcad.mechanics.accuracy import CANDIDATES, Candidate
 from tactcad.mechanics.plane import compliance_by
-from tactcad.mechanics.register import REGISTER, Rung
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.register import REGISTER
+from tactcad.mechanics.section import Array, HingeSection
 
 from .accuracy_samples import SECONDS, SEED, with_width_factor
 from .corner_samples import DRAWS
 from .fit_samples import Columns, joined, section
 
 # Promised is this much over the worst that was measured: a fresh design can always be somewhat worse, and the
-# more so the fewer were measured. The closed forms are fitted to least eighth powers, corners included, so that
-# many designs stand near the worst: those held out err by no more (data/ladder.json).
+# more so the fewer were measured. The closed forms are fitted to least eighth powers, corners included, so
+# that many designs stand near the worst.
 MARGIN, MARGIN_OF_FEW, FEW = 1.4, 3.0, 60
 # Under l/t = 1 the hinge is shorter than thick and its two roots are one; from 2 they are apart. A leaf much
 # longer than wide curls over all of its width.
@@ -44,8 +45,8 @@ Errors = dict[str, np.ndarray]
 
 
 def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) -> dict:
-    """The contents of data/accuracy.json from the samples (as fit_samples.FILES names them), for the constants
-    and the range in `ladder_data` (data/ladder.json)."""
+    """The contents of data/accuracy.json from the samples (as fit_samples.FILES names them), for the
+    constants and the range in `ladder_data` (data/ladder.json)."""
     clock = closed_form_seconds(ladder_data)
     columns = joined(list((samples | {"range": with_width_factor(samples["range"])}).values()))
     errors = candidate_errors(columns, ladder_data)
@@ -105,15 +106,16 @@ def closed_form_seconds(ladder_data: dict, repeats: int = 7) -> dict[str, tuple[
     many = section(draw_box(200, seed=0)).rows(np.arange(TIMED) % 200)
     one = many.rows(0)
     found = {}
-    for rung in (rung for rung in REGISTER if rung.compliance):
-        call, table = (min(_seconds(rung, s, ladder_data) for _ in range(repeats)) for s in (one, many))
-        found[rung.name] = (call, table / TIMED)
-    return {rung: tuple(float(f"{x:.2g}") for x in pair) for rung, pair in found.items()}
+    for rung in REGISTER:
+        if form := rung.compliance:
+            call, table = (min(_seconds(form, s, ladder_data) for _ in range(repeats)) for s in (one, many))
+            found[rung.name] = (call, table / TIMED)
+    return {rung: (float(f"{alone:.2g}"), float(f"{each:.2g}")) for rung, (alone, each) in found.items()}
 
 
-def _seconds(rung: Rung, s: HingeSection, ladder_data: dict) -> float:
+def _seconds(form: Callable[[HingeSection, dict], Array], s: HingeSection, ladder_data: dict) -> float:
     start = time.perf_counter()
-    rung.compliance(s, ladder_data)
+    form(s, ladder_data)
     return time.perf_counter() - start
 
 

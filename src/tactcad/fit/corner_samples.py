@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mesh import plane_mesh, swept
+from tactcad.fem.mapped_mesh import plane_mesh, swept
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data
@@ -21,18 +21,18 @@ from tactcad.mechanics.section import HingeSection
 from .accuracy_samples import LONGEST_BODY, THICKNESS
 from .fit_samples import Columns, as_written, joined, section
 
-# Draws of each sample: how many, how many of the first are solved with solid elements whatever they cost, the seed.
+# Draws of each sample: how many, how many of the first are solved by solids whatever they cost, the seed.
 DRAWS = {"corners": ((240, 60, 271828), (100, 0, 141421)), "corners held out": ((80, 0, 577215),)}
-# Share of the parameters that stand at the low and at the high end of what they may be. Of the slot's lengths
-# fewer do: the longest cost the most elements, the shortest the finest. Widths are mostly least: there the sheet
-# is neither in plane stress nor in plane strain.
+# Share of the parameters that stand at the low and at the high end of what they may be. Of the slot's
+# lengths fewer do: the longest cost the most elements, the shortest the finest. Widths are mostly least:
+# there the sheet is neither in plane stress nor in plane strain.
 ENDS, SLOT_ENDS, WIDTH_ENDS = (0.25, 0.25), (0.1, 0.1), (0.5, 0.1)
 INWARD = 1e-6  # relative: a written corner is still inside
 FEW = 150  # elements of the coarsest solid mesh: some seconds a design
 
 
 def draw_corners(count: int, seed: int) -> Columns:
-    """Up to `count` designs (mm), half of them two-sided, at corners, on edges and inside of rung solid's range:
+    """Up to `count` designs (mm), half of them two-sided, in corners, on edges and inside of solid's range:
     so many are drawn from the groups' intervals, and those kept that no other rule refuses."""
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float]] = []
@@ -131,6 +131,6 @@ def plane_stiffness(s: HingeSection) -> float:
 
 
 def solid_stiffness(s: HingeSection) -> float:
-    """One design (scalars) by refined solid elements, of unit modulus; a hinge shorter than thick by finer ones."""
+    """One design (scalars) by refined solid elements, of unit modulus; short hinges by finer ones."""
     mesh = 3 if float(s.hinge_length) < float(s.hinge_thickness) else 2
     return converged_solid(reference_shape(s), 1.0, float(s.poisson), float(s.width), mesh=mesh).stiffness

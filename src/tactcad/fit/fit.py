@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Callable
 from datetime import date
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,20 +55,19 @@ START = {
 }
 
 
-# Constants that may not be negative, so that what mechanics says of every design holds for the forms, whatever
-# the samples (plane.py, solid.py).
+# Constants that may not be negative, so that what mechanics says of every design holds for the forms,
+# whatever the samples (plane.py, solid.py).
 NOT_NEGATIVE = {"f0", "f1", "c", "e"} | set(START["width"]["two"]) - {"a"}
 
 
 def fit(samples: dict[str, Columns], today: date) -> dict:
-    """Constants, range and report as data/ladder.json holds them, from the samples as fit_samples.FILES names them.
+    """Constants, range and report as data/ladder.json holds them, from the samples of fit_samples.FILES.
 
-    Stiffness is fitted on "fitted", "range" and "corners", strains on "fitted", which also says what the range is.
+    Stiffness is fitted on "fitted", "range" and "corners", strains on "fitted", which also says what the
+    range is.
     """
-    fitted, over_the_range = (
-        samples["fitted"],
-        joined([with_width_factor(samples["range"]), samples["corners"]]),
-    )
+    fitted = samples["fitted"]
+    over_the_range = joined([with_width_factor(samples["range"]), samples["corners"]])
     constants: dict[str, dict[str, Constants]] = {group: {} for group in START}
     for side, flag in SIDES.items():
         rows, others = (_rows(c, c["two_sided"] == flag) for c in (fitted, over_the_range))
@@ -120,7 +120,7 @@ def sampled_range(samples: Columns) -> dict[str, list[float]]:
 
 
 def sampled_least(samples: Columns) -> dict[str, float]:
-    """Least value over the samples of each group that is bounded on that side alone, to three digits, downwards."""
+    """Least value over the samples of each group that is bounded on that side alone, a little less."""
     s = section(samples)
     return {
         name: float(f"{value(s).min() * (1.0 - 5e-3):.3g}") for name, (_, value, _) in validity.LEAST.items()
@@ -153,9 +153,15 @@ def _fit_factor(rows: Columns, factor: Callable, column: str, start: Constants) 
     return _search(lambda k: factor(s, k) / rows[column] - 1.0, start, _weights(rows), worst_case=False)
 
 
+def _mean_root(s: HingeSection, root: Constants) -> Array:
+    """Mean length (in thicknesses) that the leaf's two roots add."""
+    to_arm, to_body = plane.root_lengths(s, root)
+    return (to_arm + to_body) / 2.0
+
+
 def _fit_grid(rows: Columns, root: Constants, side: str) -> Constants:
     cases = _grid_cases(rows, side)
-    lengths = {grid: sum(plane.root_lengths(section(r), root)) / 2.0 for grid, r in cases.items()}
+    lengths = {grid: _mean_root(section(r), root) for grid, r in cases.items()}
     form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
 
     def error(k: Constants) -> Array:
@@ -285,12 +291,7 @@ def _strain_errors(data: dict, rows: Columns, side: str) -> dict[str, Array]:
     found["mean strain under a grid"] = np.concatenate(
         [np.empty(0)]
         + [
-            form(
-                section(r),
-                grid * r["hinge_length"],
-                data["grid"][side],
-                sum(plane.root_lengths(section(r), root)) / 2.0,
-            )
+            form(section(r), grid * r["hinge_length"], data["grid"][side], _mean_root(section(r), root))
             / r[f"grid_{grid:g}"]
             - 1.0
             for grid, r in _grid_cases(rows, side).items()
@@ -319,7 +320,7 @@ def _rows(columns: Columns, mask: NDArray[np.bool_]) -> Columns:
     return {k: v[mask] for k, v in columns.items()}
 
 
-def _rounded(data):
+def _rounded(data: Any) -> Any:
     """Constants to six digits: far below what the samples determine."""
     return {k: _rounded(v) for k, v in data.items()} if isinstance(data, dict) else _digits(data, 6)
 

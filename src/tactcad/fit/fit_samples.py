@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from tactcad.design.files import read_text, write_whole
 from tactcad.design.messages import InputError
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.plane import solve_plane
+from tactcad.fem.face_strain import face_strain
+from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
-from tactcad.fem.surface import face_strain
 from tactcad.mechanics.section import HingeSection
 
 MOST_BYTES = 20_000_000  # the shipped samples take a quarter of one
@@ -72,7 +72,7 @@ GRIDS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0)  # gauge grid lengths sampled, in slot 
 def draw(count: int, seed: int) -> Columns:
     """`count` designs, half of them two-sided, as columns (mm); E is 1 MPa."""
     rng = np.random.default_rng(seed)
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         wide = rng.random() < WIDE_SHARE
         row = {
@@ -89,7 +89,7 @@ def draw(count: int, seed: int) -> Columns:
 def draw_box(count: int, seed: int) -> Columns:
     """Designs of the promised box alone, uniform, for checks."""
     rng = np.random.default_rng(seed)
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         row = {k: rng.uniform(*v) for k, v in BOX.items()} | {"two_sided": float(len(rows) % 2)}
         if _possible(row):
@@ -100,7 +100,7 @@ def draw_box(count: int, seed: int) -> Columns:
 def draw_edges(count: int, seed: int) -> Columns:
     """Designs on the promised box's edges and corners: each parameter at an end of its range, or inside."""
     rng = np.random.default_rng(seed)
-    rows = []
+    rows: list[dict[str, float]] = []
     while len(rows) < count:
         row = {
             k: v[rng.integers(2)] if rng.random() < EDGE_SHARE else rng.uniform(*v) for k, v in BOX.items()
@@ -199,7 +199,7 @@ def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Col
     Missing results are NaN. `report` gets a line of progress now and then.
     """
     s, count = section(columns), len(columns["two_sided"])
-    rows = []
+    rows: list[dict[str, float]] = []
     for i in range(count):
         one = s.rows(i)
         rows.append(plane_results(one) | (solid_results(one) if i < solids else {}))
@@ -222,7 +222,9 @@ def write(columns: Columns, path: Path) -> None:
 def load(path: Path | Traversable) -> Columns:
     """The columns that `write` wrote. Raises InputError where the file is something else."""
     rows = list(
-        csv.DictReader(read_text(path, MOST_BYTES, "samples that `tactcad fit` wrote (CSV)").splitlines())
+        csv.DictReader(
+            read_text(str(path), MOST_BYTES, "samples that `tactcad fit` wrote (CSV)").splitlines()
+        )
     )
     try:
         return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}

@@ -99,7 +99,7 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
     try:
         gauge = strain.gauge(s, 1.0, grid, rung)
     except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
-        gauge = np.nan
+        gauge = np.array(np.nan)
     if rung in ladder.FITTED:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
@@ -116,24 +116,24 @@ def _by_elements(
     mesh: int | None,
 ) -> tuple[Array, _PerNewton]:
     """Finite elements on each distinct contour, cut at clamp edge and load line."""
-    from tactcad.fem import ladder as elements
+    from tactcad.fem import one_element as elements
     from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
 
     solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
-    results = []
+    found = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
-            contour = element(layout, place).body.outer
+            contour = element(layout, place).extrusion.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
             one = section.rows(i)
-            found = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
+            own = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
             # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
-            plane = found if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
-            solved[key] = found, plane
-        results.append(solved[key])
-    results, planes = zip(*results)
+            plane = own if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
+            solved[key] = own, plane
+        found.append(solved[key])
+    results, planes = zip(*found)
     E = section.youngs_modulus
     stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
     return np.array([r.stiffness for r in results]), _PerNewton(
@@ -150,7 +150,10 @@ def _estimates(
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
-        at = lambda value: float(value) * force if elastic and np.isfinite(value) else None  # noqa: E731
+
+        def at(value: float, elastic: bool = elastic) -> float | None:
+            return float(value) * force if elastic and np.isfinite(value) else None
+
         stress = float(per_newton.fillet_stress[i])
         rows.append(
             ElementEstimate(
@@ -167,7 +170,7 @@ def _estimates(
                 elastic=elastic,
                 yield_factor_fillet=yield_force / force,
                 yield_factor_face=face_yield / force,
-                goodman_factor=strength.goodman(alloy, stress * force) if elastic else None,
+                goodman_factor=float(strength.goodman(alloy, np.array(stress * force))) if elastic else None,
                 yield_force=yield_force,
                 yield_deflection=yield_force / float(K[i]),
                 rated_force=min(force, yield_force / rating.yield_factor),
@@ -195,11 +198,12 @@ def compare_uncut(layout: Layout) -> UncutComparison:
 
     place = min(layout.elements, key=lambda p: p.arm)
     d, part = layout.design, element(layout, place)
-    shape = cut_element(part.body.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
-    material = d.material.youngs_modulus, d.material.poisson, d.sheet.thickness
+    shape = cut_element(part.extrusion.outer, layout.clamp_edge, place.hinge_x - place.load_arm)
+    alloy = design_alloy(d)
+    material = alloy.youngs_modulus, alloy.poisson, d.sheet.thickness
     compliance = uncut_compliance(
-        part.body.outer,
-        part.body.openings,
+        part.extrusion.outer,
+        part.extrusion.openings,
         shape,
         (layout.clamp_edge, *layout.spacer_z),
         (layout.pad_inner, layout.pad_outer, -d.element.pad_height),

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tactcad.design.present import present
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
@@ -102,5 +103,6 @@ def _intervals(
         value = getattr(made, name)
         found[name] = None if value is None or half != half else (value - half, value + half)
     safety = layout.design.rating.yield_factor
-    found["rated_force"] = tuple(min(made.force, end / safety) for end in found["yield_force"])
+    low, high = present(found["yield_force"])
+    found["rated_force"] = (min(made.force, low / safety), min(made.force, high / safety))
     return found

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .as_made import AsMade
@@ -54,11 +55,14 @@ def _cells(row: AsMade) -> list[str]:
         str(row.number),
         f"{made.arm:.3g}",
         "blank" if t.measured is None else f"{t.measured:g}",
-        *(f"{value:.4g}" for value in (made.stiffness, *intervals["stiffness"], nominal.stiffness)),
+        *(f"{value:.4g}" for value in (made.stiffness, *present(intervals["stiffness"]), nominal.stiffness)),
         f"{made.stiffness / nominal.stiffness - 1:+.1%}".removesuffix("%"),
         micro(made.gauge_strain),
         micro(nominal.gauge_strain),
-        *(f"{value:.3g}" for value in (made.rated_force, *intervals["rated_force"], nominal.rated_force)),
+        *(
+            f"{value:.3g}"
+            for value in (made.rated_force, *present(intervals["rated_force"]), nominal.rated_force)
+        ),
     ]
 
 

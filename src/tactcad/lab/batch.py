@@ -73,11 +73,12 @@ def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
     choices = choose_each(section, accuracy)
     refused = [c if isinstance(c, str) else "" for c in choices]
     answers = [Answer(math.nan, "", None, math.nan, why) for why in refused]
-    for candidate in {c.candidate for c in choices if not isinstance(c, str)}:
-        index = [i for i, c in enumerate(choices) if not isinstance(c, str) and c.candidate == candidate]
+    chosen = {i: c for i, c in enumerate(choices) if not isinstance(c, str)}
+    for candidate in {c.candidate for c in chosen.values()}:
+        index = [i for i, c in chosen.items() if c.candidate == candidate]
         stiffness, reasons = estimate_rows(section.rows(index), candidate.rung, candidate.mesh)
         for i, K, why in zip(index, stiffness, reasons):
-            answers[i] = Answer(K, candidate.rung, candidate.mesh, choices[i].expected_error, why)
+            answers[i] = Answer(K, candidate.rung, candidate.mesh, chosen[i].expected_error, why)
     return answers
 
 
@@ -88,7 +89,7 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()
     from tactcad.fem.convergence import SOLID_MESH
-    from tactcad.fem.ladder import stiffness
+    from tactcad.fem.one_element import stiffness
 
     values, reasons = [], []
     for i in range(section.hinge_thickness.size):

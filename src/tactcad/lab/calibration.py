@@ -5,21 +5,24 @@ K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, a
 removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
 as the paper did, puts the force's noise on both axes; that estimate is given beside it.
 
-Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run to run
-(Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load cell is known
-within limits: the interval holds for every cell within them. Readings before contact are found and left out.
+Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run
+to run (Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load
+cell is known within limits: the interval holds for every cell within them. Readings before contact are found
+and left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf, isinf
+from math import inf
 
 import numpy as np
 
 from tactcad.design.messages import InputError
+from tactcad.lab import noise
 from tactcad.lab.contact import first_in_contact
+from tactcad.lab.load_cell import LoadCell, series_removed
 from tactcad.lab.readings import CalibrationReadings, groups
 from tactcad.lab.regression import (
     KNOWN,
@@ -32,56 +35,12 @@ from tactcad.lab.regression import (
     spare_steps,
     steps,
     t_quantile,
-    variance_weights,
 )
 
 FALSE_ALARM = 0.01  # chance of naming any outlier in a file without one
-# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing of it.
-# Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
+# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing
+# of it. Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
-# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen, after one
-# measurement with weights and a micrometer.
-CELL_ACCURACY = 0.02
-
-
-@dataclass(frozen=True)
-class LoadCell:
-    """The force sensor's own stiffness and the limits within which it lies, N/mm: stiffness +- half_width."""
-
-    stiffness: float
-    half_width: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not self.stiffness > 0:
-            raise InputError(
-                "load cell", "stiffness must be positive", value=self.stiffness, legal="above 0 N/mm, or inf"
-            )
-        if not 0 <= self.half_width < self.stiffness:
-            legal = f"from 0 to below {self.stiffness:g} N/mm"
-            raise InputError(
-                "load cell", "its limits must leave it a stiffness", value=self.half_width, legal=legal
-            )
-
-    @classmethod
-    def parse(cls, text: str) -> LoadCell:
-        """From "57.04", "57.04+-1", "57.04+-2%" or "inf". Without limits `CELL_ACCURACY` is assumed."""
-        value, _, limits = text.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
-        try:
-            stiffness = float(value)
-            half = float(limits.removesuffix("%")) if limits else 100 * CELL_ACCURACY
-        except ValueError:
-            legal = "a stiffness in N/mm with its limits, as in 57.04+-1 or 57.04+-2%, or inf"
-            raise InputError("load cell", "not a stiffness", value=text, legal=legal) from None
-        if isinf(stiffness):
-            return cls(stiffness)
-        return cls(stiffness, half if limits and not limits.endswith("%") else half * stiffness / 100)
-
-    @property
-    def ends(self) -> tuple[float, float]:
-        """Softest and stiffest, N/mm."""
-        if isinf(self.stiffness):
-            return self.stiffness, self.stiffness
-        return self.stiffness - self.half_width, self.stiffness + self.half_width
 
 
 @dataclass(frozen=True)
@@ -147,8 +106,8 @@ def calibrate(
     level : float
         Of every interval.
     run_scatter : float, optional
-        Relative standard deviation of an element's slope from run to run, where it is known. Without it the runs
-        of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
+        Relative standard deviation of an element's slope from run to run, where it is known. Without it the
+        runs of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
     tell
         Hears of every element before it is fitted.
 
@@ -160,60 +119,79 @@ def calibrate(
     require_level(level)
     if run_scatter is not None and not 0 <= run_scatter < 1:
         raise InputError("run scatter", "out of range", value=run_scatter, legal="from 0 to below 1")
-    rows, parts = [], groups(readings.element)
-    alarm = FALSE_ALARM / (2 * len(parts))  # force and signal of every element have their chance
+    parts = groups(readings.element)
+    ready: list[_InContact] = []
     for number, here in parts:
-        tell(len(rows), len(parts), f"element {number}")
-        rows.append(_element(readings, number, here, load_cell, level, drop_outliers, run_scatter, alarm))
-    return rows
+        tell(len(ready), len(parts), f"element {number}")
+        ready.append(_in_contact(readings, number, here))
+    by_force, by_signal = (
+        noise.weights([noise.Readings(e.x, e.travel, e.y[:, k], e.run) for e in ready]) for k in (0, 1)
+    )
+    alarm = FALSE_ALARM / (2 * len(parts))  # force and signal of every element have their chance
+    return [
+        _element(e, (w_force, w_signal), load_cell, level, drop_outliers, run_scatter, alarm)
+        for e, w_force, w_signal in zip(ready, by_force, by_signal)
+    ]
 
 
-def series_removed(slope: float, load_cell: float) -> float:
-    """Stiffness of the element behind a load cell: k K_c/(K_c - k), N/mm; inf where k reaches K_c."""
-    if isinf(load_cell):
-        return slope
-    return slope * load_cell / (load_cell - slope) if slope < load_cell else inf
+@dataclass(frozen=True)
+class _InContact:
+    """An element's readings in contact, and what has been noted so far."""
+
+    number: int
+    where: str
+    x: np.ndarray  # mm
+    travel: np.ndarray  # from the element's smallest displacement, mm
+    y: np.ndarray  # force N, signal V
+    run: np.ndarray
+    line: np.ndarray  # in the file
+    notes: tuple[str, ...]
+
+
+def _in_contact(all_: CalibrationReadings, number: int, here: np.ndarray) -> _InContact:
+    notes: list[str] = []
+    where = f"{all_.path}: element {number}"
+    start = all_.displacement[here].min()
+    here = _touching(all_, here, notes)
+    x, run = all_.displacement[here], all_.run[here]
+    y = np.column_stack([all_.force[here], all_.signal[here]])
+    _require_line(where, x, run)
+    return _InContact(number, where, x, x - start, y, run, all_.line[here], tuple(notes))
 
 
 def _element(
-    all_: CalibrationReadings,
-    number: int,
-    here: np.ndarray,
+    e: _InContact,
+    weight: tuple[np.ndarray, np.ndarray],
     load_cell: LoadCell,
     level: float,
     drop: bool,
     run_scatter: float | None,
     alarm: float,
 ) -> ElementCalibration:
-    notes: list[str] = []
-    where = f"{all_.path}: element {number}"
-    here = _touching(all_, here, notes)
-    x, run = all_.displacement[here], all_.run[here]
-    y = np.column_stack([all_.force[here], all_.signal[here]])
-    _require_line(where, x, run)
-    bad = [extreme_deviates(x, y[:, k], run, alarm) for k in (0, 1)]
+    notes = list(e.notes)
+    x, y, run, by_force = e.x, e.y, e.run, weight[0]
+    bad = [extreme_deviates(x, y[:, k], run, weight[k], alarm) for k in (0, 1)]
     outliers = tuple(
-        Outlier(number, int(run[i]), float(x[i]), name, int(all_.line[here[i]]))
+        Outlier(e.number, int(run[i]), float(x[i]), name, int(e.line[i]))
         for name, strange in zip(("force", "signal"), bad)
         for i in strange
     )
     if drop and outliers:
         keep = np.setdiff1d(np.arange(len(x)), np.union1d(*bad).astype(int))
-        x, run, y = x[keep], run[keep], y[keep]
-        _require_line(where, x, run)
-    lines = fit_lines(x, y, run)
-    lines = fit_lines(x, y, run, variance_weights(lines, x, 0))
+        x, run, y, by_force = x[keep], run[keep], y[keep], by_force[keep]
+        _require_line(e.where, x, run)
+    lines = fit_lines(x, y, run, by_force)
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
-    _require_spring(where, x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
+    _require_spring(e.where, x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
     stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
     per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
     averaged = _averaged(x, y, run)
     cell = load_cell.stiffness
     paper = _as_paper(*averaged, cell, level, notes)
     return ElementCalibration(
-        number,
+        e.number,
         len(x),
         len(set(run.tolist())),
         stiffness,
@@ -238,8 +216,8 @@ def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> 
     kept = here[steps(x) >= first]
     if left_out > 1:
         notes.append(
-            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above the line "
-            "of the others; they are left out"
+            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above "
+            "the line of the others; they are left out"
         )
     if not left_out:
         notes.append(
@@ -298,22 +276,22 @@ def _require_spring(
     if k - half_width >= load_cell.ends[1]:
         raise InputError(
             where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: another "
-            "unit "
-            "of displacement or force, or another load cell",
+            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: "
+            "another unit of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )
 
 
 def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
-    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that takes it
-    furthest.
+    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that
+    takes it furthest.
     """
     low, high = k - t * se, k + t * se
     softest, stiffest = load_cell.ends
     if low <= 0:
         notes.append(
-            "the force does not rise with displacement beyond noise: the data do not tell the stiffness from zero"
+            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
+            "from zero"
         )
     if high >= softest:
         notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")

@@ -11,7 +11,8 @@ from tactcad.design.csv_table import LARGEST_FILE, Field, refuse_duplicates
 from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab.calibration import ElementCalibration, Estimate, LoadCell
+from tactcad.lab.calibration import ElementCalibration, Estimate
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.plain import plain
 from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity
@@ -75,8 +76,9 @@ def to_text(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -
         "",
         f"load cell in series: {load_cell.stiffness:g} N/mm, and the intervals hold for every one from "
         f"{load_cell.ends[0]:.4g} to {load_cell.ends[1]:.4g} N/mm (--load-cell)",
-        "K, K_v, K_v/K by weighted fit of all runs from the second displacement on (contact may begin within the first "
-        "step), intervals by the scatter from run to run; 'as paper': averaged runs, force against deflection",
+        "K, K_v, K_v/K by weighted fit of all runs from the second displacement on (contact may begin within "
+        "the first step), intervals by the scatter from run to run; 'as paper': averaged runs, force against "
+        "deflection",
     ]
     for r in rows:
         lines += [
@@ -132,8 +134,8 @@ def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
         "load_cell_half_width",
     )
     lines = [
-        f"# calibration by tactcad calibrate; load cell {load_cell.stiffness:g} +- {load_cell.half_width:.4g} N/mm in "
-        "series removed",
+        f"# calibration by tactcad calibrate; load cell {load_cell.stiffness:g} +- "
+        f"{load_cell.half_width:.4g} N/mm in series removed",
         ",".join(names),
     ]
     for r in rows:
@@ -223,7 +225,7 @@ def _from_json(path: str) -> Sensitivity:
         ) from None
     if not len(values):
         raise InputError(path, "a calibration of no element", legal="one element at least")
-    columns = (
+    fields = (
         ELEMENT,
         STIFFNESS,
         STIFFNESS_SE,
@@ -234,7 +236,7 @@ def _from_json(path: str) -> Sensitivity:
         LOAD_CELL,
         LOAD_CELL_HALF_WIDTH,
     )
-    for field, column in zip(columns, values.T):
+    for field, column in zip(fields, values.T):
         for i in np.flatnonzero(~field.allowed(column))[:1]:
             raise InputError(path, f"{field.name} is not usable", value=float(column[i]), legal=field.legal)
     if (np.abs(values[:, 3]) < LEAST_SENSITIVITY).any():
@@ -242,7 +244,8 @@ def _from_json(path: str) -> Sensitivity:
     number = values[:, 0].astype(int)
     if len(set(number.tolist())) != len(number):
         raise InputError(path, "an element stands twice", value=number.tolist(), legal="each once")
-    return Sensitivity(number, *values[:, 1:].T, path)
+    K, K_se, k_v, k_v_se, correlation, dof, cell, cell_half = values[:, 1:].T
+    return Sensitivity(number, K, K_se, k_v, k_v_se, correlation, dof, cell, cell_half, path)
 
 
 def _no_sensitivity(where: str) -> InputError:

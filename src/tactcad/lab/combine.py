@@ -1,12 +1,12 @@
 """The object's stiffness that makes equation (1) agree over some elements, with its interval.
 
-f + x s is the same for all elements, x = K_obj: two of them give Fieller's interval, more the generalised least squares of
-the pairs that share a reference.
+f + x s is the same for all elements, x = K_obj: two of them give Fieller's interval, more the generalised
+least squares of the pairs that share a reference.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isinf, pi, tan
 
@@ -15,10 +15,13 @@ from scipy.special import fdtrc
 
 from tactcad.lab.regression import KNOWN, t_quantile
 
+Misfit = Callable[[np.ndarray], np.ndarray]
+
 DISAGREE = 0.01  # probability below which the elements are said to disagree
 ANGLES = 721  # scan of the projective line of K_obj
-# Weight of what the elements have in common against an element's own degrees of freedom. Chosen: ten times the two
-# degrees that three runs leave, since weights that follow such variances make the interval too narrow.
+# Weight of what the elements have in common against an element's own degrees of freedom. Chosen: ten times
+# the two degrees that three runs leave, since weights that follow such variances make the interval too
+# narrow.
 PRIOR_DOF = 20.0
 NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 and V2/N2
 
@@ -68,8 +71,8 @@ class Slopes:
         return self.from_signal + self.from_calibration
 
     def coupled(self, share: np.ndarray) -> Slopes:
-        """What equation (1) sees where each pad also sinks by share[i, j] of what the force on pad j does there:
-        p = s_i + sum_j share_ij f_j/x, with 1 on the diagonal.
+        """What equation (1) sees where each pad also sinks by share[i, j] of what the force on pad j does
+        there: p = s_i + sum_j share_ij f_j/x, with 1 on the diagonal.
         """
         return replace(self, f=self.f + (share - np.diag(np.diag(share))) @ self.f)
 
@@ -118,8 +121,8 @@ def hull(best: Interval, others: Sequence[Interval]) -> Interval:
 
 
 def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
-    """Covariances of (f, s) by the calibration that weigh the elements: each one's own, with few degrees of freedom,
-    drawn towards what all of them have relative to their size (as Smyth 2004 does with variances).
+    """Covariances of (f, s) by the calibration that weigh the elements: each one's own, with few degrees of
+    freedom, drawn towards what all of them have relative to their size (as Smyth 2004 does with variances).
     """
     size = np.stack([slopes.f[m], slopes.s[m]], -1)
     size = size[:, :, None] * size[:, None, :]
@@ -130,8 +133,8 @@ def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
 
 
 def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
-    """Variance of the x that makes f + x s most equal under weights from c, by the elements' own covariances, over the
-    one that c would give; and its degrees of freedom (Welch and Satterthwaite).
+    """Variance of the x that makes f + x s most equal under weights from c, by the elements' own covariances,
+    over the one that c would give; and its degrees of freedom (Welch and Satterthwaite).
     """
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
     w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), NO_VARIANCE)
@@ -148,7 +151,7 @@ def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[floa
     return total / model, float(min(total**2 / bottom, KNOWN))
 
 
-def _minimum(misfit, angle: np.ndarray) -> float:
+def _minimum(misfit: Misfit, angle: np.ndarray) -> float:
     """Least point of a function on the closed line of angles, by ever finer scans."""
     step = angle[1] - angle[0]
     best = float(angle[np.argmin(misfit(angle))])
@@ -159,7 +162,7 @@ def _minimum(misfit, angle: np.ndarray) -> float:
     return best
 
 
-def _interval(misfit, best: float, limit: float, scale: float) -> Interval:
+def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interval:
     """The connected set about `best` where the misfit keeps below the limit, cut to K_obj >= 0."""
     edges = []
     for direction in (-1.0, 1.0):

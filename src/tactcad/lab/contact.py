@@ -1,8 +1,9 @@
 """Which readings are surely in contact: where within a step the pad began to touch nobody knows.
 
-The slopes are taken from the second displacement on. A gap of a few micrometres at the start is within one step, biases
-a slope by per cents when its reading is kept, and a test that would find it misses it just where it is about as
-large as the noise: intervals then hold too seldom. A gap beyond the first step is large, and a test finds it.
+The slopes are taken from the second displacement on. A gap of a few micrometres at the start is within one
+step, biases a slope by per cents when its reading is kept, and a test that would find it misses it just where
+it is about as large as the noise: intervals then hold too seldom. A gap beyond the first step is large, and a
+test finds it.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ IN_CONTACT = 0.6  # share of the steps, the largest ones, that are taken to be i
 FEWEST = 4  # displacements from which on the first can be spared
 
 
-# Of a ramp that was read at more displacements, neighbours count as one step: each step tried costs a fit of all readings
-# and has its chance of a false alarm, together IN_CONTACT leaves 16 of them, 1.6 %.
+# Of a ramp that was read at more displacements, neighbours count as one step: each step tried costs a fit of
+# all readings and has its chance of a false alarm, together IN_CONTACT leaves 16 of them, 1.6 %.
 MOST = 40
 
 
@@ -35,10 +36,10 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
     Returns
     -------
     first : float
-        mm: the second displacement, or a further one. Before contact the force is above the line, carried on to
-        there: from the largest displacements down, a step is left out, with all before it, where its readings lie
-        above the line of those beyond it in any run (one-sided t test). At least three steps, and 60 % of them,
-        stay; of three displacements none is left out.
+        mm: the second displacement, or a further one. Before contact the force is above the line, carried on
+        to there: from the largest displacements down, a step is left out, with all before it, where its
+        readings lie above the line of those beyond it in any run (one-sided t test). At least three steps,
+        and 60 % of them, stay; of three displacements none is left out.
     left_out : int
         How many steps lie before it.
     """
@@ -55,7 +56,8 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
 
 
 def _on_line(x: np.ndarray, force: np.ndarray, run: np.ndarray, beyond: np.ndarray, at: np.ndarray) -> bool:
-    """Whether the readings `at` one step lie on, or below, the line through those `beyond` it, in every run."""
+    """Whether the readings `at` one step lie on, or below, the line through those `beyond` it, in every
+    run."""
     runs = [r for r in np.unique(run[at]) if (run[beyond] == r).any()]
     if not runs or spare_steps(x[beyond], run[beyond]) < 1:
         return True

@@ -8,9 +8,9 @@ pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. A
 the x that makes f + x s most equal; pairs that share a reference element are correlated, and this is their
 generalised least squares.
 
-Two things act on all elements at once and are known within limits only: the load cell of the calibration, and how far
-the pads feel each other through the object, from separate springs to an elastic half-space. Every interval
-holds for all of that: it is the hull of the intervals at the limits.
+Two things act on all elements at once and are known within limits only: the load cell of the calibration, and
+how far the pads feel each other through the object, from separate springs to an elastic half-space. Every
+interval holds for all of that: it is the hull of the intervals at the limits.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ def evaluate(
     reference : int, optional
         Number of the reference element; by default the stiffest of those read.
     coupling : array, [element, element], optional
-        Largest displacement of a pad by the force on another, over that by the same force on itself, in the order of
-        `readings.element`; the object's is taken to lie between nothing and this. Without it the pads are taken
-        to be on separate springs.
+        Largest displacement of a pad by the force on another, over that by the same force on itself, in the
+        order of `readings.element`; the object's is taken to lie between nothing and this. Without it the
+        pads are taken to be on separate springs.
 
     Raises
     ------
@@ -131,7 +131,8 @@ def evaluate(
     dropped = int((~touching).sum())
     if dropped:
         notes.append(
-            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights enter"
+            f"{dropped} of {len(touching)} loads are zero and left out: before contact the pads' heights "
+            "enter"
         )
     notes += _strays(readings.element, signal)
     if widened > 1:
@@ -162,7 +163,8 @@ def _limits(
     slopes: Slopes,
     coupling: np.ndarray | None,
 ) -> dict[str, list[Slopes]]:
-    """The slopes at the limits of what acts on all elements, by name; the later names on top of the earlier ones."""
+    """The slopes at the limits of what acts on all elements, by name; the later names on top of the earlier
+    ones."""
     at: dict[str, list[Slopes]] = {}
     cells = [slopes]
     if (calibration.load_cell_half_width > 0).any():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from math import isinf
+from typing import Any
 
 from tactcad.lab.combine import Interval
 from tactcad.lab.grasp import Grasp
@@ -64,7 +65,7 @@ def to_text(found: list[Grasp], level: float) -> str:
 
 def to_json(found: list[Grasp], level: float) -> str:
     """Everything; an end that is not bounded is 'inf'."""
-    samples = [plain(g) for g in found]
+    samples: list[Any] = [plain(g) for g in found]
     for sample, g in zip(samples, found):
         sample["combined"]["verdict"] = g.combined.verdict
         for pair, p in zip(sample["pairs"], g.pairs):

@@ -17,14 +17,16 @@ INCOMPRESSIBLE = 0.5  # of soft tissue and rubber; a half-space's shares do not 
 
 
 def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the pads' centres, mm, in the order of the elements; row two is row one turned by 180 degrees."""
+    """x and y of the pads' centres, mm, in the order of the elements; row two is row one turned by 180
+    degrees."""
     side = np.array([1.0 if p.row == 1 else -1.0 for p in layout.elements])
     y = np.array([p.y for p in layout.elements])
     return side * layout.design.array.row_pitch / 2, side * y
 
 
 def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray | None:
-    """Displacement of each pad by the force on another over that by the same force on itself, [element, element].
+    """Displacement of each pad by the force on another over that by the same force on itself, [element,
+    element].
 
     Parameters
     ----------

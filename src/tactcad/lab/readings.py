@@ -60,10 +60,13 @@ def calibration(path: str | Path) -> CalibrationReadings:
         ("element", "run", scaled["displacement"][0]),
         "each displacement once a run; number an upward and a downward stroke as two runs",
     )
+    displacement, force, signal = (rows.values(name) * factor for name, factor in scaled.values())
     out = CalibrationReadings(
         rows.values("element").astype(int),
         rows.values("run").astype(int),
-        *(rows.values(name) * factor for name, factor in scaled.values()),
+        displacement,
+        force,
+        signal,
         rows.lines,
         rows.path,
     )

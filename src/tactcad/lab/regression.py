@@ -49,8 +49,8 @@ def steps(x: np.ndarray) -> np.ndarray:
 
 
 def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
-    """How many steps there are, each counted in every run, beyond those that give every run its intercept and all of
-    them a slope; below 0 there is no line.
+    """How many steps there are, each counted in every run, beyond those that give every run its intercept and
+    all of them a slope; below 0 there is no line.
     """
     at = steps(x)
     order = np.lexsort((at, run))
@@ -105,29 +105,6 @@ def rounding(y: np.ndarray) -> np.ndarray:
     return np.maximum(1e-13 * np.abs(y).max(0), np.finfo(float).tiny ** 0.5)
 
 
-# Squared residuals count up to so many times their median. Of noise that grows from nothing with the reading
-# (u^2, u even from 0 to 1) the largest expected square is some 8 times the median one.
-STRANGE = 10.0
-
-
-def variance_weights(lines: Lines, x: np.ndarray, k: int) -> np.ndarray:
-    """Weights 1/(s0^2 + s1^2 u^2) with u = x/max x, the two variances fitted to the squared residuals of
-    response k.
-
-    Noise that grows with the reading (a force sensor's per cent of value) gets its due; constant noise
-    gives equal weights. Both variances are kept non-negative, and the weights' range within 100.
-    """
-    u = np.abs(x - x.min()) / max(np.ptp(x), np.finfo(float).tiny)
-    square = lines.residual[:, k] ** 2 / np.maximum(1 - lines.leverage, 0.1)
-    square = np.minimum(square, STRANGE * np.median(square))  # one bad reading is no noise that grows
-    design = np.column_stack([np.ones_like(u), u * u])
-    (a, b), *_ = np.linalg.lstsq(design, square, rcond=None)
-    if b <= 0 or a <= 0:
-        a, b = (square.mean(), 0.0) if b <= 0 else (0.0, max((square * u * u).sum() / (u**4).sum(), 0.0))
-    variance = a + b * u * u
-    return 1.0 / np.maximum(variance, variance.max() / 100) if variance.max() > 0 else np.ones_like(u)
-
-
 def require_level(level: float) -> None:
     """Raises InputError for a level of intervals that is none."""
     if not 0.5 <= level < 1:
@@ -146,23 +123,25 @@ def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) 
     """
     a = bottom * bottom - t * t * covariance[1, 1]
     b = top * bottom - t * t * covariance[0, 1]
-    c = top * top - t * t * covariance[0, 0]
     if a <= 0:
         return -inf, inf
-    root = sqrt(max(b * b - a * c, 0.0))
+    (tt, tb), (_, bb) = covariance
+    # b b - a c with c = top^2 - t^2 tt, without the difference of (top bottom)^2 from itself
+    along = top * top * bb - 2 * top * bottom * tb + bottom * bottom * tt
+    root = t * sqrt(max(along + t * t * (tb * tb - tt * bb), 0.0))
     return (b - root) / a, (b + root) / a
 
 
-def extreme_deviates(x: np.ndarray, y: np.ndarray, run: np.ndarray, alpha: float = 0.01) -> list[int]:
+def extreme_deviates(
+    x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray, alpha: float = 0.01
+) -> list[int]:
     """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
 
-    x, y, run: as fit_lines, one response. alpha is the chance of naming any reading where all are good. Each
-    reading is held against the noise at its own displacement, which is fitted as for the line's weights. The
-    search ends after PATIENCE readings in a row that the line does explain.
+    x, y, run, weight: as fit_lines, one response. alpha is the chance of naming any reading where all are
+    good. The search ends after PATIENCE readings in a row that the line does explain.
     """
     n = len(x)
-    lines = fit_lines(x, y[:, None], run)
-    left = _Left(x, y, run, variance_weights(lines, x, 0))
+    left = _Left(x, y, run, weight)
     smallest = float(rounding(y[:, None])[0])
     removed: list[int] = []
     named = 0

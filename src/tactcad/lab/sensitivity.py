@@ -11,8 +11,8 @@ from tactcad.design.messages import InputError
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of freedom; the load
-    cell that stood in series, N/mm, and the half-width of its limits.
+    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of freedom;
+    the load cell that stood in series, N/mm, and the half-width of its limits.
     """
 
     element: np.ndarray

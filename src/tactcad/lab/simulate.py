@@ -22,11 +22,15 @@ class Truth:
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations of single readings: force (N), displacement (mm), signal (V)."""
+    """Standard deviations: of single readings' force (N), displacement (mm) and signal (V); and relative, of
+    the reading (force, and what the signal changes by) and of a run's slopes.
+    """
 
     force: float = 0.003
     displacement: float = 0.0005
     signal: float = 0.0005
+    of_reading: float = 0.0
+    of_run: float = 0.0
 
 
 def calibration_rows(
@@ -36,24 +40,30 @@ def calibration_rows(
     runs: int,
     noise: Noise,
     rng: np.random.Generator,
+    gap: float = 0.0,
 ) -> np.ndarray:
-    """Rows of element, run, displacement (mm), force (N), signal (V): the stage presses cell and
-    element in series.
+    """Rows of element, run, displacement (mm), force (N), signal (V): the stage presses cell and element in
+    series, in each run after a way of up to `gap` (mm) through air.
     """
     share = load_cell / (load_cell + truth.stiffness)
     shape = (len(truth.element), runs, len(displacement))
-    moved = displacement + noise.displacement * rng.standard_normal(shape)
-    deflection = share[:, None, None] * moved
-    force = truth.stiffness[:, None, None] * deflection + noise.force * rng.standard_normal(shape)
-    signal = (
-        truth.zero_signal[:, None, None]
-        + truth.signal_per_deflection[:, None, None] * deflection
-        + noise.signal * rng.standard_normal(shape)
-    )
+    more = rng.spawn(1)[0]  # whatever a lab has besides even noise leaves the other draws as they are
+    pressed = np.maximum(displacement - gap * more.random((*shape[:2], 1)), 0.0)
+    deflection = share[:, None, None] * (pressed + noise.displacement * rng.standard_normal(shape))
+    true_force = truth.stiffness[:, None, None] * deflection * _factors(noise, shape, more)
+    force = true_force + noise.force * rng.standard_normal(shape)
+    change = truth.signal_per_deflection[:, None, None] * deflection * _factors(noise, shape, more)
+    signal = truth.zero_signal[:, None, None] + change + noise.signal * rng.standard_normal(shape)
     element, run, step = np.broadcast_arrays(
         truth.element[:, None, None], np.arange(1, runs + 1)[None, :, None], displacement[None, None, :]
     )
     return np.column_stack([a.ravel() for a in (element, run, step, force, signal)])
+
+
+def _factors(noise: Noise, shape: tuple[int, int, int], rng: np.random.Generator) -> np.ndarray:
+    """By what force or signal differ from a spring's, run by run and reading by reading."""
+    of_run = 1 + noise.of_run * rng.standard_normal((*shape[:2], 1))
+    return of_run * (1 + noise.of_reading * rng.standard_normal(shape))
 
 
 def approach(
@@ -75,6 +85,16 @@ def approach(
     following = np.append(-sorted_h[1:], np.inf)
     z = candidate[np.arange(len(load)), np.argmax(candidate <= following, axis=1)]
     return z, share[:, None] * np.maximum(z[None, :] + h[:, None], 0.0)
+
+
+def coupled_deflection(
+    load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
+) -> np.ndarray:
+    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j
+    does there; 1 on the diagonal.
+    """
+    force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
+    return np.outer(force / stiffness, load / force.sum())
 
 
 def grasp_signals(

@@ -1,7 +1,7 @@
 """Beams and round plates that are taken as rigid elsewhere: by how much they bend.
 
-Straight beams with shear after Timoshenko (Strength of Materials, part I; shear factor 5/6 of a rectangle), round
-plates after Roark's Formulas for Stress and Strain, table 11.2. mm, N, MPa.
+Straight beams with shear after Timoshenko (Strength of Materials, part I; shear factor 5/6 of a rectangle),
+round plates after Roark's Formulas for Stress and Strain, table 11.2. mm, N, MPa.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from math import pi
 
 @dataclass(frozen=True)
 class Beam:
-    """A rectangular bar of `width` and `height` (mm, along the load) between supports or from a wall, `length` mm long."""
+    """A rectangular bar of `width` and `height` (mm, along the load) between supports or from a wall,
+    `length` mm long."""
 
     length: float
     width: float
@@ -31,7 +32,8 @@ class Beam:
         return 5.0 / 6.0 * self.youngs_modulus / (2.0 * (1.0 + self.poisson)) * self.width * self.height
 
     def supported(self) -> float:
-        """mm for each newton in the middle of two supports that let it turn: no supports that hold it leave it softer."""
+        """mm for each newton in the middle of two supports that let it turn: no supports that hold it leave
+        it softer."""
         return self.length**3 / (48.0 * self.bending) + self.length / (4.0 * self.shear)
 
     def clamped(self) -> float:
@@ -44,7 +46,8 @@ class Beam:
         return a * (3.0 * self.length**2 - 4.0 * a**2) / (48.0 * self.bending) + a / (2.0 * self.shear)
 
     def supported_evenly(self) -> float:
-        """mm in the middle for each newton of a load spread over the length, between supports that let it turn."""
+        """mm in the middle for each newton of a load spread over the length, between supports that let it
+        turn."""
         return 5.0 * self.length**3 / (384.0 * self.bending) + self.length / (8.0 * self.shear)
 
     def cantilever(self) -> float:

@@ -1,5 +1,5 @@
-"""How stiffness follows one parameter, by the model's own derivative: beam theory's exponents (3 for the leaf's
-thickness, -2 for the arm) hold for a leaf between rigid blocks, and no element is that."""
+"""How stiffness follows one parameter, by the model's own derivative: beam theory's exponents (3 for the
+leaf's thickness, -2 for the arm) hold for a leaf between rigid blocks, and no element is that."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ STEP = 1e-5  # relative; central differences then err by 1e-9 of the exponent
 
 
 def elasticity(s: HingeSection, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """dlnK/dln p of a parameter (a field's name) by a closed-form rung: 2.5 where 1 % more of it is 2.5 % more K.
+    """dlnK/dln p of a parameter (a field's name) by a closed-form rung: 2.5 where 1 % more of it is 2.5 %
+    more K.
 
     Raises CheckFailure where a design is out of the rung's range; the steps beside it may lie just outside.
     """

@@ -39,8 +39,8 @@ from .section import Array, HingeSection
 
 THIN_NOTCH = (3.0 * np.pi / 16.0) ** 2 * 2.0  # over n: squared root length per r/t as r/t grows
 # Length, in heights of the strip, over which the energy of a load in equilibrium by itself fades: of the
-# slowest mode that is odd (two-sided; sin x = x) or of any kind (one-sided; sin x = -x), by the real part of x
-# (Papkovich, Fadle).
+# slowest mode that is odd (two-sided; sin x = x) or of any kind (one-sided; sin x = -x), by the real part of
+# x (Papkovich, Fadle).
 FADING = {True: 1.0 / (2.0 * 7.498), False: 1.0 / (2.0 * 4.212)}
 # E b times the compliance that a force along a half-plane's or a quarter-plane's edge finds, by logarithm of
 # the radius (Flamant, Michell).
@@ -51,8 +51,8 @@ Constants = Mapping[str, Array | float]
 
 @dataclass(frozen=True)
 class Parts:
-    """Tip compliance in plane stress by what gives way, mm/N: bending of the leaf by its mean moment, with the
-    roots, and by its moment's `slope`, of arm and body; and all shear."""
+    """Tip compliance in plane stress by what gives way, mm/N: bending of the leaf by its mean moment, with
+    the roots, and by its moment's `slope`, of arm and body; and all shear."""
 
     hinge: Array
     slope: Array
@@ -74,7 +74,7 @@ def root_length(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Array]:
-    """What the roots to arm and body add to the leaf beside blocks that bend like beams, in hinge thicknesses."""
+    """What the roots to arm and body add to the leaf where blocks bend like beams, in hinge thicknesses."""
     k = k or by_sides("root", s.two_sided)
     g, t = root_length(s, k), s.hinge_thickness
     low, rise = _height_felt(s, k)
@@ -153,7 +153,7 @@ def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
 
 
 def _far(stout: Array, middle: Array | float, two_sided: NDArray[np.bool_]) -> Array:
-    """w, from 0 where the clamp is close behind the root to 1 where it is far: 1/(1 + e^-x) without overflow."""
+    """w, from 0 where the clamp is close behind the root to 1 where it is far; no exponential overflows."""
     return 0.5 + 0.5 * np.tanh((stout - middle) / (2.0 * _by_form(FADING, two_sided)))
 
 

@@ -5,9 +5,10 @@ on the arm is a beam on two supports. What the force has beyond the one that clo
 in two ways, both per newton of it:
 
   shear   V = 1 - L/arm goes through the hinge
-  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give S/arm, c = arm - L, I = b h^3/12: the arm bends between its
-          supports, and the stop gives way by `give` mm for each newton of S = L/arm / (1 + K give (L/arm)^2),
-          which is what the hinge, of stiffness K at the load line, leaves to it
+  turn    theta = c (arm^2 - c^2)/(6 E I arm) + give S/arm, c = arm - L, I = b h^3/12: the arm bends between
+          its supports, and the stop gives way by `give` mm for each newton of
+          S = L/arm / (1 + K give (L/arm)^2), which is what the hinge, of stiffness K at the load line,
+          leaves to it
 """
 
 from __future__ import annotations
@@ -38,12 +39,16 @@ def largest_closing_force(
     s: HingeSection, stiffness: Array, arm: Array, give: float, overload: float, limit: Array
 ) -> Array:
     """Force (N) with which the stop may close at most, so that `overload` (N) on it neither turns nor
-    stresses the hinge more than `limit` (N) at the free arm's load line does.
+    stresses the hinge more than `limit` (N) at the free arm's load line does; never more than the limit
+    itself.
 
-    F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone.
+    F + share (overload - F) = limit; not positive where what passes the closed stop is too much alone: of a
+    share of 1 and more it always is.
     """
     share = _share(s, stiffness, arm, give)
-    return (limit - share * overload) / (1.0 - share)
+    kept = np.where(share < 1.0, 1.0 - share, 1.0)
+    closing = limit - share / kept * np.maximum(overload - limit, 0.0)
+    return np.where((share < 1.0) | (overload <= limit), closing, 0.0)
 
 
 def largest_overload(

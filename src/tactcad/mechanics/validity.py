@@ -17,15 +17,15 @@ from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
-# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a nanometre to a
-# kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
+# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a
+# nanometre to a kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
 LENGTH = (1e-6, 1e6)  # mm
 MODULUS = (1e-6, 1e12)  # MPa
 LENGTHS = tuple(name for name in POSITIVE if name != "youngs_modulus")
 
 
 @dataclass(frozen=True)
-class Rule:
+class RangeRule:
     """A named rule; `broken` gives the mask of designs that break it."""
 
     name: str
@@ -54,23 +54,23 @@ def _slot_depth(s: HingeSection) -> np.ndarray:
 
 
 GEOMETRY = (
-    Rule("a value is not a finite number", _not_finite),
-    Rule("a length, width or modulus is not positive", _not_positive),
-    Rule(f"a length or width is outside {LENGTH[0]:g} to {LENGTH[1]:g} mm", _length_outside),
-    Rule(
+    RangeRule("a value is not a finite number", _not_finite),
+    RangeRule("a length, width or modulus is not positive", _not_positive),
+    RangeRule(f"a length or width is outside {LENGTH[0]:g} to {LENGTH[1]:g} mm", _length_outside),
+    RangeRule(
         f"youngs_modulus is outside {MODULUS[0]:g} to {MODULUS[1]:g} MPa",
         lambda s: (s.youngs_modulus < MODULUS[0]) | (s.youngs_modulus > MODULUS[1]),
     ),
-    Rule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
-    Rule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
-    Rule(
+    RangeRule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
+    RangeRule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
+    RangeRule(
         "fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -NINE_DIGITS * s.hinge_length
     ),
-    Rule("load inside the slot: L <= l/2", lambda s: s.load_arm <= s.hinge_length / 2.0),
-    Rule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
-    Rule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),
-    Rule("pad_height or friction is negative", lambda s: (s.pad_height < 0.0) | (s.friction < 0.0)),
-    Rule(
+    RangeRule("load inside the slot: L <= l/2", lambda s: s.load_arm <= s.hinge_length / 2.0),
+    RangeRule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
+    RangeRule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),
+    RangeRule("pad_height or friction is negative", lambda s: (s.pad_height < 0.0) | (s.friction < 0.0)),
+    RangeRule(
         "friction locks the arm: mu (pad_height + t/2) >= L",
         lambda s: s.friction * friction.lever(s) >= s.load_arm,
     ),
@@ -95,8 +95,7 @@ WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "b/Hb": lambda s: s.width / s.body_height,
 }
 
-
-# Groups of which too little is outside and much is not: what is wrong then, the group, and whose fit it bounds.
+# Groups that are bounded below alone: what is wrong there, the group, and whose fit it bounds.
 LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
     "Lb/t": ("body too short", lambda s: s.body_length / s.hinge_thickness, "plane"),
     "L/t": ("load arm too short", lambda s: s.load_arm / s.hinge_thickness, "plane"),
@@ -110,22 +109,22 @@ def groups(s: HingeSection) -> dict[str, Array]:
 
 
 @lru_cache
-def _fitted(rung: str) -> tuple[Rule, ...]:
+def _fitted(rung: str) -> tuple[RangeRule, ...]:
     """Rules of the fit's sampled range, as data/ladder.json gives it."""
     sampled = ladder_data()["range"]
     height = sampled["least_height"]
     rules = [
-        Rule(
+        RangeRule(
             f"arm too low for the fit: h < {height:g} (t + n r)",
             lambda s: s.arm_height < height * (1.0 - ROUNDING) * _slot_depth(s),
         ),
-        Rule(
+        RangeRule(
             f"body too low for the fit: Hb < {height:g} (t + n r)",
             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s),
         ),
     ]
     rules += [
-        Rule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf))
+        RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf))
         for name, (what, value, of) in LEAST.items()
         if of in BY_NAME[rung].fitted
         for least in (sampled["least"][name],)
@@ -133,7 +132,9 @@ def _fitted(rung: str) -> tuple[Rule, ...]:
     bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in BY_NAME[rung].fitted else {})
     for name, value in bounding.items():
         low, high = sampled["groups"][name]
-        rules.append(Rule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high)))
+        rules.append(
+            RangeRule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high))
+        )
     return tuple(rules)
 
 
@@ -149,7 +150,7 @@ def _outside(
     return broken
 
 
-def rules(rung: str) -> tuple[Rule, ...]:
+def rules(rung: str) -> tuple[RangeRule, ...]:
     """The rung's rules in the order in which they are looked at."""
     return GEOMETRY + _fitted(rung) if BY_NAME[rung].fitted else GEOMETRY
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -15,6 +18,8 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -74,12 +79,13 @@ def from_design(design: Design) -> ArrayModel:
     """The array of a loaded design (tactcad.parts.designs.load). Raises InputError where it has no rig
     tables.
     """
-    for name in ("calibration", "sample", "grasping"):
-        if getattr(design, name) is None:
-            raise InputError(f"design {design.name}", f"has no [{name}] table, which a validation needs")
+    calibration, sample, grasping = design.calibration, design.sample, design.grasping
+    if calibration is None or sample is None or grasping is None:
+        lacking = next(n for n in ("calibration", "sample", "grasping") if getattr(design, n) is None)
+        raise InputError(f"design {design.name}", f"has no [{lacking}] table, which a validation needs")
     layout = Layout(design)
     places = layout.elements
-    gauge, readout, rig = design.gauge, design.readout, design.calibration
+    gauge, readout = design.gauge, design.readout
     return ArrayModel(
         design.name,
         np.array([p.number for p in places]),
@@ -101,19 +107,20 @@ def from_design(design: Design) -> ArrayModel:
         ),
         _pick(Tolerance, design.tolerance),
         Rig(
-            rig.load_cell_stiffness,
-            rig.load_cell_resolution,
-            rig.micrometer_resolution,
-            rig.load_point,
-            rig.friction,
-            design.sample.thickness,
-            design.sample.poisson,
-            design.grasping.moving_weight,
-            design.grasping.weight,
-            design.grasping.weights,
+            calibration.load_cell_stiffness,
+            calibration.load_cell_resolution,
+            calibration.micrometer_resolution,
+            calibration.load_point,
+            calibration.friction,
+            sample.thickness,
+            sample.poisson,
+            grasping.moving_weight,
+            grasping.weight,
+            grasping.weights,
         ),
     )
 
 
-def _pick(kind, table):
-    return kind(**{name: getattr(table, name) for name in kind.__dataclass_fields__})
+def _pick(kind: Callable[..., T], table: object) -> T:
+    """A record of those values of a table that it has fields for."""
+    return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})

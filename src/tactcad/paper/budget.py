@@ -7,12 +7,13 @@ supports.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, log, log10, nan, radians, tan
 
 import numpy as np
 
-from tactcad.lab.calibration import CELL_ACCURACY
+from tactcad.lab.load_cell import CELL_ACCURACY
 from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, ladder, lumped, readout, self_heating
 from tactcad.mechanics.sample_coupling import coupling
@@ -32,6 +33,8 @@ SAMPLE_TEST_TIME, GRASP_TIME = (
 )  # s, assumed: reading a step in the sample test, a grasp with its weights
 SLIPPERY = 0.02  # friction of a ball-bearing roller under the force sensor, chosen
 CLOSED_FORM_ERROR = 0.0035  # goal that the closed forms are held to against finite elements
+
+Stiffness = Callable[[HingeSection], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,11 @@ class _Pair:
     def together(self, short: float, long: float) -> float:
         """On K_obj, of errors of K that all elements share."""
         return abs(self.by_reference * short + self.by_measuring * long)
+
+    def log_change(self, new: Stiffness, old: Stiffness) -> tuple[float, float]:
+        """ln of new over old stiffness, of both arms."""
+        short, long = (float(np.log(new(s) / old(s)).item()) for s in (self.short, self.long))
+        return short, long
 
     def change(self, name: str, half: float) -> tuple[float, float]:
         """Half-width of ln K of both arms for a half-width (mm) of one dimension."""
@@ -187,14 +195,8 @@ def _dimensions(pair: _Pair, array: ArrayModel) -> list[Effect]:
 
 def _models(pair: _Pair, array: ArrayModel) -> list[Effect]:
     """What a computed K leaves out."""
-    width = [
-        float(np.log(ladder.stiffness(s, "solid") / ladder.stiffness(s, "plane")).item())
-        for s in (pair.short, pair.long)
-    ]
-    gauge = [
-        float(np.log(gauge_signal.stiffness(s, array.gauge) / ladder.stiffness(s)).item())
-        for s in (pair.short, pair.long)
-    ]
+    width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
+    gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
     warm = MODULUS_PER_KELVIN * ROOM_SWING
     error = CLOSED_FORM_ERROR
     return [
@@ -238,26 +240,21 @@ def _models(pair: _Pair, array: ArrayModel) -> list[Effect]:
 def _calibration(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
     """The paper's calibration: force sensor on the pad."""
     rig = array.rig
-    friction = [
-        [
-            float(
-                np.log(
-                    ladder.stiffness(s.with_(pad_height=array.pad_height, friction=mu)) / ladder.stiffness(s)
-                ).item()
-            )
-            for s in (pair.short, pair.long)
-        ]
-        for mu in (rig.friction, SLIPPERY)
-    ]
+
+    def stuck(mu: float) -> tuple[float, float]:
+        rubbing = {"pad_height": array.pad_height, "friction": mu}
+        return pair.log_change(lambda s: ladder.stiffness(s.with_(**rubbing)), ladder.stiffness)
+
+    flat, roller = stuck(rig.friction), stuck(SLIPPERY)
     stage = _stage_error(data, array)
     return [
         Effect(
             "friction at the force sensor's tip",
             f"µ {rig.friction:g}, K L/(L − µH), H = pad height + t/2",
-            *friction[0],
-            pair.together(*friction[0]),
+            *flat,
+            pair.together(*flat),
             "roller instead of a flat tip",
-            pair.together(*friction[1]),
+            pair.together(*roller),
         ),
         Effect(
             "micrometer of the calibration",
@@ -321,10 +318,10 @@ def _sample(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
     # Tangential over normal stiffness of a pad, 2(1 - nu)/(2 - nu): Johnson, Contact Mechanics.
     lateral = x * 2 * (1 - rig.sample_poisson) / (2 - rig.sample_poisson)
     lever = array.pad_height + float(pair.short.hinge_thickness.item()) / 2
-    shear = [
+    shear_r, shear_m = (
         lateral * (lever / float(s.load_arm.item())) ** 2 / K
         for s, K in ((pair.short, pair.K_r), (pair.long, pair.K_m))
-    ]
+    )
     relaxed = RELAXATION_PER_DECADE * abs(log10(GRASP_TIME / SAMPLE_TEST_TIME))
     ratio = {h: _coupled(pair, data, array, h) for h in (inf, rig.sample_thickness)}
     return [
@@ -349,10 +346,11 @@ def _sample(pair: _Pair, data: Published, array: ArrayModel) -> list[Effect]:
         Effect(
             "rubber shears on stuck pads",
             "lateral stiffness of the sample on the pad's lever (H/L)^2",
-            *shear,
-            pair.together(*shear),
+            shear_r,
+            shear_m,
+            pair.together(shear_r, shear_m),
             "lubricate the sample: a fifth of it",
-            pair.together(*shear) / 5,
+            pair.together(shear_r, shear_m) / 5,
         ),
         Effect(
             "relaxation between sample test and grasp",

@@ -208,8 +208,8 @@ def _strains(data: Published, t: float, array: ArrayModel) -> StrainCheck:
     pad_half = array.pad_length / 2
     return StrainCheck(
         arms,
-        tuple(eps.tolist()),
-        tuple(unit * (a - pad_half) for a in arms),
+        (float(eps[0]), float(eps[1])),
+        (unit * (arms[0] - pad_half), unit * (arms[1] - pad_half)),
         float(offset),
         float(max(abs(c[0] - offset) for c in corners)),
         float(factor),

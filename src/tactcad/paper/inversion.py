@@ -10,7 +10,7 @@ import numpy as np
 
 from tactcad.lab.regression import t_quantile
 from tactcad.mechanics import fieller, lumped
-from tactcad.paper.reference_stiffness import Table2Study
+from tactcad.paper.reference_stiffness import Table2Study, solve
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,10 @@ class Inversion:
     ratio_error: float  # standard deviation of ln R, from the spread about equation (2)
     printed: Inverted
     supported: Inverted
+    left_out: np.ndarray  # K_obj, N/mm, with the K_r that all rows and columns but the reading's own support
+    at_ends: (
+        np.ndarray
+    )  # K_obj, N/mm, with either end of the supported K_r's interval, [end, element, sample]
     rank_correlation: float  # of |condition| and |error| with the supported stiffness (Spearman)
 
 
@@ -64,8 +68,25 @@ def invert(study: Table2Study) -> Inversion:
         spread,
         printed,
         supported,
+        _left_out(study),
+        np.array([_estimate(study, K_r) for K_r in (fit.low[0], fit.high[0])]),
         _spearman(np.abs(supported.condition), np.where(np.isnan(error), np.inf, error)),
     )
+
+
+def _left_out(study: Table2Study) -> np.ndarray:
+    """No reading, and none of its element or sample, has a part in the K_r by which it is inverted."""
+    k, x, R = study.measuring, study.object_printed, study.ratio
+    found = np.empty_like(R)
+    for i, j in np.ndindex(R.shape):
+        rows, columns = np.arange(len(k)) != i, np.arange(len(x)) != j
+        K_r = solve("K_r free", study.reference_printed, k[rows], x[columns], R[np.ix_(rows, columns)])[0]
+        found[i, j] = lumped.object_stiffness(K_r, k[i], R[i, j])
+    return found
+
+
+def _estimate(study: Table2Study, K_r: float) -> np.ndarray:
+    return lumped.object_stiffness(K_r, study.measuring[:, None], study.ratio)
 
 
 def _invert(study: Table2Study, K_r: float, K_r_se: float, spread: float) -> Inverted:
@@ -76,9 +97,7 @@ def _invert(study: Table2Study, K_r: float, K_r_se: float, spread: float) -> Inv
     )
     with np.errstate(divide="ignore", invalid="ignore"):
         condition = lumped.condition_in_ratio(K_r, k, x)
-    return Inverted(
-        K_r, lumped.object_stiffness(K_r, k, R), interval.lower, interval.upper, interval.bounded, condition
-    )
+    return Inverted(K_r, _estimate(study, K_r), interval.lower, interval.upper, interval.bounded, condition)
 
 
 def _spearman(a: np.ndarray, b: np.ndarray) -> float:

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from numpy.typing import ArrayLike
 
 from tactcad.paper.report import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure as Canvas
 
 # Okabe and Ito's palette, told apart by colour-blind readers; shapes differ as well.
 BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE = (
@@ -23,7 +31,7 @@ SERIES = (BLACK, ORANGE, SKY, GREEN, BLUE, RED, PURPLE)
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 GREY = "#6a737d"
 
-STYLE = {
+STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 11,
     "axes.titlesize": 12,
@@ -42,7 +50,9 @@ STYLE = {
 
 
 @contextmanager
-def panels(rows: int = 1, columns: int = 1, size: tuple[float, float] = (11.2, 4.6), **options) -> Iterator:
+def panels(
+    rows: int = 1, columns: int = 1, size: tuple[float, float] = (11.2, 4.6), **options: Any
+) -> Iterator:
     """Figure and axes in the reports' style; closed afterwards."""
     import matplotlib
 
@@ -57,7 +67,7 @@ def panels(rows: int = 1, columns: int = 1, size: tuple[float, float] = (11.2, 4
             plt.close(figure)
 
 
-def svg(figure, name: str) -> str:
+def svg(figure: Canvas, name: str) -> str:
     """SVG text for a page: no date, ids made of the name and the content, no XML header."""
     import matplotlib
 
@@ -71,12 +81,12 @@ def svg(figure, name: str) -> str:
     return re.sub(r"[ \t]+\n", "\n", text)
 
 
-def drawn(figure, name: str, caption: str) -> Figure:
+def drawn(figure: Canvas, name: str, caption: str) -> Figure:
     """The picture for a report, under that name."""
     return Figure(name, svg(figure, name), caption)
 
 
-def log_ticks(axis, ticks) -> None:
+def log_ticks(axis: Axis, ticks: Iterable[float]) -> None:
     """Plain numbers at these places of a logarithmic axis, no minor labels."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
@@ -85,7 +95,28 @@ def log_ticks(axis, ticks) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def place_labels(figure, ax, labels: list[tuple[str, float, float]], size: float = 10.0) -> None:
+def log_axes(ax: Axes, x: Iterable[float] = (), y: Iterable[float] = ()) -> None:
+    """Logarithmic where there are ticks, with plain numbers at them."""
+    for name, axis, ticks in (("x", ax.xaxis, x), ("y", ax.yaxis, y)):
+        if ticks:
+            ax.set(**{f"{name}scale": "log"})
+            log_ticks(axis, ticks)
+
+
+def note(ax: Axes, text: str, at: tuple[float, float], shift: tuple[float, float], **style: Any) -> None:
+    """A text `shift` points off its place."""
+    ax.annotate(text, at, shift, textcoords="offset points", **style)
+
+
+def series(ax: Axes, i: int, x: ArrayLike, y: ArrayLike, hollow: bool = False, **style: Any) -> None:
+    """Points of the i-th series in its colour and shape."""
+    face = {"mfc": "white", "mec": SERIES[i]} if hollow else {"color": SERIES[i], "mec": "white", "mew": 0.6}
+    ax.plot(x, y, MARKERS[i], **({"ms": 7} | face | style))
+
+
+def place_labels(
+    figure: Canvas, ax: Axes, labels: list[tuple[str, float, float]], size: float = 10.0
+) -> None:
     """Write each label (text, x, y in data) beside its point, on the side where it covers the least.
 
     Call it when the axes have their limits: the places of points on the page decide.
@@ -96,7 +127,7 @@ def place_labels(figure, ax, labels: list[tuple[str, float, float]], size: float
     frame = ax.get_window_extent()
     low, high = (frame.x0 * scale, frame.y0 * scale), (frame.x1 * scale, frame.y1 * scale)
     taken = [(x - 5, y - 5, x + 5, y + 5) for x, y in points]
-    for (text, *at), (x, y) in zip(labels, points):
+    for (text, *place), (x, y) in zip(labels, points):
         width, height = 0.62 * size * len(text), 1.1 * size
 
         def box(place: tuple[float, float, str, str]) -> tuple[float, float, float, float]:
@@ -113,9 +144,7 @@ def place_labels(figure, ax, labels: list[tuple[str, float, float]], size: float
         best = min(_PLACES, key=covered)
         taken.append(box(best))
         dx, dy, ha, va = best
-        ax.annotate(
-            text, at, xytext=(dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=size, zorder=4
-        )
+        note(ax, text, (place[0], place[1]), (dx, dy), ha=ha, va=va, fontsize=size, zorder=4)
 
 
 # dx, dy in points and which corner of the text stands there, in the order of preference

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Column:
     half_step: np.ndarray
     unit: str
 
-    def __getitem__(self, key) -> Column:
+    def __getitem__(self, key: Any) -> Column:
         return Column(self.value[key], self.half_step[key], self.unit)
 
 
@@ -99,7 +100,7 @@ def load(table1: str | Path | None = None, table2: str | Path | None = None) -> 
     Raises InputError with file, line and column for a missing column, text for a number, a value out of
     range, an element that stands twice, a grid of Table 2 that has gaps.
     """
-    data = files("tactcad.paper") / "data"
+    data = Path(str(files("tactcad.paper"))) / "data"
     figures = _figures(data / "printed.csv")
     return Published(
         _table1(read(table1 or data / "table1.csv", TABLE_1_FIELDS)),
@@ -155,7 +156,7 @@ def _table2(rows: Rows) -> Table2:
     )
 
 
-def _figures(path) -> tuple[dict, dict, dict, dict]:
+def _figures(path: Path) -> tuple[dict, dict, dict, dict]:
     lines = [line.split(",", 3) for line in path.read_text("utf-8").splitlines() if not line.startswith("#")][
         1:
     ]

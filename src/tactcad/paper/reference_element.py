@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import gauge_signal, ladder, lumped
+from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
@@ -108,8 +109,8 @@ def study(data: Published, array: ArrayModel, table2: Table2Study, rung: str = "
         float(k_v[own]),
         signal,
         deflection,
-        tuple(v / d * 1e3 for v, d in zip(signal, deflection)),
-        tuple(v / k_v[own] * 1e3 for v in signal),
+        (signal[0] / deflection[0] * 1e3, signal[1] / deflection[1] * 1e3),
+        (signal[0] / k_v[own] * 1e3, signal[1] / k_v[own] * 1e3),
         (figure["softest_signal_most"] / figure["softest_deflection_most"] * 1e3, float(k_v[np.argmin(K)])),
         tuple(
             _reading(data, array, name, K_r, share, k_v[own], deflection, signal)
@@ -167,7 +168,7 @@ def _reading(
 
 
 def _explanations(
-    s, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float, rung: str
+    s: HingeSection, array: ArrayModel, printed: tuple[float, float], gain: float, nominal: float, rung: str
 ) -> tuple[Explanation, ...]:
     K, k_v = printed
     q0 = float(gauge_signal.foil_strain_per_deflection(s, array.gauge)[0])
@@ -224,7 +225,7 @@ def _explanations(
 
 
 def _from_k_v(
-    name: str, s, array: ArrayModel, q: float, scatter: float, rung: str
+    name: str, s: HingeSection, array: ArrayModel, q: float, scatter: float, rung: str
 ) -> tuple[float, float, float]:
     """K (N/mm) when one dimension is what makes strain per deflection q, and for q a 95 % scatter lower and
     higher.

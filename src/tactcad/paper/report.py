@@ -7,14 +7,17 @@ from __future__ import annotations
 import html
 import json
 import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import isinf, isnan
+from typing import TypeVar
 
 import numpy as np
 
 from tactcad.lab.plain import plain
 
 SCHEMA = "tactcad-validation-1"
+T = TypeVar("T")
 
 STYLE = """
 :root{color-scheme:light}
@@ -47,6 +50,16 @@ footer{padding:30px 28px 50px;color:#4a525b;font-size:14px}
 
 
 @dataclass(frozen=True)
+class Marked:
+    """A cell to be noticed."""
+
+    value: str | float
+
+
+Cell = str | float | Marked  # numbers of numpy too
+
+
+@dataclass(frozen=True)
 class Table:
     """Columns are (name, unit); cells are text, numbers, or Marked numbers that the text points at."""
 
@@ -56,11 +69,12 @@ class Table:
     note: str = ""
 
 
-@dataclass(frozen=True)
-class Marked:
-    """A cell to be noticed."""
-
-    value: object
+def tabulated(
+    title: str, items: Iterable[T], *columns: tuple[str, str, Callable[[T], Cell]], note: str = ""
+) -> Table:
+    """A row for each item; a column is its name, its unit, and what an item's cell holds."""
+    rows = tuple(tuple(cell(item) for _, _, cell in columns) for item in items)
+    return Table(title, tuple((name, unit) for name, unit, _ in columns), rows, note)
 
 
 @dataclass(frozen=True)
@@ -127,7 +141,7 @@ def interval(low: float, high: float, digits: int = 3) -> str:
     return f"{sig(low, digits)} to {sig(high, digits)}"
 
 
-def listed(items) -> str:
+def listed(items: Iterable[object]) -> str:
     """'a', 'a and b', 'a, b and c'."""
     words = [str(i) for i in items]
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"
@@ -183,9 +197,8 @@ def to_html(report: Report) -> str:
         f"<style>{STYLE}</style></head>\n<body>"
     )
     top = (
-        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p>"
-        f"<h3>What stands out</h3>{_list(report.summary)}"
-        f"<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
+        f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p><h3>What stands "
+        f"out</h3>{_list(report.summary)}<nav><h3>Contents</h3><ol>{contents}</ol></nav></header>\n"
     )
     return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
 
@@ -223,22 +236,16 @@ def _table(t: Table) -> str:
     )
 
 
-def _wordy(cell: object) -> bool:
+def _wordy(cell: Cell) -> bool:
     """Whether a cell is words, not a number with its sign, unit or interval."""
     value = cell.value if isinstance(cell, Marked) else cell
-    return isinstance(value, str) and bool(value) and not re.match(r"[+−±–×∞]? ?[\d∞–]*[\d.]*", value)[0]
+    return isinstance(value, str) and bool(value) and not re.match(r"[+−±–×∞ \d.]", value)
 
 
-def _cell(cell: object, text: bool) -> str:
-    marked = isinstance(cell, Marked)
-    value = cell.value if marked else cell
-    shown = (
-        value
-        if isinstance(value, str)
-        else str(value)
-        if isinstance(value, (int, np.integer))
-        else sig(value)
-    )
-    kinds = " ".join(k for k, on in (("text", text), ("mark", marked)) if on)
+def _cell(cell: Cell, text: bool) -> str:
+    value = cell.value if isinstance(cell, Marked) else cell
+    whole = isinstance(value, (str, int, np.integer))
+    shown = str(value) if whole else sig(float(value))
+    kinds = " ".join(k for k, on in (("text", text), ("mark", isinstance(cell, Marked))) if on)
     attribute = f' class="{kinds}"' if kinds else ""
     return f"<td{attribute}>{html.escape(shown)}</td>"

@@ -53,6 +53,16 @@ class Residuals:
         return float(self.residual.std(ddof=1))
 
     @property
+    def furthest(self) -> int:
+        """Row of the element whose stiffness is furthest off."""
+        return int(np.argmax(np.abs(self.residual)))
+
+    @property
+    def scatter_of_others(self) -> float:
+        """The same without the element that is furthest off."""
+        return float(np.delete(self.residual, self.furthest).std(ddof=1))
+
+    @property
     def thickness_change(self) -> np.ndarray:
         return self.thickness_needed - self.thickness
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.lab.regression import fit_lines, t_quantile
-from tactcad.paper.published import Published
+from tactcad.paper.published import Column, Published
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,10 @@ def check(data: Published) -> Table1Check:
     t = data.table1
     d, slope = t.deflection, t.signal_per_deflection
     mm = 1e-3
-    relative = lambda c: c.half_step / np.abs(c.value)  # noqa: E731
+
+    def relative(c: Column) -> np.ndarray:
+        return c.half_step / np.abs(c.value)
+
     force = _product(t.force, t.stiffness.value * d.value * mm, relative(t.stiffness) + relative(d))
     signal = _product(t.signal, np.abs(slope.value) * d.value * mm, relative(slope) + relative(d))
     ratio = _product(
@@ -70,7 +73,7 @@ def check(data: Published) -> Table1Check:
     return Table1Check(t.element, force, signal, ratio, _series(data))
 
 
-def _product(printed, computed: np.ndarray, rounding: np.ndarray) -> Product:
+def _product(printed: Column, computed: np.ndarray, rounding: np.ndarray) -> Product:
     return Product(
         printed.value,
         computed,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.fem import rungs as fem_rungs
+from tactcad.fem import element_rungs as fem_rungs
 from tactcad.paper import (
     budget,
     gain,

@@ -10,6 +10,7 @@ r"""Carrier over the end plates: takes the axis, and the set screws that hold th
 from __future__ import annotations
 
 from tactcad.contour import rectangle
+from tactcad.design.present import present
 
 from .description import Extrusion, Feature, Hole, Part
 from .fasteners import carrier_screw
@@ -28,7 +29,7 @@ def carrier(layout: Layout) -> Part:
     length, width = layout.carrier_size
     t = d.clamp.carrier_thickness
     metric = METRIC[thread]
-    screw = carrier_screw(layout)
+    screw = present(carrier_screw(layout))
     counterbore = (counterbore_diameter(thread), round(t - screw.under_head, 9))
     features: list[Feature] = []
     for sx in (-1.0, 1.0):

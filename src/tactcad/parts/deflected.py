@@ -39,13 +39,13 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
         )
     # the arm's direction from the hinge lies in the left half-plane: phi + atan2(v, u) there too
     angle = -(-pi - asin(w / hypot(u, v)) - atan2(v, u))
-    outer = _bent(part.body.outer, (place.hinge_x, z), angle)
+    outer = _bent(part.extrusion.outer, (place.hinge_x, z), angle)
     return replace(
         part,
         part_no=f"{part.part_no}-at-{deflection:g}mm",
         name=f"{part.name}, deflected {deflection:g}",
         process="reference",
-        body=Extrusion(outer, part.body.thickness, part.body.openings),
+        body=Extrusion(outer, part.extrusion.thickness, part.extrusion.openings),
         notes=("deflected state, for collision checks only",),
         characteristics=(),
         finish="",
@@ -56,9 +56,9 @@ def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -
     """Deflection, mm, at which the arm has turned the pad's edge towards the hinge under the roller of that
     radius, mm.
 
-    Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w + d)^2, on
-    the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0. Infinite where no
-    deflection moves it that far.
+    Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w +
+    d)^2, on the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0.
+    Infinite where no deflection moves it that far.
     """
     _, w = _heights(layout, place, roller)
     half = layout.design.element.pad_length / 2

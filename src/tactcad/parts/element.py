@@ -12,6 +12,7 @@ stop land                                      +-------------------------+ rear_
 from __future__ import annotations
 
 from tactcad.contour import Contour, Corner, circle, rounded_polygon
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
@@ -147,7 +148,7 @@ def dowel_hole_diameter(design: Design) -> float:
 
 
 def sheet_material(design: Design) -> Material:
-    return Material(design.material.alloy, design.material.density)
+    return Material(design.material.alloy, present(design.material.density))
 
 
 def shortest(value: float) -> str:

@@ -10,6 +10,7 @@ above.
 from __future__ import annotations
 
 from tactcad.contour import rectangle
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Feature, Hole, Part, Vector
@@ -79,7 +80,7 @@ def _screw_hole(name: str, d: Design, c: Clamping, head: bool, at: Vector, depth
     if c.rod or (head and c.head_plate_web is None):
         return Hole(name, at, (0, 0, 1), m.clearance, depth, True)
     if head:
-        deep = round(depth - c.head_plate_web, 9)
+        deep = round(depth - present(c.head_plate_web), 9)
         counterbore = (counterbore_diameter(d.clamp.screw), deep) if deep > 0 else None
         return Hole(name, at, (0, 0, 1), m.clearance, depth, True, counterbore=counterbore)
     # from the inner face, where the screw comes in

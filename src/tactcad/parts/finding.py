@@ -9,6 +9,8 @@ from typing import Literal
 # Below this, two lengths written in decimals are the same length (mm).
 SAME = 1e-9
 
+Severity = Literal["fail", "flag"]
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -16,7 +18,8 @@ class Finding:
 
     check     name of the rule or the check
     severity  `fail` must not leave the house; `flag` is for whoever quotes or reviews
-    part      what it is about: a part's number, a designator, a design; of a rule, the path of the field to look at
+    part      what it is about: a part's number, a designator, a design; of a rule, the path of the field to
+              look at
     place     where on the part, mm in its own frame; empty for the whole part
     value     in the unit that the message names
     limit     likewise; of a rule, in words what is legal
@@ -24,7 +27,7 @@ class Finding:
     """
 
     check: str
-    severity: Literal["fail", "flag"]
+    severity: Severity
     part: str
     place: tuple[float, ...]
     value: object

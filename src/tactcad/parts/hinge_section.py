@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tactcad.design.materials import ALLOYS, Alloy
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
@@ -43,8 +44,8 @@ def shared_parameters(design: Design) -> dict[str, float]:
     """What all elements of a design have in common, by the names of `HingeSection`'s fields; mm, MPa."""
     return {
         "body_height": design.element.body_height,
-        "poisson": design.material.poisson,
-        "youngs_modulus": design.material.youngs_modulus,
+        "poisson": present(design.material.poisson),
+        "youngs_modulus": present(design.material.youngs_modulus),
         "width": design.sheet.thickness,
         "two_sided": design.element.sides == "two",
         "pad_height": design.element.pad_height,
@@ -57,11 +58,11 @@ def design_alloy(design: Design) -> Alloy:
     m, known = design.material, ALLOYS[design.material.alloy]
     return Alloy(
         m.alloy,
-        m.youngs_modulus,
-        m.poisson,
-        m.density,
-        m.yield_strength,
-        m.fatigue_strength,
+        present(m.youngs_modulus),
+        present(m.poisson),
+        present(m.density),
+        present(m.yield_strength),
+        present(m.fatigue_strength),
         known.source,
         known.tensile_strength,
     )

@@ -81,6 +81,6 @@ def _estimators(layout: Layout, place: ElementPlace) -> tuple[Characteristic, ..
 
 def _measurement(c: Characteristic) -> Measurement:
     # to a nanometre: 0.25 - 0.005 is a binary fraction
-    values = (round(value, 6) for value in (c.nominal, c.lower, c.upper))
+    nominal, lower, upper = (round(value, 6) for value in (c.nominal, c.lower, c.upper))
     enters, where, how = WAYS.get(c.name, AS_DRAWN)
-    return Measurement(c.name, *values, c.key, enters, where, how)
+    return Measurement(c.name, nominal, lower, upper, c.key, enters, where, how)

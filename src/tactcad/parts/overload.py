@@ -58,16 +58,19 @@ def overloads(layout: Layout) -> list[Overload]:
     # beyond the estimator's range K is NaN, and so are all figures but the gap
     stress = strain.stress_beyond_the_fit(s, closing + stress_share(s, K, arm, give) * beyond)
     yields = strength.yield_force_where_known(s, alloy)
-    columns = (
-        gap + tolerance,
-        earliest,
-        closing,
-        beyond * s.load_arm / arm,
-        (closing + deflection_share(s, K, arm, give) * beyond) / K,
-        yields / rating.deflection_factor / K,
-        stress,
-        alloy.yield_strength / stress,
-        np.minimum(rating.force, yields / rating.yield_factor),
-    )
-    rows = np.stack([np.broadcast_to(c, s.shape) for c in columns], axis=1)
-    return [Overload(p, *map(float, row), str(why)) for p, row, why in zip(places, rows, known.reason)]
+    figures = {
+        "gap": gap + tolerance,
+        "earliest": earliest,
+        "closing_force": closing,
+        "stop_force": beyond * s.load_arm / arm,
+        "deflection": (closing + deflection_share(s, K, arm, give) * beyond) / K,
+        "rated_deflection": yields / rating.deflection_factor / K,
+        "stress": stress,
+        "yield_factor": alloy.yield_strength / stress,
+        "rated_force": np.minimum(rating.force, yields / rating.yield_factor),
+    }
+    by_name = {name: np.broadcast_to(column, s.shape).tolist() for name, column in figures.items()}
+    return [
+        Overload(place, **{name: column[i] for name, column in by_name.items()}, refused=str(known.reason[i]))
+        for i, place in enumerate(places)
+    ]

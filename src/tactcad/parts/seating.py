@@ -1,21 +1,25 @@
 """How hard the set screws seat the stop plate: they bow stack and carrier apart between the end plates.
 
-A stop plate that only lies on its ledges, its set screws touching it, is held as well: seating takes their play.
+A stop plate that only lies on its ledges, its set screws touching it, is held as well: seating takes their
+play.
 """
 
 from __future__ import annotations
 
 from math import floor, log10
 
+from tactcad.design.present import present
 from tactcad.mechanics.bending import Beam
 
 from .layout import Layout
 from .library.screws import seating_force, seating_torque
 from .stop_give import carrier_beam
 
-# Of the pads' tolerance, what the stack may bow: it makes the pads' error, in root sum of squares, an eighth larger.
+# Of the pads' tolerance, what the stack may bow: it makes the pads' error, in root sum of squares, an eighth
+# larger.
 BOW = 0.5
-# mm within which the rigs' plates and the lid are made flat (`finish`); the carrier under one may bow by as much.
+# mm within which the rigs' plates and the lid are made flat (`finish`); the carrier under one may bow by as
+# much.
 FLAT = 0.02
 # N m; chosen: the smallest torque drivers for screws begin there.
 LEAST_TORQUE = 0.02
@@ -24,8 +28,8 @@ LEAST_TORQUE = 0.02
 def stack_beam(layout: Layout) -> Beam:
     """Both rows' rear bodies and spacers, as high as the spacers, between the end plates."""
     z0, z1 = layout.spacer_z
-    m = layout.design.material
-    return Beam(layout.stack, 2 * layout.design.element.rear_length, z1 - z0, m.youngs_modulus, m.poisson)
+    m, width = layout.design.material, 2 * layout.design.element.rear_length
+    return Beam(layout.stack, width, z1 - z0, present(m.youngs_modulus), present(m.poisson))
 
 
 def stack_bow(layout: Layout) -> float:
@@ -43,8 +47,8 @@ def _bow(layout: Layout, beam: Beam) -> float:
 
 
 def torque(layout: Layout) -> float:
-    """N m of the set screws, to one digit: the thread's, or less, so that stack and carrier bow no more than they may;
-    0 where that is too little to be set: then they only touch the plate."""
+    """N m of the set screws, to one digit: the thread's, or less, so that stack and carrier bow no more than
+    they may; 0 where that is too little to be set: then they only touch the plate."""
     thread = layout.design.clamp.screw
     full, force = seating_torque(thread), seating_force(thread)
     bows = force * stack_bow(layout) / (BOW * layout.design.tolerance.pad_height)

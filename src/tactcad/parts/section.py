@@ -26,19 +26,19 @@ def cut_section(part: Part) -> Extrusion | None:
     """What a cut file leaves of a part before anything else is done to it: its section, extruded. None where
     it has none.
 
-    Wire-cut parts are cut with all their holes. A part that is milled or ground from plate has a cut file of its blank:
-    the outline, and what may be cut with it to its final or its tap drill's size. Holes with a fit are left to the reamer;
-    counterbores, threads and holes from the edges to the drawing. What has a pocket, or is thicker than it is wide, is
-    milled from a block.
+    Wire-cut parts are cut with all their holes. A part that is milled or ground from plate has a cut file of
+    its blank: the outline, and what may be cut with it to its final or its tap drill's size. Holes with a fit
+    are left to the reamer; counterbores, threads and holes from the edges to the drawing. What has a pocket,
+    or is thicker than it is wide, is milled from a block.
     """
     if part.process == "wire-cut":
         outer, openings = section(part)
-        return Extrusion(outer, part.body.thickness, openings)
+        return Extrusion(outer, part.extrusion.thickness, openings)
     if part.process not in ("milled", "ground") or not _is_plate(part):
         return None
     reamed = {f.at[:2] for f in part.features if isinstance(f, Hole) and f.tolerance}
     outer, openings = section(part)
-    return Extrusion(outer, part.body.thickness, tuple(c for c in openings if c.centroid not in reamed))
+    return Extrusion(outer, part.extrusion.thickness, tuple(c for c in openings if c.centroid not in reamed))
 
 
 def _is_plate(part: Part) -> bool:

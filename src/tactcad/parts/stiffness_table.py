@@ -1,26 +1,29 @@
-"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its rigs.
+"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its
+rigs.
 
-Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most bend less.
-Bought parts are not in it: their makers state how stiff they are.
+Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most
+bend less. Bought parts are not in it: their makers state how stiff they are.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
-from typing import Literal
 
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam
+from tactcad.parts.finding import Severity
 
 from . import seating
 from .layout import Layout
-from .stop_gap import stop_limit
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
-# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 % in root sum
-# of squares, so that a dozen of them together are still less than the tenth part of what they are a share of.
+# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 %
+# in root sum of squares, so that a dozen of them together are still less than the tenth part of what they are
+# a share of.
 TENTH = 0.1
+# By this share more is the same: sums of the same numbers in another order.
+ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,7 @@ class Deflection:
     load        N, and `origin`, why so much
     gives       um; below 0 where that closes a gap
     allowed     um, and `why`
+    fields      paths of the design's fields that make it bend less, the first to be looked at first
     severity    `flag`: where the array is well, and whoever builds or holds it has to know
     """
 
@@ -43,14 +47,23 @@ class Deflection:
     gives: float
     allowed: float
     why: str
-    severity: Literal["fail", "flag"] = "fail"
+    fields: tuple[str, ...]
+    severity: Severity = "fail"
+
+    @property
+    def too_much(self) -> bool:
+        return self.gives > self.allowed * (1.0 + ROUNDING)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.scene}: {self.part} gives way by {self.gives:.3g} um under {self.load:.3g} N "
+            f"({self.origin}), "
+            f"{self.model}; allowed are {self.allowed:.3g} um, {self.why}"
+        )
 
 
 def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
-    """The table of a design that keeps its rules, for those of its scenes.
-
-    Raises CheckFailure where the estimator, which the stop's gaps are from, does not reach the design.
-    """
+    """The table of a design that keeps its rules, for those of its scenes."""
     from .rigs.stiffness import calibration_lines, grasping_lines, sample_lines
 
     lines = {
@@ -89,6 +102,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         f"{origin}, all on one end",
         1e3 * force * plate.supported(),
         *pads_plane(design),
+        ("clamp.end_plate_thickness", "tolerance.pad_height", origin),
     )
     stack = seating.stack_beam(layout)
     yield Deflection(
@@ -99,6 +113,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         f"{origin}, on all pads",
         1e3 * force * stack.supported_evenly(),
         *pads_plane(design),
+        ("element.rear_height", "tolerance.pad_height", origin),
         "flag",
     )
     screw = seating.force(layout)
@@ -113,6 +128,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         1e3 * screw * seating.stack_bow(layout),
         1e3 * seating.BOW * design.tolerance.pad_height,
         "half of tolerance.pad_height: the pads' error an eighth larger",
+        ("tolerance.pad_height",),
     )
     yield Deflection(
         "array",
@@ -123,26 +139,41 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         1e3 * screw * seating.carrier_bow(layout),
         1e3 * seating.FLAT,
         "as flat as the plate that it is screwed on",
+        ("clamp.carrier_thickness",),
     )
 
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     """What bends between arm and stop, under the arm that has least room for it."""
+    from .stop_gap import stop_limit  # numpy, which the rigs' lines do without
+
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
-    for part, model, give, severity in (
-        ("stop plate", "strip between rows of set screws, plate between pairs", _plate, "fail"),
-        ("carrier", "held by its threads in the middle", carrier_opens, "fail"),
-        ("carrier", "the array held by its end plates alone", lambda layout, y: held, "flag"),
-    ):
+    force_field = "rating.overload_force"
+    plate, carrier = ("clamp.stop_plate_thickness", force_field), ("clamp.carrier_thickness", force_field)
+    cases: tuple[tuple[str, str, Callable[[Layout, float], float], tuple[str, ...], Severity], ...] = (
+        ("stop plate", "strip between rows of set screws, plate between pairs", _plate, plate, "fail"),
+        ("carrier", "held by its threads in the middle", carrier_opens, carrier, "fail"),
+        ("carrier", "the array held by its end plates alone", lambda layout, y: held, carrier, "flag"),
+    )
+    for part, model, give, fields, severity in cases:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm
             allowed = 1e3 * SHARE * stop_limit(layout, p, give=0.0).gap
             states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
         share, force, allowed = max(states)
-        origin = "rating.overload_force on one arm, at its tip"
-        why = "a tenth of the stop's gap"
-        yield Deflection("array", part, model, force, origin, share * allowed, allowed, why, severity)
+        yield Deflection(
+            "array",
+            part,
+            model,
+            force,
+            f"{force_field} on one arm, at its tip",
+            share * allowed,
+            allowed,
+            "a tenth of the stop's gap",
+            fields,
+            severity,
+        )
 
 
 def _plate(layout: Layout, y: float) -> float:

@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import floor, sqrt
 
+import numpy as np
+
+from tactcad.design.present import present
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload
@@ -24,7 +27,8 @@ class StopLimit:
     """What an element's stop must do.
 
     gap       mm, the widest at the tip that keeps the hinge within its rated deflection, tolerance and all
-    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the hinge
+    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the
+              hinge
     """
 
     gap: float
@@ -34,8 +38,9 @@ class StopLimit:
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
-    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its rated
-    deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded down.
+    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its
+    rated deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded
+    down.
     """
     stop = layout.design.stop
     if stop.gaps and place.arm in stop.gaps:
@@ -46,12 +51,13 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
-    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield of the
-    fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives way as its
-    beams say, or by `give` mm/N.
+    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield
+    of the fillet, carried from the load line to the tip by the rigid arm's lever a/L. The stop plate gives
+    way as its beams say, or by `give` mm/N.
 
-    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and errs to
-    a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
+    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and
+    errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000
+    random designs).
     """
     design = layout.design
     own = own_parameters(place.hinge, place.load_arm, place.body_length)
@@ -59,7 +65,7 @@ def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -
     return _limit(
         tuple(parameters.items()),
         place.arm,
-        design.material.yield_strength / design.rating.deflection_factor,
+        present(design.material.yield_strength) / design.rating.deflection_factor,
         design.rating.overload_force,
         design.stop.tolerance,
         layout.stop_give if give is None else give,
@@ -88,9 +94,11 @@ def _limit(
     """`stop_limit` of the section with these parameters, whose fillet may bear `stress` (MPa)."""
     section = HingeSection.of(**dict(parameters))
     fitted = ladder.evaluate(section, "solid")
-    K = float(fitted.stiffness if fitted.valid else ladder.stiffness(section, "section"))
+    K = fitted.stiffness if fitted.valid else ladder.stiffness(section, "section")
+    length = np.array(arm)
     rated = stress / strain.stress_beyond_the_fit(section, 1.0)
-    closing = float(largest_closing_force(section, K, arm, give, overload, rated))
+    closing = largest_closing_force(section, K, length, give, overload, rated)
     lever = arm / float(section.load_arm)  # of the tip over that of the load line
     narrow = K * (2.0 * tolerance + STEP_MM) / lever
-    return StopLimit(closing / K * lever, float(largest_overload(section, K, arm, give, narrow, rated)))
+    most = largest_overload(section, K, length, give, narrow, rated)
+    return StopLimit(float(closing / K * lever), float(most))

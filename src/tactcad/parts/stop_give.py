@@ -1,9 +1,11 @@
-"""How far the stop plate gives way where an arm presses it off its ledges, from the set screws that hold it down.
+"""How far the stop plate gives way where an arm presses it off its ledges, from the set screws that hold it
+down.
 
-Two beams in a row, each on supports that let it turn: across, from one row of set screws to the other, a strip as
-wide as a slab lends to one load (2.4 a (1 - a/span), in the middle 0.6 of the span; BS 8110-1, 3.5.2.2) carries the
-arm; along, the whole plate spans from one pair of set screws to the next. To that comes the set screw's own length.
-Ledges, further spans, and the screws' seating, which presses the plate on its ledges, only take from it.
+Two beams in a row, each on supports that let it turn: across, from one row of set screws to the other, a
+strip as wide as a slab lends to one load (2.4 a (1 - a/span), in the middle 0.6 of the span; BS 8110-1,
+3.5.2.2) carries the arm; along, the whole plate spans from one pair of set screws to the next. To that comes
+the set screw's own length. Ledges, further spans, and the screws' seating, which presses the plate on its
+ledges, only take from it.
 
 The carrier is not in it: held at its threads in the middle it opens no gap by a hundredth of a micrometre
 (`carrier_opens`; stiffness_table.py holds that, and what it is for an array held by its end plates alone).
@@ -26,8 +28,9 @@ if TYPE_CHECKING:
 # 1.4301, EN 10088-1; A2 screws are of the same steel. MPa
 STEEL_MODULUS, STEEL_POISSON = 200000.0, 0.3
 SLAB = 0.6
-# Of its gap, what the plate may give way under an arm. The gap is cut narrower by what is told here; were it a third
-# more, which elements do not find, that were 3 % of the gap, where the rated deflection keeps 5 % (1.2 over 1.14).
+# Of its gap, what the plate may give way under an arm. The gap is cut narrower by what is told here; were it
+# a third more, which elements do not find, that were 3 % of the gap, where the rated deflection keeps 5 %
+# (1.2 over 1.14).
 SHARE = 0.1
 
 
@@ -35,7 +38,8 @@ SHARE = 0.1
 class StopPlate:
     """Its beams between set screws, and the compliance of one set screw (mm/N).
 
-    One arm under the whole overload force is the worst: there is no more force, and shared it bends the plate less.
+    One arm under the whole overload force is the worst: there is no more force, and shared it bends the plate
+    less.
     """
 
     across: Beam
@@ -75,12 +79,13 @@ def carrier_beam(layout: Layout, length: float) -> Beam:
 
 
 def carrier_opens(layout: Layout, y: float) -> float:
-    """By how much the carrier, held in its middle, opens the gap of an arm at `y`: mm/N of stop force, < 0 closes it.
+    """By how much the carrier, held in its middle, opens the gap of an arm at `y`: mm/N of stop force, < 0
+    closes it.
 
-    The stop pushes the carrier up at y, u of the half length h; the load, which is more, goes through the end plate
-    to the carrier's end. The carrier rises at u by bending h^3 u^3/3EI, its end by h^3 u^2 (3 - u)/6EI, the ledges
-    between the ends by (1 + u)/2 of that. Shear and twist (the stop x off the middle line) raise the carrier and its
-    end by the same k h u, k = 1/(5/6 G A) + x^2/(G J). The difference is what opens:
+    The stop pushes the carrier up at y, u of the half length h; the load, which is more, goes through the end
+    plate to the carrier's end. The carrier rises at u by bending h^3 u^3/3EI, its end by h^3 u^2 (3 - u)/6EI,
+    the ledges between the ends by (1 + u)/2 of that. Shear and twist (the stop x off the middle line) raise
+    the carrier and its end by the same k h u, k = 1/(5/6 G A) + x^2/(G J). The difference is what opens:
 
         h u (1 - u) (k/2 - h^2 u (u + 3)/12EI)
     """
@@ -92,7 +97,8 @@ def carrier_opens(layout: Layout, y: float) -> float:
 
 
 def unheld(layout: Layout) -> float:
-    """Largest length along the row without set screws, mm: between two pairs, or twice what arms stand beyond the last."""
+    """Largest length along the row without set screws, mm: between two pairs, or twice what arms stand beyond
+    the last."""
     screws = layout.hold_down_y
     return max([b - a for a, b in zip(screws, screws[1:])] + [2 * layout.beyond_screws])
 

@@ -33,8 +33,8 @@ def archive_bytes(files: Mapping[str, bytes], date: str) -> bytes:
 
 
 def replaced_content(target: Path, new: bytes) -> list[str]:
-    """What differs between the zip that stands at `target` and the new one, by file; empty where there is none or
-    nothing does."""
+    """What differs between the zip that stands at `target` and the new one, by file; empty where there is
+    none or nothing does."""
     if not target.is_file() or target.read_bytes() == new:
         return []
     try:

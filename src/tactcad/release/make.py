@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,13 +10,13 @@ from tactcad.checks.report import Report
 from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.export.golden import check_golden, golden_path
+from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import ExportOptions, Progress, export
 from tactcad.scenes import make_scene, scene_names
 
 from .archive import archive_bytes, replaced_content
-from .readme import MARK, Contents, readme_bytes
+from .readme import MARK, ReleaseContents, readme_bytes
 from .verify import README, check_archive
 
 QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
@@ -25,8 +24,8 @@ QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
 
 @dataclass(frozen=True)
 class Released:
-    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only), and what
-    differs from the zip that stood there before."""
+    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only),
+    and what differs from the zip that stood there before."""
 
     path: Path
     design: str
@@ -40,16 +39,17 @@ class Released:
 def release(
     design: Design,
     design_file: Path,
-    out: str | os.PathLike[str],
+    out: str | Path,
     shop_file: Path,
     progress: Progress,
     draft: bool = False,
 ) -> Released:
-    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft, `<design>-<revision>-PRELIMINARY.zip`.
+    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft,
+    `<design>-<revision>-PRELIMINARY.zip`.
 
-    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden file
-    does not hold just this revision (a draft goes on and says so in its README), or where what was written does
-    not read back; InputError where `out` cannot be written.
+    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden
+    file does not hold just this revision (a draft goes on and says so in its README), or where what was
+    written does not read back; InputError where `out` cannot be written.
     """
     revision = design.design.revision
     target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
@@ -65,7 +65,7 @@ def release(
     flags = [
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
-    contents = Contents(design, scenes, flags, failures, draft)
+    contents = ReleaseContents(design, scenes, flags, failures, draft)
     with scratch_folder("release") as folder:
         files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, draft)
     files = {README: readme_bytes(contents, list(files)), **files}
@@ -83,8 +83,8 @@ def release(
 
 
 def golden_faults(design: Design, design_file: Path) -> list[str]:
-    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry, or where
-    the design stands in no hardware/ and can have none."""
+    """Why the golden file does not allow a release of this revision; empty where it holds just this geometry,
+    or where the design stands in no hardware/ and can have none."""
     path = golden_path(design_file, design)
     return [] if path is None else [finding.message for finding in check_golden(design, path)]
 

@@ -1,4 +1,5 @@
-"""README.txt of a release: what a shop reads first. Plain ASCII where the design's own texts are, 96 columns."""
+"""README.txt of a release: what a shop reads first. Plain ASCII where the design's own texts are, 96
+columns."""
 
 from __future__ import annotations
 
@@ -9,7 +10,8 @@ from textwrap import wrap
 from tactcad import __version__
 from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
-from tactcad.export import inspection, strength
+from tactcad.export import inspection
+from tactcad.export import strength_table as strength
 from tactcad.parts.description import Characteristic, Part
 from tactcad.parts.finding import Finding
 from tactcad.parts.hinge_section import thickness_elasticity
@@ -22,12 +24,14 @@ WIDTH = 96
 MARK = "PRELIMINARY"
 DRAFT = f"{MARK}: for discussion only. Do not make anything from these files."
 FOLDERS = {
-    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of milled and ground "
+    "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
+    "milled and ground "
     "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
     "step/": "every part as a solid, and every assembly (AP214, millimetres)",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
-    inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, expanded, "
+    inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "
+    "expanded, "
     "k = 2, if you state it) and send it back. Decimal points, mm.",
     strength.NAME: "what every element is rated for; for information",
     MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
@@ -36,8 +40,9 @@ PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "T
 
 
 @dataclass(frozen=True)
-class Contents:
-    """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is none)."""
+class ReleaseContents:
+    """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is
+    none)."""
 
     design: Design
     scenes: Sequence[Scene]
@@ -56,7 +61,7 @@ class Contents:
         return max(scene.count(part) for scene in self.scenes)
 
 
-def readme_bytes(contents: Contents, paths: Sequence[str]) -> bytes:
+def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
     """The text for a release that holds `paths`, UTF-8 with line ends that every editor shows."""
     design = contents.design
     identity = design.design
@@ -98,22 +103,24 @@ def _listed(texts: Sequence[str]) -> list[str]:
     return [*lines, ""]
 
 
-def _draft(contents: Contents) -> list[str]:
+def _draft(contents: ReleaseContents) -> list[str]:
     lines = _paragraph(DRAFT)
     if contents.failures:
         lines += ["It could not be released because:", *_listed(contents.failures)]
     return lines
 
 
-def _what(contents: Contents) -> list[str]:
+def _what(contents: ReleaseContents) -> list[str]:
     design, layout = contents.design, Layout(contents.design)
     count = len(layout.elements)
     thinnest = min(layout.elements, key=lambda place: place.hinge.t)
     per_hundredth = thickness_elasticity(layout, thinnest) * 0.01 / thinnest.hinge.t
     others = [scene.name for scene in contents.scenes if scene.name != "array"]
     text = (
-        f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from {design.sheet.thickness:g} mm "
-        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness decides its stiffness: "
+        f"A tactile sensor array of {count} sensing element{'s' if count > 1 else ''}, wire-cut from "
+        f"{design.sheet.thickness:g} mm "
+        f"{design.material.alloy} sheet. Each has a hinge {thinnest.hinge.t:g} mm thin, whose thickness "
+        f"decides its stiffness: "
         "one hundredth of a millimetre more or less is "
         f"{100 * per_hundredth:.0f} % more or less stiffness. Everything else is ordinary plate work."
     )
@@ -122,7 +129,7 @@ def _what(contents: Contents) -> list[str]:
     return _paragraph(text)
 
 
-def _table(contents: Contents) -> list[str]:
+def _table(contents: ReleaseContents) -> list[str]:
     heads = ("part", "qty", "spares", "material", "size, mm", "finish")
     rows = [
         (
@@ -153,12 +160,13 @@ def _table(contents: Contents) -> list[str]:
         lines += line(row)
     lines.append("")
     return lines + _paragraph(
-        "Quantities are for one of every set-up. Bought parts (screws, pins, bearings, gauges) stand in the bills of "
+        "Quantities are for one of every set-up. Bought parts (screws, pins, bearings, gauges) stand in the "
+        "bills of "
         "materials with make_buy = buy; they need no quotation unless we ask for one."
     )
 
 
-def _short(contents: Contents, numbers: Sequence[str]) -> str:
+def _short(contents: ReleaseContents, numbers: Sequence[str]) -> str:
     """Part numbers in a sentence, without the design's name, which most of them begin with."""
     return ", ".join(number.removeprefix(f"{contents.design.name}-") for number in numbers)
 
@@ -168,7 +176,7 @@ def _size(part: Part) -> str:
     return " x ".join(f"{round(b - a, 3):g}" for a, b in zip(low, high))
 
 
-def _keys(contents: Contents) -> list[str]:
+def _keys(contents: ReleaseContents) -> list[str]:
     """Each distinct key characteristic with the parts that have it."""
     groups: dict[Characteristic, list[str]] = {}
     for part in contents.made:
@@ -180,12 +188,14 @@ def _keys(contents: Contents) -> list[str]:
         lines.append(f"  {c.name}: {c.nominal:g} mm, {round(c.lower, 6):g} to {round(c.upper, 6):g}")
         lines += _paragraph(_short(contents, numbers), "      ")[:-1]
     return [*lines, ""] + _paragraph(
-        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
-        "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO 2768-2:1989-K."
+        f"Part numbers here and below without {contents.design.name}-. Measure these on every element and "
+        f"record them in {inspection.NAME}, by the element's number (E1, E2, ...: mark the "
+        "bags, not the parts). Every other dimension without its own tolerance: ISO 2768-1:1989-m, ISO "
+        "2768-2:1989-K."
     )
 
 
-def _how(contents: Contents) -> list[str]:
+def _how(contents: ReleaseContents) -> list[str]:
     """The parts' own notes, each once, with the parts that it holds for."""
     groups: dict[str, list[str]] = {}
     for part in contents.made:
@@ -208,18 +218,21 @@ def _files(paths: Sequence[str]) -> list[str]:
             )
             lines += _paragraph(text, " " * 22, f"  {shown:20}")[:-1]
     return [*lines, ""] + _paragraph(
-        "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find that they do "
+        "A part's files carry its part number and the revision. Drawing and STEP file agree; where you find "
+        "that they do "
         "not, the drawing holds and we want to know."
     )
 
 
-def _questions(contents: Contents) -> list[str]:
+def _questions(contents: ReleaseContents) -> list[str]:
     aluminium = contents.design.material.alloy
     return _listed(
         [
-            "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that they leave.",
+            "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that "
+            "they leave.",
             "Whether you hold the hinge thickness as toleranced, and with what you measure it.",
-            "The order of cuts, and how the hinge is kept from bending when the slug drops (tab, adhesive, order).",
+            "The order of cuts, and how the hinge is kept from bending when the slug drops (tab, adhesive, "
+            "order).",
             "How the holes of the elements are made: wire-cut from a start hole (as drawn), or reamed.",
             f"Whether your machine has an anti-electrolysis supply: {aluminium} pits without it.",
             "Price and delivery for the quantities above, and for twice the elements.",
@@ -227,7 +240,7 @@ def _questions(contents: Contents) -> list[str]:
     )
 
 
-def _flags(contents: Contents) -> list[str]:
+def _flags(contents: ReleaseContents) -> list[str]:
     if not contents.flags:
         return ["Nothing.", ""]
     return _listed(list(dict.fromkeys(str(f).removeprefix("flag: ") for f in contents.flags)))

@@ -1,8 +1,9 @@
 """Which parts stand where, under which designator, with which meant contacts, and in which order they are
 put together.
 
-In: a design, and a pose. Out: a scene, which is a list of placements and no geometry; a scene is a module of this room
-with a function of its own name. Which scenes a design has is known without importing them: that must cost nothing.
+In: a design, and a pose. Out: a scene, which is a list of placements and no geometry; a scene is a module of
+this room with a function of its own name. Which scenes a design has is known without importing them: that
+must cost nothing.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import seating
 from tactcad.parts.blank import blank
@@ -40,8 +41,8 @@ HOLD_DOWN = "Hold the stop plate down"
 def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the stop plate
-    and its set screws are not in place yet, as in the calibration.
+    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the
+    stop plate and its set screws are not in place yet, as in the calibration.
     """
     layout = Layout(design)
     b = _placed(layout, instead, stops)
@@ -143,7 +144,7 @@ def _tie_rod(b: Builder, layout: Layout, x: float, length: float) -> None:
 
 def _carrier_screws(b: Builder, layout: Layout) -> None:
     """Carrier screws into the end"""
-    fixing = carrier_screw(layout)
+    fixing = present(carrier_screw(layout))
     screw = screws.cap_screw(layout.design.clamp.screw, fixing.length)
     z = layout.carrier_bottom + fixing.under_head
     for sx, sy in ((1, -1), (-1, -1), (1, 1), (-1, 1)):
@@ -158,7 +159,7 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
     plate = b.place("ST", stop_plate(layout), (0, 0, layout.ledge), UPRIGHT, STOP_PLATE)
     for designator in on_ledge:
         b.meet(designator, plate)
-    length = layout.hold_down.length
+    length = present(layout.hold_down.length)
     screw = screws.set_screw(layout.design.clamp.screw, length)
     for x, y in ((side * layout.hold_down_x, y) for side in (1, -1) for y in layout.hold_down_y):
         name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)
@@ -178,11 +179,10 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             GAUGES,
             (),
             (0, 0, 0),
-            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, "
-            "its grid centred on the "
-            "hinge within 0.1 mm, carrier trimmed to "
-            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, "
-            "solder three leads, and lay them in the wire recess towards the rear end.",
+            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, its "
+            "grid centred on the hinge within 0.1 mm, carrier trimmed to "
+            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
+            "and lay them in the wire recess towards the rear end.",
         ),
         Step(
             FIRST_PLATE,
@@ -209,17 +209,14 @@ def _steps(layout: Layout) -> tuple[Step, ...]:
             COPLANAR,
             (),
             (0, -1.5 * stack - 40.0 - 1.6 * width, 0),
-            "Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of "
-            f"{gap:g} mm between the rows' "
-            "pads. Press the elements' rear bodies down with a bar of rubber so that every pad stands on "
-            "the plate, then tighten the "
-            "clamping screws crosswise, in three rounds: a third, two thirds, the whole torque. "
-            f"Measure: no pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on "
-            "its back and read each pad "
-            f"with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in "
-            "the calibration set-up the "
-            "heights at which the force gauge first reads 0.01 N show the same to a micrometre. Record "
-            "them; loosen and repeat if one is off.",
+            f"Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of {gap:g} "
+            "mm between the rows' pads. Press the elements' rear bodies down with a bar of rubber so that "
+            "every pad stands on the plate, then tighten the clamping screws crosswise, in three rounds: a "
+            f"third, two thirds, the whole torque. Measure: no pad may let a {2 * tolerance * 1e3:g} um "
+            "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
+            f"the surface plate: all within {tolerance * 1e3:g} um; in the calibration set-up the heights at "
+            "which the force gauge first reads 0.01 N show the same to a micrometre. Record them; loosen and "
+            "repeat if one is off.",
         ),
         Step(
             STOP_PLATE,

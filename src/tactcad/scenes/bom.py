@@ -159,7 +159,8 @@ def rows_from_csv(data: bytes) -> tuple[BomRow, ...]:
 
 
 def _row(line: list[str]) -> BomRow:
-    return BomRow(*(_parsed(column, cell) for column, cell in zip(fields(BomRow), line, strict=True)))
+    values: Any = (_parsed(column, cell) for column, cell in zip(fields(BomRow), line, strict=True))
+    return BomRow(*values)
 
 
 def _parsed(column: Any, cell: str) -> object:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from tactcad.parts.consumables import Supply
-from tactcad.parts.description import Part, Vector
+from tactcad.parts.description import Part, Vector, vector
 from tactcad.parts.library import screws
 
 from .scene import (
@@ -21,6 +21,7 @@ from .scene import (
     Scene,
     Step,
 )
+from .scene import rotation as turn
 
 POINTING: dict[Vector, Rotation] = {
     (0, 0, 1): UPRIGHT,
@@ -91,11 +92,10 @@ class Builder:
     def subassembly(self, scene: Scene, rotation: Rotation, shift: Vector) -> None:
         """Everything of another scene, turned and moved; its designators stay."""
         for p in scene.placements:
-            turned = tuple(
-                tuple(sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3))
-                for i in range(3)
+            turned = turn(
+                (sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
             )
-            at = tuple(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
+            at = vector(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
             self._ready.add(self._add(Placement(p.designator, p.part, _rounded(at), turned)))
         self._scenes.append(scene)
         self.contacts += scene.contacts
@@ -143,4 +143,4 @@ class Builder:
 
 
 def _rounded(point: Vector) -> Vector:
-    return tuple(round(float(v), 9) + 0.0 for v in point)
+    return vector(round(float(v), 9) + 0.0 for v in point)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import floor
 
 from tactcad.design.messages import InputError
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.deflected import deflected_element
@@ -13,6 +15,7 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.carrier_screws import CARRIER_SCREW, carrier_pattern, under_carrier_screw
 from tactcad.parts.rigs.frame import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.stiffness import series_give
 
 from .array import array
 from .builder import Builder
@@ -42,7 +45,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
     under = _stages(b, rig, dx, dy)
     _mounted_array(b, rig, under, dx, dy, pose)
     contact = place_force_axis(b, rig, post, rig.pads_up, pose.height - pose.deflection, roller=True)
-    c = design.calibration
+    c = present(design.calibration)
     b.meet(contact, "TI1", "press")
     b.step(
         "Roller tip",
@@ -51,15 +54,15 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         "shaft, roller along y: "
         "lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, "
         "set x by the edge of "
-        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um.",
+        f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um. "
+        + _series(design),
     )
     b.step(
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
         _limits(design)
-        + " Afterwards take the array off its mount and the carrier off the array, and go on with the "
-        "step Stop "
-        "plate of the array's own guide. Zero every signal anew.",
+        + " Afterwards take the array off its mount and the carrier off the array, and go on with the step "
+        "Stop plate of the array's own guide. Zero every signal anew.",
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")
@@ -69,7 +72,7 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
     b.unit("stages")
-    c = rig.design.calibration
+    c = present(rig.design.calibration)
     fixed, moving = rigs.stage_fixed(c.stage_travel), rigs.stage_moving(c.stage_travel)
     head = rigs.micrometer(c.stage_travel, 0.01)
     t, half = STAGE_PLATE, STAGE / 2
@@ -97,9 +100,8 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
         b.step(
             f"Stage along {axis}",
             (0, 0, 30 + 25 * level),
-            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the "
-            "other end and fix the "
-            "other two. Then drive it to the middle of its travel."
+            f"Drive the {axis} stage to one end until two screws are free, fix them; drive it to the other "
+            "end and fix the other two. Then drive it to the middle of its travel."
             + (" Square to the x stage within 0.02 mm on 20 mm." if axis == "y" else ""),
             aside=(high,),
         )
@@ -115,7 +117,7 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     mount = b.place("AM", rigs.array_mount(rig), (dx, dy, z))
     b.meet(under, mount)
     carrier_top = rig.array.carrier_bottom + rig.design.clamp.carrier_thickness
-    roller = dowel_diameter(rig.design.calibration.roller) / 2
+    roller = dowel_diameter(present(rig.design.calibration).roller) / 2
     pressed = rig.array.elements[pose.element - 1]
     deflected = (
         {pose.element: deflected_element(rig.array, pressed, pose.deflection, roller)}
@@ -130,10 +132,9 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     b.step(
         "Array on its mount",
         (0, 0, 120),
-        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops "
-        "would close before the end "
-        "of the travel) on the mount with its carrier down, and fix it by four screws from below. Leads "
-        "leave along x, loose.",
+        "On the bench: lay the array (its own guide, but without stop plate and set screws: the stops would "
+        "close before the end of the travel) on the mount with its carrier down, and fix it by four screws "
+        "from below. Leads leave along x, loose.",
         bench=True,
     )
     for sx, sy in CORNERS:
@@ -142,16 +143,34 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     b.step(
         "Mount on the stages",
         (0, 0, 145),
-        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller "
-        "within 0.02 mm over the "
-        "whole y travel.",
+        "Fix the mount on the upper stage, its rows along x: a pad's edge must stay under the roller within "
+        "0.02 mm over the whole y travel.",
     )
     b.group(None)
 
 
+def _series(design: Design) -> str:
+    """By how much stand and mount seem to soften the stiffest element, and how they are told from it."""
+    give, cell = series_give(design), present(design.calibration).load_cell_stiffness
+    known = [load for load in calibration_loads(design) if not load.refused]
+    stiffest = max(known, key=lambda load: load.force / load.deflection, default=None)
+    seems = ""
+    if stiffest is not None:
+        softer = give / (give + stiffest.deflection / stiffest.force)
+        seems = f": an arm of {stiffest.place.arm:g} mm would seem {softer * 100:.2g} % softer"
+    return (
+        f"Stand and mount give way by {give * 1e3:.2g} um/N in series with the gauge's "
+        f"{1e3 / cell:.3g}{seems}. So before the "
+        "array stands there measure the gauge in its stand, the roller on the array mount: newtons over "
+        "millimetres of the "
+        "micrometer are calibration.load_cell_stiffness and --load-cell of tactcad calibrate, not what its "
+        "sheet says."
+    )
+
+
 def _limits(design: Design) -> str:
     """What the calibration asks of each arm, and where it would do harm."""
-    c = design.calibration
+    c = present(design.calibration)
     lines, seen = [], set()
     for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):
         if not load.refused and load.place.arm not in seen:
@@ -166,9 +185,9 @@ def _limits(design: Design) -> str:
     )
 
 
-def _motions(design: Design, pads, px: float, py: float) -> tuple[Motion, ...]:
+def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py: float) -> tuple[Motion, ...]:
     """Roller down, and with the roller lifted once around all pads, edges and corners of their rectangle."""
-    lifted = (0.0, 0.0, design.calibration.retract)
+    lifted = (0.0, 0.0, present(design.calibration).retract)
     xs, ys = sorted(-(x - px) for x, _ in pads), sorted(y - py for _, y in pads)
     corners = [(xs[0], ys[0]), (xs[-1], ys[0]), (xs[-1], ys[-1]), (xs[0], ys[-1])]
     ways = [Motion("roller down to the pad", (("axis", lifted, (0.0, 0.0, 0.0)),))]

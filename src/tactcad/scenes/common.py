@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tactcad.design.present import present
 from tactcad.parts import rigs
 from tactcad.parts.consumables import Supply
 from tactcad.parts.library import dowels, orings
@@ -45,9 +46,8 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     b.step(
         "Stand",
         (0, 0, 0) if stages else (0, 0, -60),
-        "Screw the post on the base plate from below. Before the last turn, check with a square on the "
-        "upper face "
-        "that the post's front stands square within 0.02 mm on 100 mm, both ways."
+        "Screw the post on the base plate from below. Before the last turn, check with a square on the upper "
+        "face that the post's front stands square within 0.02 mm on 100 mm, both ways."
         + (
             ""
             if stages
@@ -57,7 +57,9 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     return post
 
 
-def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float = 0.0) -> str:
+def place_cart(
+    b: Builder, rig: CartLayout, roll: float, dents: tuple[tuple[float, float], ...] = (), depth: float = 0.0
+) -> str:
     """Cart for the base plate, with holder and sample; returns the sample's designator."""
     b.group("cart")
     b.unit("cart with holder and sample")
@@ -77,7 +79,7 @@ def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float 
         far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
         for x, near, ball, beyond in zip(xs, inner, balls, far):
             at = (x, y(outer + c.shim, 0), z)
-            axle = b.screw(rig.axle_thread, rig.axle_length, at, (0, -sy, 0), beyond, plate)
+            axle = b.screw(rig.axle_thread, present(rig.axle_length), at, (0, -sy, 0), beyond, plate)
             b.meet(plate, near)
             b.meet(near, ball)
             b.meet(ball, beyond)
@@ -89,21 +91,18 @@ def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float 
             "Put shim, bearing, shim on each axle and start its thread."
             + (
                 " Then stand the cart on a surface plate, press lightly on its middle so that all four "
-                "wheels touch, and "
-                "tighten the axles in that state, crosswise: the axles' play in the bores takes up the "
-                "threads' error. No "
-                "wheel may be loose over a 0.02 mm feeler gauge. Every outer ring must turn at a breath: "
-                "it has "
-                f"{c.shim:g} mm of air to plate and head."
+                "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the bores "
+                "takes up the threads' error. No wheel may be loose over a 0.02 mm feeler gauge. Every outer "
+                f"ring must turn at a breath: it has {c.shim:g} mm of air to plate and head."
                 if sy > 0
                 else ""
             ),
             fan=True,
         )
-    h, under = rig.holder_screw, rig.holder_fixing[1]
+    h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
     body = b.place("HB", rigs.holder_body(rig), (roll, 0, rig.cart_top))
     top = rig.cart_top + rig.holder_body
-    ring = b.place("OR", orings.o_ring(rig.o_ring), (roll, 0, top - orings.GROOVE_DEPTH))
+    ring = b.place("OR", orings.o_ring(present(rig.o_ring)), (roll, 0, top - orings.GROOVE_DEPTH))
     b.meet(plate, body)
     b.meet(body, ring)
     b.step(
@@ -126,14 +125,13 @@ def place_cart(b: Builder, rig: CartLayout, roll: float, dents=(), depth: float 
     b.meet(ring, lid)
     for sx, sy in CORNERS:
         at = (roll + sx * h, sy * h, top + under)
-        b.screw("M3", rig.holder_fixing[0], at, (0, 0, -1), lid, plate)
+        b.screw("M3", length, at, (0, 0, -1), lid, plate)
     b.step(
         "Holder's lid",
         (0, 0, 95),
-        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: "
-        "with the pump shut off, the "
-        "vacuum must not fall by more than a tenth in a minute. The hose hangs slack in a loop: it may "
-        "not pull the cart.",
+        "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with "
+        "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
+        "in a loop: it may not pull the cart.",
         fan=True,
     )
     object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
@@ -168,8 +166,8 @@ def place_force_axis(
     """Vertical stage with the force gauge, tip at z = touch + height; returns the tip's (or roller's)
     designator."""
     b.unit("force axis")
-    travel = rig.design.calibration.axis_travel
-    resolution = rig.design.calibration.micrometer_resolution
+    travel = present(rig.design.calibration).axis_travel
+    resolution = present(rig.design.calibration).micrometer_resolution
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
     y = POST_Y
     fixed = b.place("SF", rigs.stage_fixed(travel), (0, y, zs), AGAINST_Y)
@@ -187,10 +185,8 @@ def place_force_axis(
         "Vertical stage",
         (0, -40, AXIS_LIFT),
         "Turn the moving half up by its micrometer until two screws are free, fix the fixed half on the "
-        "post's rows at "
-        f"z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run square to "
-        "the base plate: "
-        "0.01 mm on the whole travel against a square.",
+        f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run "
+        "square to the base plate: 0.01 mm on the whole travel against a square.",
         aside=(moving,),
     )
     b.group("axis")
@@ -227,11 +223,14 @@ def place_force_axis(
     )
     tip_z = touch + height
     if roller:
-        r = dowels.dowel_diameter(rig.design.calibration.roller) / 2
+        r = dowels.dowel_diameter(present(rig.design.calibration).roller) / 2
         tip = b.place("TI", rigs.roller_tip(rig), (0, 5.0, tip_z), AGAINST_Y)
         length = roller_length(rig)
         contact = b.place(
-            "RO", dowels.dowel(rig.design.calibration.roller, length), (0, length / 2, tip_z + r), AGAINST_Y
+            "RO",
+            dowels.dowel(present(rig.design.calibration).roller, length),
+            (0, length / 2, tip_z + r),
+            AGAINST_Y,
         )
     else:
         tip = contact = b.place("TI", rigs.flat_tip(rig), (0, 0, tip_z))
@@ -243,5 +242,5 @@ def place_force_axis(
 def roller_length(rig: StandLayout) -> float:
     """Shortest standard pin that covers the pad; rule roller_clears_neighbours keeps it off the others."""
     wide = rig.design.sheet.thickness
-    lengths = dowels.dowel_lengths(rig.design.calibration.roller)
+    lengths = dowels.dowel_lengths(present(rig.design.calibration).roller)
     return next((n for n in lengths if n >= wide), lengths[-1])

@@ -34,15 +34,14 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     for _ in range(weights):
         name = b.place("WT", disc, (0, 0, z))
         b.meet(below, name)
-        below, z = name, z + disc.body.thickness
+        below, z = name, z + disc.extrusion.thickness
     b.group(None)
     if weights:
         b.step(
             "Weights",
             (0, 0, 330),
             "One disc a loading step, laid on without a knock; each is weighed before. Without any, the "
-            "grasping force is "
-            f"the moving weight: {g.moving_weight:g} N.",
+            f"grasping force is the moving weight: {g.moving_weight:g} N.",
         )
     if pose.height == 0:
         for place in rig.array.elements:

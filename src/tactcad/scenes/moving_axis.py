@@ -1,8 +1,8 @@
 """What moves with the array in the grasping set-up: its parts, what they weigh, and the ballast that trims
 them.
 
-The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no stop gap:
-which scenes a design has must be known without the estimator.
+The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no
+stop gap: which scenes a design has must be known without the estimator.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor
 
+from tactcad.design.present import present
 from tactcad.parts import rigs
 from tactcad.parts.fasteners import carrier_screw
 from tactcad.parts.finding import Finding
@@ -82,10 +83,9 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         "Ballast",
         (0, 0, 305),
         f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the "
-        "ballast "
-        "thinner until it is.",
+        "ballast thinner until it is.",
     )
-    return name, z + disc.body.thickness
+    return name, z + disc.extrusion.thickness
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
@@ -110,10 +110,10 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     _place_carried(b, rig, "RL1", 0.0, without_gaps(d))
     heavy = sum(p.part.mass for p in b.placements) + rigs.pin(rig).mass + cap_screw(*PIN_SCREW).mass
     over = max(layout.ledge_of(p.hinge) - p.hinge.h for p in layout.elements)
-    land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
+    land = over * (d.stop.land_length + over) * d.sheet.thickness * present(d.material.density) * 1e-6
     light = heavy - land * len(layout.elements)
     grams = 1.0 / ballast_thickness(rig, 1.0)  # of a millimetre of disc
-    stack = rig.grasping.weights * rigs.disc_weight(rig).body.thickness
+    stack = rig.grasping.weights * rigs.disc_weight(rig).extrusion.thickness
     longest = rigs.pin(rig, LONGEST_PIN - 1.0 - stack).mass
     most = light + (LONGEST_PIN - 1.0 - stack) * grams
     return (heavy + longest + LEAST_BALLAST * grams) * NEWTON, most * NEWTON
@@ -182,10 +182,9 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show "
-        "under any pad; the "
-        f"signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is allowed, "
-        "shim under the foot.",
+        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under "
+        f"any pad; the signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is "
+        "allowed, shim under the foot.",
     )
     b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import floor
+from typing import Any
 
 from tactcad.design.messages import InputError, one_of
 from tactcad.design.plain_numbers import as_number, as_whole
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 
@@ -22,22 +24,22 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
         # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no
         # stiffness
         free = [
-            design.calibration.travel if load.refused else load.deflection
+            present(design.calibration).travel if load.refused else load.deflection
             for load in calibration_loads(design)
         ]
         deflections = [floor(d * 1e3 + 1e-6) / 1e3 for d in free]
         return tuple(Pose(element=n, deflection=d) for n, d in enumerate(deflections, start=1))
     if name == "sample-stiffness":
-        travel = design.sample.travel
+        travel = present(design.sample).travel
         return (
             Pose(deflection=travel / 2),
             Pose(deflection=travel),
-            Pose(cart=design.cart.roll / 2, height=1.0),
+            Pose(cart=present(design.cart).roll / 2, height=1.0),
         )
     if name == "grasping":
         return (
             Pose(weights=0),
-            Pose(height=design.grasping.lift, weights=0, cart=design.cart.roll),
+            Pose(height=present(design.grasping).lift, weights=0, cart=present(design.cart).roll),
             *_pressed_in(design),
         )
     return ()
@@ -46,7 +48,7 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
 def _pressed_in(design: Design) -> tuple[Pose, ...]:
     """The pads in the sample: by its travel, but no deeper than they stand out of the arms' root fillets."""
     e = design.element
-    deep = floor(min(design.sample.travel, e.pad_height - e.pad_root_radius) * 1e3 + 1e-6) / 1e3
+    deep = floor(min(present(design.sample).travel, e.pad_height - e.pad_root_radius) * 1e3 + 1e-6) / 1e3
     return (Pose(deflection=deep),) if deep > 0 else ()
 
 
@@ -60,7 +62,7 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
         "height": (0.0, max(design.grasping.lift if design.grasping else 0.0, 5.0)),
         "cart": (-design.cart.roll, design.cart.roll) if design.cart else (0.0, 0.0),
     }
-    values: dict[str, float | int] = {}
+    values: dict[str, Any] = {}
     for text in given:
         key, _, value = text.partition("=")
         if key not in limits:

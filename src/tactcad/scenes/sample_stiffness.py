@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.rigs.cart_layout import cart_layout
 from tactcad.parts.rigs.stand_layout import StandLayout
@@ -17,6 +18,7 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     rig, cart = StandLayout(design), cart_layout(design)
     assert cart is not None, "scenes/__init__.NEEDS has its tables"
     b = Builder()
+    s, gauge = present(design.sample), present(design.calibration)
     dents = ((-pose.cart, 0.0),) if pose.deflection else ()
     sample = place_cart(b, cart, pose.cart, dents, pose.deflection)
     post = place_stand(b, rig, stages=False)
@@ -24,16 +26,15 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),
-        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a "
-        "trace of thread lacquer. "
-        f"Lower it until the gauge reads 0.01 N: that is zero. Then {design.sample.step * 1e3:g} um steps to "
-        f"{design.sample.travel * 1e3:g} um, three times; subtract the gauge's own "
-        f"{design.calibration.load_cell_stiffness:g} N/mm.",
+        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a trace of "
+        "thread lacquer. Lower it until the gauge reads 0.01 N: that is zero. Then "
+        f"{s.step * 1e3:g} um steps to {s.travel * 1e3:g} um, three times; subtract the gauge's own "
+        f"{gauge.load_cell_stiffness:g} N/mm.",
     )
     if pose.height == 0:
         b.meet(contact, sample)
-    c = design.cart
-    lifted = (0.0, 0.0, design.calibration.retract)
+    c = present(design.cart)
+    lifted = (0.0, 0.0, gauge.retract)
     motions = (
         Motion("tip down to the sample", (("axis", lifted, (0.0, 0.0, 0.0)),)),
         Motion(

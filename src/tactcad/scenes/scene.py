@@ -64,9 +64,9 @@ class Motion:
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
-    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from what
-    stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before. `unit` names the
-    sub-assembly of the scene that the step belongs to; none where the scene is one.
+    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from
+    what stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before.
+    `unit` names the sub-assembly of the scene that the step belongs to; none where the scene is one.
     """
 
     title: str
@@ -106,8 +106,8 @@ class Scene:
     """Placements with designators that are unique, meant contacts, and what has no solid.
 
     `cover` names what is taken off to look inside. `groups` are what moves as one, each with its
-    designators; what is in none stands still. `steps` place every designator once. `ready` are the scenes, in their own
-    places, that were put together before and whose parts stand in this one.
+    designators; what is in none stands still. `steps` place every designator once. `ready` are the scenes, in
+    their own places, that were put together before and whose parts stand in this one.
     """
 
     name: str

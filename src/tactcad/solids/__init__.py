@@ -1,4 +1,5 @@
 """The only maker of solids.
 
-In: a part's description. Out: the CAD kernel's shape of it, each made once, measured, meshed, and written as STEP.
+In: a part's description. Out: the CAD kernel's shape of it, each made once, measured, meshed, and written as
+STEP.
 """

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from build123d import Axis, Edge, Face, Plane, Solid, Vector, Wire
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeVertex, BRepBuilderAPI_MakeWire
 from OCP.gp import gp_Ax2, gp_Circ, gp_Pnt
@@ -19,7 +21,7 @@ from tactcad.parts.description import (
     drill_point_height,
 )
 
-from .files import read_step_solid
+from .step_models import read_step_solid
 
 # The kernel's volume agrees with the closed form within this share, or the build is refused.
 VOLUME_AGREES = 1e-6
@@ -55,10 +57,9 @@ def _built(part: Part) -> Solid:
     return solid
 
 
-def _only_solid(shape: object, part: Part) -> Solid:
-    solids = (
-        list(shape.solids()) if hasattr(shape, "solids") else [s for piece in shape for s in piece.solids()]
-    )
+def _only_solid(shape: Any, part: Part) -> Solid:
+    pieces = [shape] if hasattr(shape, "solids") else shape
+    solids = [solid for piece in pieces for solid in piece.solids()]
     if len(solids) != 1:
         raise SolidError(f"{part.part_no}: the description makes {len(solids)} solids")
     return solids[0]
@@ -67,26 +68,26 @@ def _only_solid(shape: object, part: Part) -> Solid:
 def wire(contour: Contour, plane: Plane = Plane.XY) -> Wire:
     """The contour as a closed wire in a plane.
 
-    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either
-    edge's end by memory address, and files then differ in their last digits from run to run.)
+    Neighbours share one vertex at the contour's own point. (build123d's Wire(edges) picks either edge's end
+    by memory address, and files then differ in their last digits from run to run.)
     """
 
-    def there(point: Point) -> gp_Pnt:
+    def in_space(point: Point) -> gp_Pnt:
         return plane.from_local_coords(Vector(*point, 0)).to_pnt()
 
     circle = contour.as_circle()
     if circle:
         centre, radius = circle
-        axes = gp_Ax2(there(centre), plane.z_dir.to_dir(), plane.x_dir.to_dir())
+        axes = gp_Ax2(in_space(centre), plane.z_dir.to_dir(), plane.x_dir.to_dir())
         return Wire([Edge(BRepBuilderAPI_MakeEdge(gp_Circ(axes, radius)).Edge())])
-    corners = [BRepBuilderAPI_MakeVertex(there(s.start)).Vertex() for s in contour]
+    corners = [BRepBuilderAPI_MakeVertex(in_space(s.start)).Vertex() for s in contour]
     maker = BRepBuilderAPI_MakeWire()
     for s, first, last in zip(contour, corners, corners[1:] + corners[:1]):
         if isinstance(s, Line):
             edge = BRepBuilderAPI_MakeEdge(first, last)
         else:
             up = plane.z_dir.to_dir() if s.ccw else (-plane.z_dir).to_dir()
-            edge = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(there(s.centre), up), s.radius), first, last)
+            edge = BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(in_space(s.centre), up), s.radius), first, last)
         maker.Add(edge.Edge())
     return Wire(maker.Wire())
 

@@ -1,8 +1,7 @@
 """The same parts and scenes for people who work in CadQuery, and their models as bought parts here.
 
-from tactcad.solids.cadquery_view import assembly, workplane
-from tactcad.parts.designs import load
-from tactcad.scenes import make_scene
+from tactcad.solids.cadquery_view import assembly, workplane from tactcad.parts.designs import load from
+tactcad.scenes import make_scene
 
 scene = make_scene(load("macro-array"), "array")
 workplane(scene.parts[1])      # a cadquery.Workplane with the part's solid
@@ -44,14 +43,15 @@ def assembly(scene: Scene) -> cq.Assembly:
 
 
 def _colour(colour: str) -> cq.Color:
-    return cq.Color(*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)), 1.0)
+    r, g, b = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+    return cq.Color(r, g, b, 1.0)
 
 
 def bought_from_step(
     path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
 ) -> Part:
     """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has not one."""
-    from .files import model_file
+    from .step_models import model_file
 
     return Part(part_no, name, "bought", material, model_file(path), purchase=purchase)
 
@@ -69,7 +69,7 @@ def bought_from_cadquery(
     Raises InputError where the model is not one solid.
     """
     shape = model.val() if isinstance(model, cq.Workplane) else model
-    solids = shape.Solids()
+    solids = shape.Solids() if isinstance(shape, cq.Shape) else []
     if len(solids) != 1:
         raise InputError(
             part_no, "a CadQuery model that is not one solid", value=len(solids), legal="one solid"

@@ -11,6 +11,6 @@ from .occt import TopTools_IndexedMapOfShape
 
 def subshapes(shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> list[TopoDS_Shape]:
     """Every distinct sub-shape of that kind, in the kernel's order."""
-    found = TopTools_IndexedMapOfShape()
-    TopExp.MapShapes_s(shape, kind, found)
-    return [found.FindKey(i) for i in range(1, found.Extent() + 1)]
+    distinct = TopTools_IndexedMapOfShape()
+    TopExp.MapShapes_s(shape, kind, distinct)
+    return [distinct.FindKey(i) for i in range(1, distinct.Extent() + 1)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import manifold3d
 import numpy as np
 
@@ -18,7 +20,9 @@ def closed(mesh: Mesh) -> manifold3d.Manifold:
     return made
 
 
-def placed(mesh: manifold3d.Manifold, origin, rotation) -> manifold3d.Manifold:
+def placed(
+    mesh: manifold3d.Manifold, origin: Sequence[float], rotation: Sequence[Sequence[float]]
+) -> manifold3d.Manifold:
     """At a scene's place: rotation x local point + origin (mm)."""
     return mesh.transform(
         np.column_stack([np.asarray(rotation, dtype=float), np.asarray(origin, dtype=float)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
+from numpy.typing import ArrayLike
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder
 from OCP.BRepBndLib import BRepBndLib
@@ -46,20 +47,20 @@ def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[fl
     """Distance in mm, infinite where one has nothing, and a point of the first where it is taken."""
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)
-    found = BRepExtrema_DistShapeShape(first, second)
-    point = found.PointOnShape1(1)
-    return found.Value(), (point.X(), point.Y(), point.Z())
+    nearest_points = BRepExtrema_DistShapeShape(first, second)
+    point = nearest_points.PointOnShape1(1)
+    return nearest_points.Value(), (point.X(), point.Y(), point.Z())
 
 
-def boxed(boxes: np.ndarray, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
+def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
     """Least and largest corner (..., 2, 3) of boxes (mm) turned and moved.
 
     The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
     """
-    boxes = np.asarray(boxes)
-    middle, half = boxes.mean(axis=-2), (boxes[..., 1, :] - boxes[..., 0, :]) / 2
-    there, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
-    return np.stack([there - reach, there + reach], axis=-2)
+    ends = np.asarray(boxes)
+    middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2
+    centre, reach = middle @ rotation.T + origin, half @ np.abs(rotation).T
+    return np.stack([centre - reach, centre + reach], axis=-2)
 
 
 def _box(face: TopoDS_Shape) -> list[list[float]]:

@@ -1,4 +1,5 @@
-"""Names of the kernel's binding that OCP 8 has elsewhere than OCP 7.9: whoever needs one takes it from here."""
+"""Names of the kernel's binding that OCP 8 has elsewhere than OCP 7.9: whoever needs one takes it from
+here."""
 
 from __future__ import annotations
 

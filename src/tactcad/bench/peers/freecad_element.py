@@ -1,7 +1,8 @@
 """Runs inside FreeCAD: builds an element from its contour, writes it as STEP, and prints volume and times.
 
-The job is JSON in the environment variable TACTCAD_PEER: `outer` and `openings` (closed chains of ["line", start, end]
-and ["arc", start, middle, end], or one ["circle", centre, radius]), `thickness` (mm), `repeats`, `step` (path).
+The job is JSON in the environment variable TACTCAD_PEER: `outer` and `openings` (closed chains of ["line",
+start, end] and ["arc", start, middle, end], or one ["circle", centre, radius]), `thickness` (mm), `repeats`,
+`step` (path).
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The same kinds of files by a plain script, without tactcad: what an export has to measure itself against.
 
-Every distinct shape goes through the kernel once; every file is written once and read back once: STEP a part and of
-the assembly (shared prototypes in one document), DXF a sheet part, hidden-line SVG, bill of materials, manifest.
-No cache, no lock, no repeatable bytes; what is read back is compared by count and volume only.
+Every distinct shape goes through the kernel once; every file is written once and read back once: STEP a part
+and of the assembly (shared prototypes in one document), DXF a sheet part, hidden-line SVG, bill of materials,
+manifest. No cache, no lock, no repeatable bytes; what is read back is compared by count and volume only.
 
 usage: plain_export.py NUMBER_OF_ELEMENTS FOLDER
 """

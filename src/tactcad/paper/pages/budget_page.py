@@ -6,7 +6,7 @@ import numpy as np
 
 from tactcad.paper import plots as d
 from tactcad.paper.budget import Budget
-from tactcad.paper.report import Figure, Section, Table, listed, percent, sig
+from tactcad.paper.report import Figure, Section, Table, listed, percent, sig, tabulated
 
 MATTERS = 0.05
 
@@ -45,24 +45,20 @@ def findings(b: Budget) -> tuple[str, ...]:
 
 
 def _table(b: Budget) -> Table:
-    part = lambda v: "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"  # noqa: E731
-    rows = tuple(
-        (e.name, part(e.short_arm), part(e.long_arm), part(e.on_object), e.how, e.remedy, part(e.remaining))
-        for e in b.effects
-    )
-    return Table(
+    def part(v: float) -> str:
+        return "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"
+
+    return tabulated(
         "Effects by size on K_obj",
-        (
-            ("effect", ""),
-            ("on K", "shortest arm"),
-            ("on K", "longest arm"),
-            ("on K_obj", ""),
-            ("how computed", ""),
-            ("remedy", ""),
-            ("remaining", "on K_obj"),
-        ),
-        rows,
-        "Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. "
+        b.effects,
+        ("effect", "", lambda e: e.name),
+        ("on K", "shortest arm", lambda e: part(e.short_arm)),
+        ("on K", "longest arm", lambda e: part(e.long_arm)),
+        ("on K_obj", "", lambda e: part(e.on_object)),
+        ("how computed", "", lambda e: e.how),
+        ("remedy", "", lambda e: e.remedy),
+        ("remaining", "on K_obj", lambda e: part(e.remaining)),
+        note="Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. "
         "'assumed' and 'chosen' values stand in the source. Dimensions matter only where K is taken "
         "from the drawing; a calibrated element carries only its calibration.",
     )
@@ -90,16 +86,14 @@ def _plot(b: Budget) -> Figure:
             ms=7,
             label="with the remedy",
         )
-        ax.set_xscale("log")
-        ax.set_xlim(least, max(e.on_object for e in shown) * 1.6)
+        ax.set(xscale="log", xlim=(least, max(e.on_object for e in shown) * 1.6))
         ax.set_xticks([1e-3, 1e-2, 0.1, 1.0], ["0.1 %", "1 %", "10 %", "100 %"])
         ax.set_yticks(y, [e.name for e in shown])
-        ax.set_ylim(-0.7, len(shown) - 0.3)
-        ax.set_xlabel("half-width on K_obj (left edge: 0.03 % and less)")
+        ax.set(ylim=(-0.7, len(shown) - 0.3), xlabel="half-width on K_obj (left edge: 0.03 % and less)")
         ax.legend(loc="lower right")
         ax.grid(axis="y", visible=False)
-        return Figure(
+        return d.drawn(
+            figure,
             "budget",
-            d.svg(figure, "budget"),
             "Effects on K_obj, largest first, and what a better rig or sample leaves of them.",
         )

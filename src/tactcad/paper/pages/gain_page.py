@@ -8,6 +8,7 @@ from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.gain import GainFit
 from tactcad.paper.report import (
+    Cell,
     Figure,
     Marked,
     Section,
@@ -18,6 +19,7 @@ from tactcad.paper.report import (
     percent,
     sig,
     signed_percent,
+    tabulated,
 )
 
 
@@ -66,7 +68,7 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
         f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
         f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
         "deviations of the averaged reading are "
-        f"{interval(*(np.array([g.signal.resolution.min(), g.signal.resolution.max()]) * 1e3), 2)} mN, "
+        f"{interval(g.signal.resolution.min() * 1e3, g.signal.resolution.max() * 1e3, 2)} mN, "
         "with the noise that the design assumes."
     )
     found.append(
@@ -80,76 +82,41 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
 
 
 def _heating(g: GainFit, array: ArrayModel) -> Table:
-    rows = tuple(
-        (
-            name,
-            h.power * 1e3,
-            h.power_density,
-            h.rise,
-            f"{h.drift * 1e6:.1f}".replace("-", "−"),
-            drift.min() * 1e3,
-            drift.max() * 1e3,
-        )
-        for name, h, drift in (
-            ("power on all the time", g.always_on, g.drift_always_on),
-            (
-                f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s",
-                g.switched,
-                g.drift_switched,
-            ),
-        )
-    )
-    return Table(
+    switched = f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s"
+    return tabulated(
         "Self-heating of the grid",
-        (
-            ("", ""),
-            ("mean power", "mW"),
-            ("per grid area", "kW/m²"),
-            ("grid over leaf", "K"),
-            ("drift dR/R", "10⁻⁶"),
-            ("reads as, least", "mN"),
-            ("largest", "mN"),
-        ),
-        rows,
-        "Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
+        (("power on all the time", g.always_on, g.drift_always_on), (switched, g.switched, g.drift_switched)),
+        ("", "", lambda row: row[0]),
+        ("mean power", "mW", lambda row: row[1].power * 1e3),
+        ("per grid area", "kW/m²", lambda row: row[1].power_density),
+        ("grid over leaf", "K", lambda row: row[1].rise),
+        ("drift dR/R", "10⁻⁶", lambda row: f"{row[1].drift * 1e6:.1f}".replace("-", "−")),
+        ("reads as, least", "mN", lambda row: row[2].min() * 1e3),
+        ("largest", "mN", lambda row: row[2].max() * 1e3),
+        note="Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
         "moment. The drift is what the reference gauges leave.",
     )
 
 
 def _by_element(g: GainFit) -> Table:
-    rows = tuple(
-        (
-            int(n),
-            exact(g.arm[i]),
-            g.strain_per_deflection[i] * 100,
-            exact(g.measured[i]),
-            Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i],
-            signed_percent(np.expm1(g.residual[i])),
-            exact(g.measured_per_force[i]),
-            g.signal.per_force[i],
-            g.signal.volts[i],
-            percent(g.signal.nonlinearity[i]),
-            g.signal.resolution[i] * 1e3,
-        )
-        for i, n in enumerate(g.element)
-    )
-    return Table(
+    def fitted(i: int) -> Cell:
+        return Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i]
+
+    return tabulated(
         "Predicted and printed sensitivities (magnitudes)",
-        (
-            ("element", ""),
-            ("arm a", "mm"),
-            ("foil strain per deflection", "%/mm"),
-            ("K_v printed", "V/mm"),
-            ("K_v, fitted gain", "V/mm"),
-            ("printed over fitted", "−1"),
-            ("K_v/K printed", "V/N"),
-            ("K_v/K, design's gain", "V/N"),
-            ("signal at largest deflection", "V"),
-            ("bridge non-linearity", ""),
-            ("resolution", "mN"),
-        ),
-        rows,
-        "The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's "
+        range(len(g.element)),
+        ("element", "", lambda i: int(g.element[i])),
+        ("arm a", "mm", lambda i: exact(g.arm[i])),
+        ("foil strain per deflection", "%/mm", lambda i: g.strain_per_deflection[i] * 100),
+        ("K_v printed", "V/mm", lambda i: exact(g.measured[i])),
+        ("K_v, fitted gain", "V/mm", fitted),
+        ("printed over fitted", "−1", lambda i: signed_percent(np.expm1(g.residual[i]))),
+        ("K_v/K printed", "V/N", lambda i: exact(g.measured_per_force[i])),
+        ("K_v/K, design's gain", "V/N", lambda i: g.signal.per_force[i]),
+        ("signal at largest deflection", "V", lambda i: g.signal.volts[i]),
+        ("bridge non-linearity", "", lambda i: percent(g.signal.nonlinearity[i])),
+        ("resolution", "mN", lambda i: g.signal.resolution[i] * 1e3),
+        note="The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's "
         "figure would show. The last four columns use the design's read-out, not the fitted gain. "
         "Resolution: two standard deviations of the averaged reading.",
     )
@@ -184,35 +151,37 @@ def _plot(g: GainFit) -> Figure:
         used: list[tuple[float, float]] = []
         for x, y, n in zip(g.predicted, g.measured, g.element):
             shift = 9 if not any(abs(x - a) < 0.05 * x and abs(y - b) < 0.06 * y for a, b in used) else -22
-            left.annotate(f"{n}", (x, y), (shift, -4), textcoords="offset points", fontsize=10)
+            d.note(left, f"{n}", (x, y), (shift, -4), fontsize=10)
             used.append((x, y))
         for axis in (left.xaxis, left.yaxis):
             axis.axes.set_xscale("log")
             axis.axes.set_yscale("log")
         d.log_ticks(left.xaxis, (3, 4, 5, 6, 8, 10))
         d.log_ticks(left.yaxis, (2, 3, 4, 6, 8, 10))
-        left.set_xlim(*span)
-        left.set_xlabel("K_v predicted with one gain, V/mm")
-        left.set_ylabel("K_v printed, V/mm")
-        left.set_title("by element number")
+        left.set(
+            xlim=span,
+            xlabel="K_v predicted with one gain, V/mm",
+            ylabel="K_v printed, V/mm",
+            title="by element number",
+        )
         left.legend(loc="upper left")
         right.plot(g.lengths, g.gain_at_length, "-", color=d.BLUE, lw=2)
         right.axhline(g.design_gain, color=d.RED, ls="--", lw=1.6)
-        right.annotate(
+        d.note(
+            right,
             "the design's read-out",
             (g.lengths[-1], g.design_gain),
             (0, -15),
-            textcoords="offset points",
             ha="right",
             color=d.RED,
             fontsize=10,
         )
-        right.set_xlabel("slot length l, mm")
-        right.set_ylabel("gain that fits K_v best, V per unit strain")
-        right.set_title("gain and length: every point on the line fits equally well")
-        right.set_ylim(0)
-        return Figure(
-            "gain",
-            d.svg(figure, "gain"),
-            "Left: K_v with one gain. Right: the gain that each slot length would need.",
+        right.set(
+            xlabel="slot length l, mm",
+            ylabel="gain that fits K_v best, V per unit strain",
+            title="gain and length: every point on the line fits equally well",
+            ylim=0,
+        )
+        return d.drawn(
+            figure, "gain", "Left: K_v with one gain. Right: the gain that each slot length would need."
         )

@@ -7,7 +7,7 @@ import numpy as np
 from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import Figure6, Figure7, Simulated
-from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent
+from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent, tabulated
 
 VISIBLE = 0.05  # drift of R over the load that a reader sees in Figure 6
 
@@ -65,48 +65,36 @@ def _miss(six: Figure6, s: Simulated) -> float:
 
 
 def _table6(six: Figure6) -> Table:
-    rows = tuple(
-        (
-            f"{k:g}",
-            six.measured[i],
-            six.as_supported.true[i],
-            signed_percent(six.as_supported.true[i] / six.measured[i] - 1),
-            six.as_printed.true[i],
-            signed_percent(six.as_printed.true[i] / six.measured[i] - 1),
-            six.as_supported.deviation[i, 0],
-            six.with_pad_heights.deviation[i, 0],
-            six.with_pad_heights.deviation[i, -1],
-        )
-        for i, k in enumerate(six.measuring)
-    )
-    return Table(
+    least, most = six.load[0], six.load[-1]
+
+    def off(s: Simulated, i: int) -> str:
+        return signed_percent(s.true[i] / six.measured[i] - 1)
+
+    return tabulated(
         f"R on the {six.object_stiffness:g} N/mm sample",
-        (
-            ("K_m", "N/mm"),
-            ("R measured", ""),
-            ("R, supported K_r", ""),
-            ("off", ""),
-            ("R, printed K_r", ""),
-            ("off", ""),
-            ("s of R by noise", f"{six.load[0]:g} N"),
-            ("s of R by pad heights", f"{six.load[0]:g} N"),
-            ("the same", f"{six.load[-1]:.4g} N"),
-        ),
-        rows,
-        "s: standard deviation over simulated grasps. The element that did not function presses too: "
+        range(len(six.measuring)),
+        ("K_m", "N/mm", lambda i: f"{six.measuring[i]:g}"),
+        ("R measured", "", lambda i: six.measured[i]),
+        ("R, supported K_r", "", lambda i: six.as_supported.true[i]),
+        ("off", "", lambda i: off(six.as_supported, i)),
+        ("R, printed K_r", "", lambda i: six.as_printed.true[i]),
+        ("off", "", lambda i: off(six.as_printed, i)),
+        ("s of R by noise", f"{least:g} N", lambda i: six.as_supported.deviation[i, 0]),
+        ("s of R by pad heights", f"{least:g} N", lambda i: six.with_pad_heights.deviation[i, 0]),
+        ("the same", f"{most:.4g} N", lambda i: six.with_pad_heights.deviation[i, -1]),
+        note="s: standard deviation over simulated grasps. The element that did not function presses too: "
         "its stiffness is the beam model's.",
     )
 
 
 def _table7(seven: Figure7) -> Table:
-    rows = tuple(
-        (f"{k:g}", interval(row.min(), row.max()), interval(r.min(), r.max()), s)
-        for k, row, r, s in zip(seven.measuring, seven.relative, seven.ratio, seven.slope)
-    )
-    return Table(
+    return tabulated(
         "Straight lines through Figure 7's points",
-        (("K_m", "N/mm"), ("K_m/K_obj", ""), ("R", ""), ("slope of the line", "")),
-        rows,
+        range(len(seven.measuring)),
+        ("K_m", "N/mm", lambda i: f"{seven.measuring[i]:g}"),
+        ("K_m/K_obj", "", lambda i: interval(seven.relative[i].min(), seven.relative[i].max())),
+        ("R", "", lambda i: interval(seven.ratio[i].min(), seven.ratio[i].max())),
+        ("slope of the line", "", lambda i: seven.slope[i]),
     )
 
 
@@ -130,20 +118,10 @@ def _figure6(six: Figure6) -> Figure:
                     capsize=2,
                     label=f"K_m = {k:g}",
                 )
-                ax.plot(
-                    six.load[-1] + 1.1,
-                    six.measured[i],
-                    d.MARKERS[i],
-                    mfc="white",
-                    mec=d.SERIES[i],
-                    mew=1.6,
-                    ms=7,
-                )
+                d.series(ax, i, six.load[-1] + 1.1, six.measured[i], hollow=True, mew=1.6)
             ax.set_title(title, fontsize=10.5)
-            ax.set_xlabel("grasping force, N")
-            ax.set_xlim(six.load[0] - 0.7, six.load[-1] + 1.8)
-        axes[0].set_ylabel("deflection ratio R")
-        axes[0].set_ylim(0, None)
+            ax.set(xlabel="grasping force, N", xlim=(six.load[0] - 0.7, six.load[-1] + 1.8))
+        axes[0].set(ylabel="deflection ratio R", ylim=(0, None))
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(
             handles,
@@ -153,12 +131,11 @@ def _figure6(six: Figure6) -> Figure:
             columnspacing=1.2,
             handletextpad=0.3,
         )
-        return Figure(
+        return d.drawn(
+            figure,
             "figure-6",
-            d.svg(figure, "figure-6"),
-            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, "
-            "bars of two standard deviations over many. Open symbols at the right edge: Table 2's "
-            "measured R.",
+            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, bars of "
+            "two standard deviations over many. Open symbols at the right edge: Table 2's measured R.",
         )
 
 
@@ -173,26 +150,14 @@ def _figure7(seven: Figure7) -> Figure:
                     seven.axis <= seven.relative[i].max() * 1.07
                 )
                 ax.plot(seven.axis[own], curves[i][own], color=d.SERIES[i], lw=2)
-                ax.plot(
-                    seven.relative[i],
-                    seven.ratio[i],
-                    d.MARKERS[i],
-                    color=d.SERIES[i],
-                    ms=7,
-                    mec="white",
-                    mew=0.6,
-                    label=f"K_m = {k:g}",
-                )
-            ax.set_xscale("log")
-            d.log_ticks(ax.xaxis, (0.6, 1, 2, 4, 8, 16))
-            ax.set_title(title)
-            ax.set_xlabel("K_m/K_obj")
-            ax.set_ylim(0, 11)
+                d.series(ax, i, seven.relative[i], seven.ratio[i], label=f"K_m = {k:g}")
+            d.log_axes(ax, x=(0.6, 1, 2, 4, 8, 16))
+            ax.set(title=title, xlabel="K_m/K_obj", ylim=(0, 11))
         axes[0].set_ylabel("deflection ratio R")
         axes[1].legend(loc="upper right", ncols=2, title="measured, N/mm")
-        return Figure(
+        return d.drawn(
+            figure,
             "figure-7",
-            d.svg(figure, "figure-7"),
             "Figure 7 again: measured R (symbols) and equation (2) (lines), with the printed and with "
             "the supported reference stiffness.",
         )

@@ -7,7 +7,7 @@ import numpy as np
 from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.hinge import LENGTHS, RADII, STRAIN_ACCURACY, HingeFit, face_factor
-from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent
+from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent, tabulated
 
 
 def page(h: HingeFit, array: ArrayModel) -> Section:
@@ -98,31 +98,17 @@ def _valley(h: HingeFit) -> tuple[float, float, float]:
 
 def _forms(h: HingeFit) -> Table:
     own = h.own
-    rows = tuple(
-        (
-            f.name,
-            f.design_length,
-            interval(f.design_low, f.design_high),
-            f.best_length,
-            f.best_radius,
-            percent(f.best_scatter),
-            f.effective_length,
-        )
-        for f in h.forms
-    )
-    return Table(
+    return tabulated(
         f"Best hinge by notch form, thickness fixed, {len(h.element)} elements",
-        (
-            ("notch", ""),
-            (f"length at r = {h.design_radius:g} mm", "mm"),
-            ("95 % interval", "mm"),
-            ("least square sum at l", "mm"),
-            ("and r", "mm"),
-            ("scatter left in K", "ln"),
-            ("E b t³/(12 K L²)", "mm"),
-        ),
-        rows,
-        "Least squares of ln K over l and r by the solid rung. Only length, radius and form, which the "
+        h.forms,
+        ("notch", "", lambda f: f.name),
+        (f"length at r = {h.design_radius:g} mm", "mm", lambda f: f.design_length),
+        ("95 % interval", "mm", lambda f: interval(f.design_low, f.design_high)),
+        ("least square sum at l", "mm", lambda f: f.best_length),
+        ("and r", "mm", lambda f: f.best_radius),
+        ("scatter left in K", "ln", lambda f: percent(f.best_scatter)),
+        ("E b t³/(12 K L²)", "mm", lambda f: f.effective_length),
+        note="Least squares of ln K over l and r by the solid rung. Only length, radius and form, which the "
         "paper omits, may be taken into a design from here, with their interval as the origin: l "
         f"{own.design_length:.2f} mm ({own.design_low:.2f} to {own.design_high:.2f}) at r "
         f"{h.design_radius:g} mm, {own.name}, by fit of Table 1. Thicknesses of single elements belong "
@@ -189,23 +175,19 @@ def _map(h: HingeFit) -> Figure:
             ax.plot(RADII, 2 * RADII, ":", color=d.BLACK, lw=2)
             if f.two_sided == h.design_two_sided:
                 ax.plot(h.design_radius, h.design_length, "*", color="white", mec=d.BLACK, ms=17)
-                ax.annotate(
-                    "design",
-                    (h.design_radius, h.design_length),
-                    (10, 10),
-                    textcoords="offset points",
-                    fontsize=10,
-                )
-            ax.set_title(f"{f.name}: least scatter {np.sqrt(least / (len(h.element) - 2)):.2f}")
-            ax.set_xlabel("fillet radius r, mm")
-            ax.set_ylim(LENGTHS[0], LENGTHS[-1])
+                d.note(ax, "design", (h.design_radius, h.design_length), (10, 10), fontsize=10)
+            ax.set(
+                title=f"{f.name}: least scatter {np.sqrt(least / (len(h.element) - 2)):.2f}",
+                xlabel="fillet radius r, mm",
+                ylim=(LENGTHS[0], LENGTHS[-1]),
+            )
         axes[0].set_ylabel("slot length l, mm")
         bar = figure.colorbar(shown, ax=axes, pad=0.01)
         bar.set_label("scatter of ln K")
         bar.set_ticks(levels[1:], labels=[f"{v:.3f}" for v in levels[1:]])
-        return Figure(
+        return d.drawn(
+            figure,
             "hinge-map",
-            d.svg(figure, "hinge-map"),
             "Scatter of ln K over slot length and fillet radius. Red: joint 95 % region; dashed: best "
             "length at each radius; dotted: full round, l = 2r.",
         )

@@ -22,24 +22,27 @@ def page(v: Inversion) -> Section:
         (_table(v, v.supported), _table(v, v.printed)),
         (_plot(v),),
         v,
-        (found[0],),
+        (found[0], found[-1]),
     )
 
 
 def findings(v: Inversion) -> tuple[str, ...]:
     x = v.object_stiffness
-    right = {name: _right(w, x) for name, w in (("printed", v.printed), ("supported", v.supported))}
+    n = x.size * len(v.measuring)
+    printed, supported = (_right(w.estimate, x) for w in (v.printed, v.supported))
     held = v.supported.holds(x)
     well = np.abs(v.supported.condition) < WELL
-    error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
     lost = ~v.supported.physical()
     rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
-    n = x.size * len(v.measuring)
     found = [
-        f"With the printed K_r = {v.printed.reference:g} N/mm {right['printed'].sum()} of {n} readings "
+        f"With the printed K_r = {v.printed.reference:g} N/mm {printed.sum()} of {n} readings "
         f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
-        f"{sig(v.supported.reference)} N/mm {right['supported'].sum()}; the median is "
-        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's.",
+        f"{sig(v.supported.reference)} N/mm {supported.sum()}; the median is "
+        f"{sig(_median(v.printed, x))} and {sig(_median(v.supported, x))} times the sample's"
+        + _median_of_positive(v, x)
+        + ".",
+        _without_its_own(v),
+        _without_reading(v),
         f"With the supported K_r {lost.sum()} readings give no positive K_obj at all"
         + (f" (K_m = {', '.join(rows_lost)} N/mm)." if lost.any() else ".")
         + f" The 95 % interval (R scatters by {percent(v.ratio_error)}) holds the sample's K_obj for "
@@ -47,27 +50,75 @@ def findings(v: Inversion) -> tuple[str, ...]:
         + f", and is bounded for {(v.supported.bounded & (v.supported.low > 0)).sum()}.",
     ]
     if well.any() and (~well).any():
-        inside, outside = (_typical(error, m) for m in (well, ~well))
-        found.append(
-            f"The condition number says so beforehand: below {WELL:g} ({well.sum()} pairs) the typical "
-            f"error is {inside}, above it {outside}; rank correlation of condition number and error "
-            f"{v.rank_correlation:.2f}. Least is {sig(np.abs(v.supported.condition).min())}, so that "
-            f"{percent(v.ratio_error)} in R are at best "
-            f"{percent(v.ratio_error * np.abs(v.supported.condition).min())} in K_obj."
-        )
+        found.append(_by_condition(v, well))
     return tuple(found)
 
 
-def _right(w: Inverted, x: np.ndarray) -> np.ndarray:
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return w.physical() & (
-            np.abs(np.log(np.where(w.physical(), w.estimate, np.nan) / x)) <= np.log(FACTOR)
-        )
+def _without_its_own(v: Inversion) -> str:
+    """How many are right where the K_r is not fitted to what it is tried on."""
+    x = v.object_stiffness
+    left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
+    same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
+    return (
+        "That K_r is fitted to these very readings: with the one that all others support, without the "
+        "reading's "
+        f"own element and sample, {left_out} are within the factor; {same} of its 95 % interval."
+    )
+
+
+def _without_reading(v: Inversion) -> str:
+    """How many are right for somebody who has read nothing, and answers the samples' geometric mean."""
+    x, elements = v.object_stiffness, len(v.measuring)
+    log = np.log(x)
+    one = np.exp(log.mean())
+    of_others = np.exp((log.sum() - log) / (len(x) - 1)) if len(x) > 1 else x
+    return (
+        f"Always answering {sig(one)} N/mm, the samples' geometric mean, without any reading is within the "
+        f"factor for {elements * _near(one, x).sum()}, the mean of the other samples for "
+        f"{elements * _near(of_others, x).sum()}."
+    )
+
+
+def _by_condition(v: Inversion, well: np.ndarray) -> str:
+    x = v.object_stiffness
+    error = np.abs(np.log(np.where(v.supported.physical(), v.supported.estimate, np.nan) / x))
+    inside, outside = (_typical(error, m) for m in (well, ~well))
+    supported, left_out = (_right(e, x) for e in (v.supported.estimate, v.left_out))
+    mean = np.broadcast_to(_near(np.exp(np.log(x).mean()), x), well.shape)
+    least = np.abs(v.supported.condition).min()
+    return (
+        f"The condition number says beforehand which readings count: below {WELL:g} {supported[well].sum()} "
+        f"of {well.sum()} are within the factor ({left_out[well].sum()} with the K_r that the others "
+        f"support, "
+        f"{mean[well].sum()} without any reading), above it {supported[~well].sum()} of {(~well).sum()}. The "
+        f"typical error is {inside} below and {outside} above; rank correlation of condition number and "
+        f"error "
+        f"{v.rank_correlation:.2f}. Least is {sig(least)}, so that {percent(v.ratio_error)} in R are at best "
+        f"{percent(v.ratio_error * least)} in K_obj."
+    )
+
+
+def _near(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
+    return np.abs(np.log(estimate / x)) <= np.log(FACTOR)
+
+
+def _right(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
+    positive = np.isfinite(estimate) & (estimate > 0)
+    return positive & _near(np.where(positive, estimate, 1.0), x)
 
 
 def _median(w: Inverted, x: np.ndarray) -> float:
     """Median of estimate over K_obj; what is not positive counts as infinitely stiff where R is near 1."""
     return float(np.median(np.where(w.physical(), w.estimate, np.inf) / x))
+
+
+def _median_of_positive(v: Inversion, x: np.ndarray) -> str:
+    """The supported median again where what is not positive makes a difference to it."""
+    positive = v.supported.physical()
+    if positive.all() or not positive.any():
+        return ""
+    median = float(np.median((v.supported.estimate / x)[positive]))
+    return f" where what is not positive counts as infinite ({sig(median)} the latter without it)"
 
 
 def _typical(error: np.ndarray, where: np.ndarray) -> str:
@@ -90,8 +141,7 @@ def _table(v: Inversion, w: Inverted) -> Table:
                     if high > 0
                     else f"{sig(value, 2)} (none ≥ 0)"
                 )
-            right = w.physical()[i, j] and abs(np.log(value / x)) <= np.log(FACTOR)
-            cells.append(text if right else Marked(text))
+            cells.append(text if _right(value, x) else Marked(text))
         rows.append((f"{k:g}", *cells))
         rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
     return Table(
@@ -128,44 +178,17 @@ def _plot(v: Inversion) -> Figure:
                     capsize=2,
                     alpha=0.95,
                 )
-                ax.plot(
-                    x[~ok] * shift,
-                    np.full((~ok).sum(), 0.36),
-                    d.MARKERS[i],
-                    mfc="white",
-                    mec=d.SERIES[i],
-                    ms=6,
-                )
-            ax.set_xscale("log")
-            ax.set_yscale("log")
-            d.log_ticks(ax.xaxis, (2, 3, 4, 5, 7, 10))
-            d.log_ticks(ax.yaxis, (0.5, 1, 2, 5, 10, 20, 50, 100))
-            ax.set_xlim(2.0, 12)
-            ax.set_ylim(0.3, 170)
-            ax.set_title(title)
-            ax.set_xlabel("K_obj of the sample, N/mm")
+                d.series(ax, i, x[~ok] * shift, np.full((~ok).sum(), 0.36), hollow=True, ms=6)
+            d.log_axes(ax, x=(2, 3, 4, 5, 7, 10), y=(0.5, 1, 2, 5, 10, 20, 50, 100))
+            ax.set(xlim=(2.0, 12), ylim=(0.3, 170), title=title, xlabel="K_obj of the sample, N/mm")
         axes[0].set_ylabel("K_obj by equation (3), N/mm")
         right = axes[2]
         for i in range(len(v.measuring)):
             ok = v.supported.physical()[i]
             condition = np.abs(v.supported.condition[i])
-            right.plot(
-                condition[ok],
-                np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok]))),
-                d.MARKERS[i],
-                color=d.SERIES[i],
-                ms=7,
-                mec="white",
-                mew=0.6,
-            )
-            right.plot(
-                np.minimum(condition[~ok], 600),
-                np.full((~ok).sum(), 8.5),
-                d.MARKERS[i],
-                mfc="white",
-                mec=d.SERIES[i],
-                ms=7,
-            )
+            off = np.exp(np.abs(np.log(v.supported.estimate[i][ok] / x[ok])))
+            d.series(right, i, condition[ok], off)
+            d.series(right, i, np.minimum(condition[~ok], 600), np.full((~ok).sum(), 8.5), hollow=True)
         grid = np.geomspace(2, np.log(9) / v.ratio_error, 50)
         right.plot(
             grid,
@@ -175,14 +198,13 @@ def _plot(v: Inversion) -> Figure:
             ls="--",
             label="condition × scatter of R",
         )
-        right.set_xscale("log")
-        right.set_yscale("log")
-        d.log_ticks(right.xaxis, (2, 5, 10, 50, 200, 600))
-        d.log_ticks(right.yaxis, (1, 1.5, 2, 3, 5, 8))
-        right.set_ylim(0.97, 10)
-        right.set_xlabel("|condition number| of K_obj in R")
-        right.set_ylabel("off by this factor, supported K_r")
-        right.set_title("what was to be expected")
+        d.log_axes(right, x=(2, 5, 10, 50, 200, 600), y=(1, 1.5, 2, 3, 5, 8))
+        right.set(
+            ylim=(0.97, 10),
+            xlabel="|condition number| of K_obj in R",
+            ylabel="off by this factor, supported K_r",
+            title="what was to be expected",
+        )
         right.legend(loc="lower right", fontsize=9)
         from matplotlib.lines import Line2D
 
@@ -197,9 +219,9 @@ def _plot(v: Inversion) -> Figure:
             columnspacing=1.2,
             handletextpad=0.3,
         )
-        return Figure(
+        return d.drawn(
+            figure,
             "inversion",
-            d.svg(figure, "inversion"),
             "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that "
             "runs through infinity.",
         )

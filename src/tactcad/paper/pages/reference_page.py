@@ -6,7 +6,18 @@ import numpy as np
 
 from tactcad.paper import plots as d
 from tactcad.paper.reference_element import Explanation, ReferenceElement
-from tactcad.paper.report import Figure, Marked, Section, Table, interval, listed, percent, sig
+from tactcad.paper.report import (
+    Cell,
+    Figure,
+    Marked,
+    Section,
+    Table,
+    interval,
+    listed,
+    percent,
+    sig,
+    tabulated,
+)
 
 
 def page(e: ReferenceElement) -> Section:
@@ -148,66 +159,40 @@ def _ranges(e: ReferenceElement) -> Table:
 
 
 def _accounts(e: ReferenceElement) -> Table:
-    pick = lambda text, agrees: text if agrees else Marked(text)  # noqa: E731
-    rows = tuple(
-        (
-            r.name,
-            r.stiffness,
-            r.load,
-            f"{r.weights:.1f}",
-            pick(interval(*r.deflection), r.deflection_agrees),
-            pick(interval(*r.signal), r.signal_agrees),
-        )
-        for r in e.readings
-    )
-    return Table(
+    def pick(text: str, agrees: bool) -> Cell:
+        return text if agrees else Marked(text)
+
+    return tabulated(
         "What the reference element would have shown under each account of Table 2",
-        (
-            ("account", ""),
-            ("K_r", "N/mm"),
-            ("load", "N"),
-            ("added weights", ""),
-            ("deflection as printed", "µm"),
-            ("signal by K_v", "V"),
-        ),
-        rows,
-        "All elements in parallel on one sample, range over Table 2's samples; printed: "
+        e.readings,
+        ("account", "", lambda r: r.name),
+        ("K_r", "N/mm", lambda r: r.stiffness),
+        ("load", "N", lambda r: r.load),
+        ("added weights", "", lambda r: f"{r.weights:.1f}"),
+        ("deflection as printed", "µm", lambda r: pick(interval(*r.deflection), r.deflection_agrees)),
+        ("signal by K_v", "V", lambda r: pick(interval(*r.signal), r.signal_agrees)),
+        note="All elements in parallel on one sample, range over Table 2's samples; printed: "
         f"{_printed(e.deflection)} µm, {_printed(e.signal)} V. Marked: no overlap with the printed range.",
     )
 
 
 def _explanations(e: ReferenceElement) -> Table:
-    def mark(v: float) -> object:
+    def mark(v: float) -> Cell:
         text = f"{np.expm1(v) * 100:+.0f} %".replace("-", "−")
         return Marked(text) if abs(v) > 2 * e.scatter else text
 
-    rows = tuple(
-        (
-            x.name,
-            _size(x),
-            "yes" if x.possible else "no",
-            x.limit,
-            x.signal_per_deflection,
-            mark(x.miss_per_deflection),
-            x.signal_per_force,
-            mark(x.miss_per_force),
-        )
-        for x in e.explanations
-    )
-    return Table(
+    return tabulated(
         f"What each explanation of K = {e.stiffness:g} N/mm predicts",
-        (
-            ("explanation", ""),
-            ("its size", ""),
-            ("possible", ""),
-            ("limit", ""),
-            ("K_v", "V/mm"),
-            ("printed is off by", ""),
-            ("K_v/K", "V/N"),
-            ("printed is off by", ""),
-        ),
-        rows,
-        f"With the gain of the other elements ({sig(e.gain)} V per strain, scatter "
+        e.explanations,
+        ("explanation", "", lambda x: x.name),
+        ("its size", "", _size),
+        ("possible", "", lambda x: "yes" if x.possible else "no"),
+        ("limit", "", lambda x: x.limit),
+        ("K_v", "V/mm", lambda x: x.signal_per_deflection),
+        ("printed is off by", "", lambda x: mark(x.miss_per_deflection)),
+        ("K_v/K", "V/N", lambda x: x.signal_per_force),
+        ("printed is off by", "", lambda x: mark(x.miss_per_force)),
+        note=f"With the gain of the other elements ({sig(e.gain)} V per strain, scatter "
         f"{percent(e.scatter)}). Marked: over two standard deviations. K_v/K adds nothing to K_v here, "
         "since every explanation gives the printed K.",
     )
@@ -230,30 +215,22 @@ def _plot(e: ReferenceElement) -> Figure:
                 lw=2,
             )
         ax.axvline(e.printed_k_v, color=d.RED, ls="--", lw=2)
-        ax.annotate(
-            f"printed: {e.printed_k_v:g}",
-            (e.printed_k_v, len(y) - 0.45),
-            (6, 0),
-            textcoords="offset points",
-            color=d.RED,
-        )
+        d.note(ax, f"printed: {e.printed_k_v:g}", (e.printed_k_v, len(y) - 0.45), (6, 0), color=d.RED)
         ax.axvspan(min(e.implied_k_v), max(e.implied_k_v), color=d.ORANGE, alpha=0.35, lw=0)
-        ax.annotate(
+        d.note(
+            ax,
             "printed signals over\nprinted deflections",
             (max(e.implied_k_v), len(y) - 0.62),
             (6, 0),
-            textcoords="offset points",
             fontsize=9.5,
         )
         ax.set_yticks(y, [x.name for x in e.explanations])
-        ax.set_ylim(-0.6, len(y) - 0.05)
-        ax.set_xlim(0)
-        ax.set_xlabel(
-            f"K_v of no. {e.element}, V/mm (bars: two standard deviations; blue: possible within the "
-            "geometry)"
+        ax.set(
+            ylim=(-0.6, len(y) - 0.05),
+            xlim=0,
+            xlabel=f"K_v of no. {e.element}, V/mm (bars: two standard deviations; blue: possible within the "
+            "geometry)",
         )
-        return Figure(
-            "reference-element",
-            d.svg(figure, "reference-element"),
-            f"K_v that each explanation of no. {e.element}'s stiffness predicts.",
+        return d.drawn(
+            figure, "reference-element", f"K_v that each explanation of no. {e.element}'s stiffness predicts."
         )

@@ -7,6 +7,7 @@ import numpy as np
 from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.report import (
+    Cell,
     Figure,
     Marked,
     Section,
@@ -17,6 +18,7 @@ from tactcad.paper.report import (
     percent,
     sig,
     signed_percent,
+    tabulated,
 )
 from tactcad.paper.residuals import WIRE_TOLERANCE, Residuals
 
@@ -41,17 +43,18 @@ def page(r: Residuals, array: ArrayModel) -> Section:
 def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
     """Sentences chosen by the residuals and the bands."""
     e = r.element
-    worst = int(np.argmax(np.abs(r.residual)))
+    worst = r.furthest
     out_cut, out_pad = r.outside(r.band_cut), r.outside(r.band_pad)
     common = (
         f"no common factor is left (mean {signed_percent(np.expm1(r.mean))})"
         if abs(r.mean) < SMALL_FACTOR
         else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
     )
+    others = f"; {percent(r.scatter_of_others)} without no. {e[worst]}" if len(e) > 2 else ""
     found = [
         f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
-        f"{percent(r.scatter)} (standard deviation of ln K), whichever rung is used: the model's own "
-        "error is far below that.",
+        f"{percent(r.scatter)} (standard deviation of ln K{others}), "
+        "whichever rung is used: the model's own error is far below that.",
         f"Furthest off is no. {e[worst]}: {sig(np.exp(r.residual[worst]))} times the prediction. Alone, "
         + _cause(r, worst, array)
         + ".",
@@ -155,45 +158,35 @@ def _rungs(r: Residuals) -> Table:
 
 
 def _explained(r: Residuals, array: ArrayModel) -> Table:
-    rows = []
-    for i, n in enumerate(r.element):
-        dt, dl = r.thickness_change[i] * 1e3, r.load_arm_change[i]
-        rows.append(
-            (
-                int(n),
-                exact(r.arm[i]),
-                exact(r.measured[i]),
-                interval(*r.band_cut[:, i]),
-                _place(r, r.band_cut, i),
-                interval(*r.band_pad[:, i]),
-                _place(r, r.band_pad, i),
-                _mark(f"{dt:+.1f}".replace("-", "−"), abs(dt) > WIRE_TOLERANCE["1 pass"] * 1e3),
-                _mark(f"{dl:+.2f}".replace("-", "−"), not abs(dl) <= r.pad_half),
-            )
-        )
+    def change(text: str, beyond: bool) -> Cell:
+        text = text.replace("-", "−")
+        return Marked(text) if beyond else text
+
+    def thicker(i: int) -> Cell:
+        um = r.thickness_change[i] * 1e3
+        return change(f"{um:+.1f}", abs(um) > WIRE_TOLERANCE["1 pass"] * 1e3)
+
+    def longer(i: int) -> Cell:
+        mm = r.load_arm_change[i]
+        return change(f"{mm:+.2f}", not abs(mm) <= r.pad_half)
+
     wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
-    return Table(
+    return tabulated(
         "What one change alone would explain, and the spread to be expected",
-        (
-            ("element", ""),
-            ("arm a", "mm"),
-            ("measured K", "N/mm"),
-            ("band, cutting", "N/mm"),
-            ("", ""),
-            ("band, and pad", "N/mm"),
-            ("", ""),
-            ("hinge change", "µm"),
-            ("load point change", "mm"),
-        ),
-        tuple(rows),
-        "95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on "
+        range(len(r.element)),
+        ("element", "", lambda i: int(r.element[i])),
+        ("arm a", "mm", lambda i: exact(r.arm[i])),
+        ("measured K", "N/mm", lambda i: exact(r.measured[i])),
+        ("band, cutting", "N/mm", lambda i: interval(*r.band_cut[:, i])),
+        ("", "", lambda i: _place(r, r.band_cut, i)),
+        ("band, and pad", "N/mm", lambda i: interval(*r.band_pad[:, i])),
+        ("", "", lambda i: _place(r, r.band_pad, i)),
+        ("hinge change", "µm", thicker),
+        ("load point change", "mm", longer),
+        note="95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on "
         f"the {array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, "
         "or off the pad.",
     )
-
-
-def _mark(text: str, on: bool) -> object:
-    return Marked(text) if on else text
 
 
 def _bands(r: Residuals) -> Figure:
@@ -229,25 +222,16 @@ def _bands(r: Residuals) -> Figure:
         )
         ax.plot(x, r.measured[order], "o", color=d.RED, ms=9, mec="white", label="Table 1", zorder=5)
         for i, k in zip(x, order):
-            ax.annotate(
-                f"{r.measured[k]:g}",
-                (i + 0.25, r.measured[k]),
-                (4, -3),
-                textcoords="offset points",
-                fontsize=9.5,
-                color=d.RED,
-            )
-        ax.set_yscale("log")
-        d.log_ticks(ax.yaxis, (5, 10, 20, 40, 80))
+            d.note(ax, f"{r.measured[k]:g}", (i + 0.25, r.measured[k]), (4, -3), fontsize=9.5, color=d.RED)
+        d.log_axes(ax, y=(5, 10, 20, 40, 80))
         ax.set_ylim(min(pad[0].min(), r.measured.min()) * 0.85, max(pad[1].max(), r.measured.max()) * 1.15)
         ax.set_xticks(x, [f"no. {r.element[k]}\na = {r.arm[k]:g} mm" for k in order])
-        ax.set_xlim(-0.6, len(x) - 0.2)
-        ax.set_ylabel("stiffness K, N/mm")
+        ax.set(xlim=(-0.6, len(x) - 0.2), ylabel="stiffness K, N/mm")
         ax.legend(loc="upper right")
         ax.grid(axis="x", visible=False)
-        return Figure(
+        return d.drawn(
+            figure,
             "stiffness-bands",
-            d.svg(figure, "stiffness-bands"),
             "Measured stiffness against the prediction and the spread to be expected, elements by arm "
             "length.",
         )
@@ -269,8 +253,8 @@ def _needed(r: Residuals) -> Figure:
         left.set_yticks(y, [f"no. {r.element[k]}, a = {r.arm[k]:g}" for k in order])
         for ax in (left, right):
             ax.axvline(0, color=d.BLACK, lw=1)
-        return Figure(
+        return d.drawn(
+            figure,
             "stiffness-needed",
-            d.svg(figure, "stiffness-needed"),
             "What change of hinge thickness alone, or of load point alone, would explain each residual.",
         )

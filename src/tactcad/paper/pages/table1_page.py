@@ -122,10 +122,8 @@ def _products(c: Table1Check) -> Table:
         (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")),
         rows,
         "Marked: more than the rounding of the printed figures allows. The paper's text gives K_v as the "
-        "sensitivity "
-        "to force and K_v/K as the one to deflection, and calls K_v and once K the slope of Figure 4(b): by "
-        "their "
-        "units and these ratios K_v is per deflection, and K is the slope of 4(a).",
+        "sensitivity to force and K_v/K as the one to deflection, and calls K_v and once K the slope of "
+        "Figure 4(b): by their units and these ratios K_v is per deflection, and K is the slope of 4(a).",
     )
 
 
@@ -181,12 +179,14 @@ def _plot(c: Table1Check, data: Published) -> Figure:
         by_force = np.argsort(t.force.value)
         shift = {int(c.element[i]): ((7, 5), (-9, -17))[place % 2] for place, i in enumerate(by_force)}
         for n, x, y in zip(c.element, t.force.value, t.deflection.value):
-            left.annotate(f"{n}", (x, y), shift[int(n)], textcoords="offset points", fontsize=10)
-        left.set_xlim(0, force[1] * 1.03)
-        left.set_ylim(0)
-        left.set_xlabel("largest force, N")
-        left.set_ylabel("deflection at it, µm")
-        left.set_title("what stood in series (by element number)")
+            d.note(left, f"{n}", (x, y), shift[int(n)], fontsize=10)
+        left.set(
+            xlim=(0, force[1] * 1.03),
+            ylim=0,
+            xlabel="largest force, N",
+            ylabel="deflection at it, µm",
+            title="what stood in series (by element number)",
+        )
         left.legend(loc="lower left")
         y = np.arange(len(c.element))[::-1]
         for offset, p, name, colour, marker in (
@@ -207,8 +207,7 @@ def _plot(c: Table1Check, data: Published) -> Figure:
             )
         right.axvline(0, color=d.BLACK, lw=1)
         right.set_yticks(y, [f"no. {n}" for n in c.element])
-        right.set_ylim(-0.6, len(y) - 0.4)
-        right.set_xlabel("difference, % (bars: what rounding allows)")
+        right.set(ylim=(-0.6, len(y) - 0.4), xlabel="difference, % (bars: what rounding allows)")
         right.legend(
             loc="lower center",
             bbox_to_anchor=(0.45, 1.0),
@@ -217,8 +216,6 @@ def _plot(c: Table1Check, data: Published) -> Figure:
             columnspacing=1,
             handletextpad=0.4,
         )
-        return Figure(
-            "table1",
-            d.svg(figure, "table1"),
-            "Left: deflection against force. Right: relations between Table 1's columns.",
+        return d.drawn(
+            figure, "table1", "Left: deflection against force. Right: relations between Table 1's columns."
         )

@@ -207,7 +207,9 @@ def _said(f: Fit) -> str:
 
 def _other_witnesses(s: Table2Study, who: tuple[Witness, ...]) -> str:
     K, printed = s.supported.value[0], s.reference_printed
-    for_supported, for_printed, silent = [], [], []
+    for_supported: list[Witness] = []
+    for_printed: list[Witness] = []
+    silent: list[Witness] = []
     for w in who[3:]:
         if w.high > w.low * USABLE:
             silent.append(w)
@@ -372,19 +374,13 @@ def _ratio_plot(s: Table2Study) -> Figure:
                     mew=0.6,
                     label=f"K_m = {k:g}",
                 )
-            ax.set_xscale("log")
-            ax.set_yscale("log")
-            d.log_ticks(ax.xaxis, (1, 2, 3, 4, 6, 8, 10))
-            d.log_ticks(ax.yaxis, (1, 2, 3, 4, 6, 8, 10))
-            ax.set_xlim(*span)
-            ax.set_ylim(*span)
-            ax.set_title(title)
-            ax.set_xlabel("R by equation (2)")
+            d.log_axes(ax, x=(1, 2, 3, 4, 6, 8, 10), y=(1, 2, 3, 4, 6, 8, 10))
+            ax.set(xlim=span, ylim=span, title=title, xlabel="R by equation (2)")
         axes[0].set_ylabel("R measured (Table 2)")
         axes[0].legend(loc="upper left", title="N/mm")
-        return Figure(
+        return d.drawn(
+            figure,
             "table2-ratio",
-            d.svg(figure, "table2-ratio"),
             "Measured R against equation (2): with the printed reference stiffness, and with the one "
             "that Table 2 supports. On the line they agree.",
         )
@@ -412,14 +408,15 @@ def _forest(s: Table2Study, who: tuple[Witness, ...]) -> Figure:
             if least < w.value < most:
                 ax.plot(w.value, place, "o", color=d.BLUE, ms=8, mec="white")
         ax.set_yticks(y, [w.name for w in who])
-        ax.set_ylim(-0.6, len(who) - 0.1)
-        ax.set_xscale("log")
+        ax.set(ylim=(-0.6, len(who) - 0.1), xscale="log")
         d.log_ticks(ax.xaxis, (10, 20, 30, 40, 60, 80, 120, 200))
-        ax.set_xlim(least * 0.97, most * 1.03)
-        ax.set_xlabel("stiffness of the reference element, N/mm (95 % intervals; arrows: further than shown)")
-        return Figure(
+        ax.set(
+            xlim=(least * 0.97, most * 1.03),
+            xlabel="stiffness of the reference element, N/mm (95 % intervals; arrows: further than shown)",
+        )
+        return d.drawn(
+            figure,
             "reference-stiffness",
-            d.svg(figure, "reference-stiffness"),
             "Every witness for the reference element's stiffness. Shaded: what Table 2 supports; "
             "dashed: what Table 1 prints.",
         )

@@ -28,8 +28,8 @@ class Bearing:
 
 BEARINGS = {
     row["size"]: Bearing(
-        *(number(row[name]) for name in ("d", "D", "B", "inner")),
-        number(row["mass"]) if row["mass"] else None,
+        **{name: number(row[name]) for name in ("d", "D", "B", "inner")},
+        mass=number(row["mass"]) if row["mass"] else None,
     )
     for row in rows("bearings")
 }

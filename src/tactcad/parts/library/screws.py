@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, chain, circle
+from tactcad.parts.description import ModelFile
 
 from ..description import Extrusion, Hole, Material, Part, Pocket, Purchase, Revolution, drill_point_height
 from .tables import number, rows
@@ -76,8 +77,8 @@ def seating_torque(thread: str) -> float:
 
 
 def seating_force(thread: str) -> float:
-    """N of a set screw at its seating torque, after VDI 2230 with the friction of data/screws.csv's torques, 0.12: thread's
-    lead, thread's friction at d2 = d - 0.6495 P, and that of its flat point."""
+    """N of a set screw at its seating torque, after VDI 2230 with the friction of data/screws.csv's torques,
+    0.12: thread's lead, thread's friction at d2 = d - 0.6495 P, and that of its flat point."""
     m, friction = METRIC[thread], 0.12
     lever = m.pitch / (2 * pi) + friction * ((m.d - 0.6495 * m.pitch) / 2 / cos(pi / 6) + m.set_point / 3)
     return 1e3 * seating_torque(thread) / lever
@@ -159,14 +160,15 @@ def set_screw(thread: str, length: float) -> Part:
 def for_pictures(part: Part) -> Part:
     """A screw or rod as thin as its tapped hole, a hair less; any other part as it is.
 
-    Hidden-line removal takes parts as not meeting: a thread that reaches into the material around its hole leaves
-    ticks on the faces that it pierces.
+    Hidden-line removal takes parts as not meeting: a thread that reaches into the material around its hole
+    leaves ticks on the faces that it pierces.
     """
     match = _THREADED.match(part.part_no)
-    if not match:
+    if not match or isinstance(part.body, ModelFile):
         return part
     m = METRIC[match[1]]
     thin = m.tap_drill / 2 - 0.02
+    body: Extrusion | Revolution
     if isinstance(part.body, Extrusion):
         body = replace(part.body, outer=circle((0, 0), 2 * thin))
     else:

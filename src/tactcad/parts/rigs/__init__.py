@@ -1,7 +1,8 @@
 """Parts of the rigs around the array: calibration, sample stiffness and grasping; one file a part.
 
-In: where things stand, derived once from the design (`stand_layout`, `cart_layout`, `guide_layout`; the latter two are
-None where the design has no such tables). Out: parts for the scenes, which see them here by name.
+In: where things stand, derived once from the design (`stand_layout`, `cart_layout`, `guide_layout`; the
+latter two are None where the design has no such tables). Out: parts for the scenes, which see them here by
+name.
 """
 
 from __future__ import annotations

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from ..layout import ElementPlace, Layout
@@ -13,7 +14,8 @@ from ..layout import ElementPlace, Layout
 class CalibrationLoad:
     """One element at the end of calibration.travel.
 
-    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g + K).
+    Gauge and element are springs in series: of the micrometer's travel D the element takes d = D K_g/(K_g +
+    K).
 
     deflection        mm at the pad
     force             N
@@ -38,7 +40,7 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
 
     from ..hinge_section import design_alloy, hinge_section
 
-    c, layout = design.calibration, Layout(design)
+    c, layout = present(design.calibration), Layout(design)
     s = hinge_section(layout, layout.elements)
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
     yields = strength.yield_force_where_known(s, design_alloy(design))
@@ -48,5 +50,6 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
         rated = at_yield / design.rating.deflection_factor / K
         deflection = c.travel * share
         figures = (deflection, K * deflection, rated, rated / share, at_yield / K / share)
-        loads.append(CalibrationLoad(place, *map(float, figures), str(why)))
+        gives, force, may_give, to_rated, to_yield = map(float, figures)
+        loads.append(CalibrationLoad(place, gives, force, may_give, to_rated, to_yield, str(why)))
     return tuple(loads)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sqrt
 
+from tactcad.design.present import present
 from tactcad.design.tree import Cart, Design, Holder, Sample
 from tactcad.parts.library import orings
 
@@ -63,7 +64,7 @@ class CartLayout:
     @property
     def axle_in_plate(self) -> float:
         """How deep the axle reaches into the plate."""
-        return round(self.axle_length - 2 * self.cart.shim - self.bearing.B, 9)
+        return round(present(self.axle_length) - 2 * self.cart.shim - self.bearing.B, 9)
 
     @property
     def wheel_y(self) -> float:

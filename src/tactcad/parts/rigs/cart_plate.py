@@ -14,6 +14,7 @@ the axles are tightened.
 from __future__ import annotations
 
 from tactcad.contour import rectangle
+from tactcad.design.present import present
 
 from ..description import Characteristic, Extrusion, Hole, Part
 from ..library.screws import METRIC
@@ -45,7 +46,7 @@ def cart_plate(rig: CartLayout) -> Part:
         for sx in (-1.0, 1.0)
         for sy in (-1.0, 1.0)
     )
-    h, (length, under) = rig.holder_screw, rig.holder_fixing
+    h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
     engaged = length - under - rig.holder_body
     holder = tuple(
         tapped("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged)

@@ -11,6 +11,7 @@ r"""The digital force gauge, bought: housing with an M6 shaft, shaft down, two M
 from __future__ import annotations
 
 from tactcad.contour import circle, rectangle
+from tactcad.design.present import present
 
 from ..description import Extrusion, Hole, Part, Pocket, Purchase
 from ..library.screws import METRIC
@@ -26,7 +27,7 @@ def force_gauge(rig: StandLayout) -> Part:
     """Digital force gauge, shaft down: (x, y) the scene's, z = 0 the shaft's end, z = 10 the housing's lower
     face."""
     w, deep, high = GAUGE_SIZE
-    c = rig.design.calibration
+    c = present(rig.design.calibration)
     around = rectangle(-w / 2, -deep / 2, w / 2, deep / 2)
     shaft = Pocket(
         "around_shaft", (0, 0, 0), (0, 0, 1), (1, 0, 0), around, GAUGE_SHAFT, (circle((0, 0), SHAFT),)

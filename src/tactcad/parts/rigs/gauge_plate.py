@@ -9,6 +9,8 @@ r"""Plate that holds the force gauge by two screws from behind, and is itself he
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
@@ -33,7 +35,7 @@ def gauge_plate(rig: StandLayout) -> Part:
     return upright_plate(rig, "gauge-plate", "Gauge plate", features)
 
 
-def upright_plate(rig: StandLayout, number: str, name: str, features: list[Feature]) -> Part:
+def upright_plate(rig: StandLayout, number: str, name: str, features: Sequence[Feature]) -> Part:
     return Part(
         part_no=f"{rig.design.name}-{number}",
         name=name,

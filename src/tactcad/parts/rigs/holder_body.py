@@ -14,6 +14,8 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from tactcad.contour import Contour, Corner, circle, rectangle, rounded_polygon
+from tactcad.design.present import present
+from tactcad.parts.description import Feature
 
 from ..description import Extrusion, Hole, Part, Pocket
 from ..library import orings
@@ -26,10 +28,10 @@ from .frame import COLOUR
 def holder_body(rig: CartLayout) -> Part:
     """Plenum, seal groove, port in the front wall; z = 0 is the underside."""
     t, s, h = rig.holder_body, rig.holder_side / 2, rig.holder_screw
-    inner, outer = orings.groove(rig.o_ring)
+    inner, outer = orings.groove(present(rig.o_ring))
     flat = rig.holder.vacuum_diameter / 2
     m5 = METRIC["M5"]
-    features = [
+    features: list[Feature] = [
         Pocket("plenum", (0, 0, t), (0, 0, -1), (1, 0, 0), plenum(rig), rig.holder.plenum_depth),
         Pocket(
             "seal",

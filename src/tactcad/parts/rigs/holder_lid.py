@@ -12,6 +12,7 @@ r"""Lid of the vacuum holder under the sample: suction holes in hexagonal rings.
 from __future__ import annotations
 
 from tactcad.contour import rectangle
+from tactcad.design.present import present
 
 from ..description import Extrusion, Hole, Part
 from ..materials import plate_material
@@ -26,7 +27,7 @@ def holder_lid(rig: CartLayout) -> Part:
         Hole("suction", (x, y, t), (0, 0, -1), rig.holder.hole_diameter, t, True)
         for x, y in rig.suction_holes
     ]
-    under = rig.holder_fixing[1]
+    under = present(rig.holder_fixing)[1]
     screws = [
         sunk("screw", "M3", (sx * h, sy * h, t), (0, 0, -1), t, under) for sx in (-1, 1) for sy in (-1, 1)
     ]

@@ -25,7 +25,7 @@ from .guide_layout import GuideLayout
 def pin(rig: GuideLayout, under: float = 0.0) -> Part:
     """Pin that centres the weights, as high as their stack on `under` mm of ballast; M4 thread in its
     foot."""
-    stack = round(rig.grasping.weights) * disc_weight(rig).body.thickness
+    stack = round(rig.grasping.weights) * disc_weight(rig).extrusion.thickness
     thread = tapped_depth("M4") + 1.0  # in its foot, and the floor over it
     height = 5.0 * ceil(max(stack + max(9.0, under + 1.0), thread) / 5.0)
     return Part(

@@ -10,6 +10,7 @@ r"""Tip for the pads: a nose with a half-round seat for the roller, which stands
 from __future__ import annotations
 
 from tactcad.contour import Corner, rounded_polygon
+from tactcad.design.present import present
 
 from ..description import Extrusion, Part
 from ..library.dowels import dowel_diameter
@@ -24,7 +25,7 @@ def roller_tip(rig: StandLayout) -> Part:
 
     Contour in (x, z), z = 0 the roller's lowest line, extruded along y by 10.
     """
-    r = dowel_diameter(rig.design.calibration.roller) / 2
+    r = dowel_diameter(present(rig.design.calibration).roller) / 2
     nose, half = r + 1.0, 6.0
     corners = [
         Corner((-nose, r)),

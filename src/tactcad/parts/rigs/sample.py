@@ -26,8 +26,13 @@ def sample(rig: CartLayout, dents: tuple[tuple[float, float], ...] = (), depth: 
         if pressed
     )
     number = f"SAMPLE-{rig.sample.side:g}x{rig.sample.side:g}x{t:g}-rubber"
+    if (
+        pressed
+    ):  # one pad and the force gauge's tip dent it alike, in different places: the first tells them all
+        x, y = dents[0]
+        number += f"-pressed-{len(pockets)}x{depth:g}mm-at-{x + 0.0:g}x{y + 0.0:g}"
     return Part(
-        part_no=f"{number}-pressed-{len(pockets)}x{depth:g}mm" if pressed else number,
+        part_no=number,
         name=f"Rubber sample {rig.sample.side:g} x {rig.sample.side:g} x {t:g}",
         process="reference" if pressed else "bought",
         material=RUBBER,

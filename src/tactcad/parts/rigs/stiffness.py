@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from math import pi, radians
 
 from tactcad.design.materials import ALLOYS
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam, rod, round_plate
 
@@ -42,17 +43,45 @@ LEVER = POST_Y + POST[1] / 2  # from the force gauge's axis to the post's middle
 THREAD_COLUMN = 4.0  # mm of the post's width that a column of M4 threads takes
 BACK = 35.0  # mm, half the height of gauge plate and axis plate
 SEAT = 10.0  # mm, the roller's seat (roller_tip.py)
+LID = "holder.lid_thickness"
+# Scene, N, where that is from, um allowed and why, fields that change one of both.
+Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
-    """In series with the gauge: what gives way there is read as the element's own deflection."""
-    rig, c = StandLayout(design), design.calibration
+    """In series with the gauge, one by one and together: what gives way there is read as the element's own
+    deflection."""
+    lines = tuple(_in_series(design))
+    yield from lines
+    one, own = lines[0], 1e3 * lines[0].load / present(design.calibration).load_cell_stiffness
+    yield Deflection(
+        one.scene,
+        "all of these",
+        "in series with the gauge",
+        one.load,
+        one.origin,
+        1e3 * one.load * series_give(design),
+        TENTH * own,
+        "a tenth of what the gauge gives way, which is measured with them",
+        ("calibration.load_cell_stiffness",),
+        "flag",
+    )
+
+
+def series_give(design: Design) -> float:
+    """What stand and mount of the calibration add to the gauge's own compliance, mm/N."""
+    return sum(1e-3 * line.gives / line.load for line in _in_series(design))
+
+
+def _in_series(design: Design) -> Iterator[Deflection]:
+    rig, c = StandLayout(design), present(design.calibration)
     load = (
         "calibration",
         min(c.load_cell_range, c.travel * c.load_cell_stiffness),
         "the gauge's range, or its stiffness times the travel",
         TENTH * c.step * 1e3,
         "a tenth of calibration.step",
+        ("calibration.step", "calibration.travel", "calibration.load_cell_range"),
     )
     yield from _stand_lines(rig, rig.pads_up, load)
     d = dowel_diameter(c.roller)
@@ -62,37 +91,41 @@ def calibration_lines(design: Design) -> Iterator[Deflection]:
     mount = _plate(design, 2 * STAGE_HOLE, 2 * STAGE_HOLE, PLATE)
     yield _line(load, "array mount", "between its screws, load in the middle", mount.supported())
     end = carrier_beam(rig.array, rig.array.end_plate_y).cantilever()
-    yield _line(load, "carrier", "from its middle to an end plate", end)
+    yield _line(load, "carrier", "from its middle to an end plate", end, "clamp.carrier_thickness")
 
 
 def sample_lines(design: Design) -> Iterator[Deflection]:
-    rig, s = StandLayout(design), design.sample
+    rig, s = StandLayout(design), present(design.sample)
+    cart = present(rig.cart)
     load = (
         "sample-stiffness",
-        min(design.calibration.load_cell_range, s.stiffness * s.travel),
+        min(present(design.calibration).load_cell_range, s.stiffness * s.travel),
         "sample.stiffness times sample.travel",
         TENTH * s.step * 1e3,
         "a tenth of sample.step",
+        ("sample.step", "sample.travel"),
     )
-    yield from _stand_lines(rig, rig.cart.sample_top, load)
-    yield from _cart_lines(rig.cart, load)
+    yield from _stand_lines(rig, cart.sample_top, load)
+    yield from _cart_lines(cart, load)
 
 
 def grasping_lines(design: Design) -> Iterator[Deflection]:
     """Array and weights on their guide, and the cart under them; the guide itself is bought."""
-    rig, stand, layout = guide_layout(design), StandLayout(design), Layout(design)
+    rig, stand, layout = present(guide_layout(design)), StandLayout(design), Layout(design)
     g = rig.grasping
     weight, origin = g.moving_weight + g.weights * g.weight, "moving weight and all added weights"
-    down = ("grasping", weight, origin, *pads_plane(design))
+    lighter = ("grasping.weights", "grasping.moving_weight")
+    down = ("grasping", weight, origin, *pads_plane(design), ("tolerance.pad_height", *lighter))
     yield from _cart_lines(rig.cart, down)
     flat = TENTH * FLAT * 1e3, "a tenth of the 0.02 mm within which it is made flat"
     base = _plate(design, stand.base_length, stand.base_back - stand.base_front, BASE[1])
-    base_load = ("grasping", weight, origin, *flat)
+    base_load = ("grasping", weight, origin, *flat, lighter)
     yield _line(base_load, "base plate", "bridging its whole length, load in the middle", base.supported())
     radius = rig.cart.plenum_reach
-    vacuum = ("grasping", ATMOSPHERE * pi * radius**2, "0.1 MPa, more than any vacuum, on the plenum", *flat)
+    air = "0.1 MPa, more than any vacuum, on the plenum"
+    vacuum = ("grasping", ATMOSPHERE * pi * radius**2, air, *flat, ())
     pressed = _lid(rig.cart)[1] / (pi * radius**2)
-    yield _line(vacuum, "holder's lid", "round plate on its rim, pierced, evenly pressed", pressed)
+    yield _line(vacuum, "holder's lid", "round plate on its rim, pierced, evenly pressed", pressed, LID)
 
     # What turns foot or bar tilts the array: told where it shows, between the ends of a row.
     row = max(layout.positions - 1, 1) * design.array.pitch
@@ -102,6 +135,7 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
         origin,
         1e3 * TENTH * radians(design.tolerance.tilt) * row,
         "a tenth of tolerance.tilt over a row",
+        (*lighter, "tolerance.tilt"),
     )
     bar = _plate(design, CARRIAGE_ON_BAR, BAR_WIDTH, BAR)
     yield _line(
@@ -113,18 +147,19 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
     model = "turned at the weights' pin, held at the bar"
     yield _line(tilt, "platform", model, platform.cantilever_tilt() * row)
     alloy = ALLOYS[design.clamp.plate_alloy]
-    slender = rod(pin(rig).body.thickness, PIN, alloy.youngs_modulus, alloy.poisson)
+    slender = rod(pin(rig).extrusion.thickness, PIN, alloy.youngs_modulus, alloy.poisson)
     play = (
         "grasping",
         g.weight,
         "one weight, leant on its end",
         TENTH * 0.5 * 1e3,
         "a tenth of the discs' play on it",
+        ("grasping.weight", "grasping.weights"),
     )
     yield _line(play, "weight pin", "held in the platform", slender.cantilever())
 
 
-def _stand_lines(rig: StandLayout, touch: float, load: tuple) -> Iterator[Deflection]:
+def _stand_lines(rig: StandLayout, touch: float, load: Load) -> Iterator[Deflection]:
     """Base plate, post and the gauge's plates: a frame that the force at the gauge's axis opens."""
     design = rig.design
     base = _plate(design, LEVER, POST[0], BASE[1])
@@ -142,19 +177,24 @@ def _stand_lines(rig: StandLayout, touch: float, load: tuple) -> Iterator[Deflec
     yield _line(load, "axis plate", "halves between the stage's screws, as the gauge plate", turned)
 
 
-def _cart_lines(cart: CartLayout, load: tuple) -> Iterator[Deflection]:
+def _cart_lines(cart: CartLayout, load: Load) -> Iterator[Deflection]:
     c = cart.cart
     plate = _plate(cart.design, c.wheel_base, c.width, c.thickness)
-    yield _line(load, "cart plate", "between its axles, load in the middle", plate.supported())
+    model = "between its axles, load in the middle"
+    yield _line(load, "cart plate", model, plate.supported(), "cart.thickness")
     axle = rod(c.shim + cart.bearing.B / 2, cart.bearing.d, STEEL_MODULUS, STEEL_POISSON)
-    yield _line(load, "cart's axles", "held in the plate, two of four carry", axle.cantilever() / 2)
-    yield _line(load, "holder's lid", "round plate on its rim, pierced, load in the middle", _lid(cart)[0])
+    yield _line(
+        load, "cart's axles", "held in the plate, two of four carry", axle.cantilever() / 2, "cart.shim"
+    )
+    model = "round plate on its rim, pierced, load in the middle"
+    yield _line(load, "holder's lid", model, _lid(cart)[0], LID)
 
 
 def _lid(cart: CartLayout) -> tuple[float, float]:
     """Holder's lid on the plenum's rim: mm for each newton in its middle, and for each MPa under it.
 
-    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch - d)/pitch.
+    Its suction holes leave of every line through them, and so of the plate's stiffness, at least (pitch -
+    d)/pitch.
     """
     h, alloy = cart.holder, ALLOYS[plate_material(cart.design).name]
     pitch = (h.vacuum_diameter - 2 * h.hole_diameter) / 2 / h.rings
@@ -167,7 +207,8 @@ def _plate(design: Design, length: float, width: float, thickness: float) -> Bea
     return Beam(length, width, thickness, alloy.youngs_modulus, alloy.poisson)
 
 
-def _line(load: tuple[str, float, str, float, str], part: str, model: str, give: float) -> Deflection:
-    """`load` is scene, N, origin, um allowed and why; `give` mm/N."""
-    scene, force, origin, allowed, why = load
-    return Deflection(scene, part, model, force, origin, 1e3 * force * give, allowed, why)
+def _line(load: Load, part: str, model: str, give: float, own: str = "") -> Deflection:
+    """`give` in mm/N; `own` is the path of the part's own field, to be looked at before the load's."""
+    scene, force, origin, allowed, why, fields = load
+    fields = (own, *fields) if own else fields
+    return Deflection(scene, part, model, force, origin, 1e3 * force * give, allowed, why, fields)

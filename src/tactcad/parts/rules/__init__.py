@@ -1,8 +1,9 @@
 """Rules between fields of a design, one file a subject: what cannot be built or held is refused before
 anything is made.
 
-In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried when the
-file is read, these after. A rule is a function with `@rule` above it; `@fits` says that a rig takes this array.
+In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried
+when the file is read, these after. A rule is a function with `@rule` above it; `@fits` says that a rig takes
+this array.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from .rule import Rule
 # Files in the order in which their rules are tried. Those of the rigs load no numpy: which scenes a design
 # has is known without.
 ARRAY = ("element_rules", "gauge_rules", "stop_rules", "clamp_rules", "pressed_rules")
-RIGS = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules")
+RIGS = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules", "stiffness_rules")
 
 
 def design_rules() -> dict[str, Rule]:

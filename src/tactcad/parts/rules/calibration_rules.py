@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot
 
+from tactcad.design.present import present
+
 from ..deflected import deflection_at_pad_edge
 from ..finding import SAME, Finding
 from ..layout import HOLE_WEB, Layout
@@ -74,7 +76,7 @@ def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
 @fits("calibration")
 def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
     far = max(max(abs(x), abs(y)) for x, y in pad_middles(layout))
-    travel = layout.design.calibration.stage_travel
+    travel = present(layout.design.calibration).stage_travel
     yield from at_least("calibration.stage_travel", "stages do not reach every pad", travel, far)
 
 
@@ -136,7 +138,7 @@ def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iter
 
 @fits("calibration")
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
-    d, size = layout.design, layout.design.calibration.roller
+    d, size = layout.design, present(layout.design.calibration).roller
     length = next((n for n in dowel_lengths(size) if n >= d.sheet.thickness), None)
     most = 2 * (d.array.pitch - d.sheet.thickness / 2 - 0.1)
     if length is None or length > most + SAME:
@@ -150,7 +152,7 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     yield from at_most(
         "calibration.travel",
         "the roller's holder would come down on the neighbouring pads",
-        d.calibration.travel,
+        present(d.calibration).travel,
         out - ROLLER_OUT,
         f"at most {out - ROLLER_OUT:g} mm, the roller's radius less {ROLLER_OUT:g}",
     )

@@ -72,9 +72,8 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
         "arms too near their neighbours and the end plates to move freely",
         layout.spacer,
         max(LEAST_ARM_GAP, with_tolerances),
-        f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + "
-        f"{SPACER_TOLERANCE + LEAST_BESIDE:g} = "
-        f"{with_tolerances:g} mm",
+        f"at least {LEAST_ARM_GAP:g} mm, and tolerance.sheet_thickness + {SPACER_TOLERANCE + LEAST_BESIDE:g} "
+        f"= {with_tolerances:g} mm",
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi, tan
 
+from tactcad.design.present import present
 from tactcad.mechanics.rigs import holding_force
 
 from ..finding import SAME, Finding
@@ -131,4 +132,4 @@ def pads_on_sample(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     half_pad, half_sheet = d.element.pad_length / 2, d.sheet.thickness / 2
     far = max(max(abs(x) + half_pad, abs(y) + half_sheet) for x, y in pad_middles(layout))
-    yield from at_least("sample.side", "pads reach beyond the sample", d.sample.side, 2 * far)
+    yield from at_least("sample.side", "pads reach beyond the sample", present(d.sample).side, 2 * far)

@@ -36,7 +36,8 @@ def hinge_centre(layout: Layout, place: ElementPlace) -> float:
 
 @rule(after="stop_land_above_arm")
 def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
-    """On the closed stop the arm's back is a land's height under the stop plate, which its tolerance may take."""
+    """On the closed stop the arm's back is a land's height under the stop plate, which its tolerance may
+    take."""
     taken = layout.design.tolerance.arm_height
     for p in layout.elements:
         high = layout.ledge_of(p.hinge) - stop_gap(layout, p) - p.hinge.h
@@ -51,7 +52,8 @@ def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="land_stands_over_arm")
 def slots_stay_open(layout: Layout) -> Iterator[Finding]:
-    """The upper corner of the slot's arm wall, (-l/2, h - z) from the hinge's middle, turns towards the body's wall."""
+    """The upper corner of the slot's arm wall, (-l/2, h - z) from the hinge's middle, turns towards the
+    body's wall."""
     limit = layout.design.tolerance.hinge_length
     kinds = {(p.arm, p.hinge): (p, w) for p, w in zip(layout.elements, turns(layout))}
     for p, w in kinds.values():
@@ -69,7 +71,8 @@ def slots_stay_open(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="slots_stay_open")
 def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
-    """A pad's inner corner, (-a, -(pad height + z)) from the hinge's middle, turns towards the facing pad's."""
+    """A pad's inner corner, (-a, -(pad height + z)) from the hinge's middle, turns towards the facing
+    pad's."""
     d = layout.design
     towards: dict[int, float] = {}
     for p, w in zip(layout.elements, turns(layout)):
@@ -88,7 +91,8 @@ def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
         )
 
 
-# Which field makes a piece of the contour short; what is not named here lies between holes.web and the body's heights.
+# Which field makes a piece of the contour short; what is not named here lies between holes.web and the body's
+# heights.
 _FIELD = {
     "pad_face": "element.pad_length",
     "pad_side": "element.pad_height",
@@ -115,8 +119,8 @@ _FIELD = {
 
 @rule(after="pressed_arms_clear_opposite_row")
 def no_slivers(layout: Layout) -> Iterator[Finding]:
-    """Every piece of every element's contour is LEAST_EDGE long, or not there at all: neither wire nor kernel makes a
-    shorter one."""
+    """Every piece of every element's contour is LEAST_EDGE long, or not there at all: neither wire nor kernel
+    makes a shorter one."""
     seen = set()
     for p in layout.elements:
         gap = stop_gap(layout, p)

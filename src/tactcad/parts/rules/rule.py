@@ -15,7 +15,8 @@ Find = Callable[[Layout], Iterable[Finding]]
 class Rule:
     """A function that says what is wrong, the first thing first.
 
-    after   name of an earlier rule: this one is tried only where that one and all before it are kept, because it
+    after   name of an earlier rule: this one is tried only where that one and all before it are kept, because
+            it
             would only repeat what they say, or could not be computed
     scenes  scenes whose rig needs it: a design that breaks it loses these and is not refused
     """

@@ -103,7 +103,8 @@ def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
-    """Under an arm that the overload force presses on it the stop plate gives way by SHARE of the gap at most.
+    """Under an arm that the overload force presses on it the stop plate gives way by SHARE of the gap at
+    most.
 
     The gap is that of a stop that gives no way: what it protects does not depend on the plate.
     """
@@ -123,8 +124,8 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
 
 
 def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
-    """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given and
-    enough, else a thicker plate, else less force."""
+    """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given
+    and enough, else a thicker plate, else less force."""
     d, c = layout.design, layout.design.clamp
     if c.hold_down_pitch is not None:
         pitch = _largest_pitch(layout, allowed)

@@ -1,16 +1,17 @@
 """All or nothing: a folder of files appears under its name in one step, finished, or not at all.
 
-DIR is an ordinary folder: it may be renamed, copied, archived, and stays what it is. While it is made there is
+DIR is an ordinary folder: it may be renamed, copied, archived, and stays what it is. While it is made there
+is
 
     exports/macro-array                              the earlier one, whole
     exports/.macro-array.tactcad-k3x0a9_2/           ours by its mark, held by the process that writes
         written-by-tactcad                           the mark
         making/                                      being written; named finished/ when it is
 
-Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is looked at once more: what is
-not exactly what tactcad wrote is never removed unasked, but kept beside as DIR-kept-1. The next run does the same
-with what a killed one left. Where the system or the file system cannot exchange, DIR is moved to `earlier`
-first; a kill between these two renames leaves no DIR until the next run puts it back.
+Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is looked at
+once more: what is not exactly what tactcad wrote is never removed unasked, but kept beside as DIR-kept-1. The
+next run does the same with what a killed one left. Where the system or the file system cannot exchange, DIR
+is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run puts it back.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def _print(text: str) -> None:
     print(text, file=sys.stderr)
 
 
-def looked_at(directory: str | os.PathLike[str], schema: str, others: str = REFUSE) -> Contents:
+def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
     """What lies in DIR now; touches nothing.
 
     Raises InputError where DIR is no place for a folder, or holds what tactcad did not write there and
@@ -98,7 +99,7 @@ def _named(foreign: Mapping[str, str]) -> str:
     return ", ".join(names[:SHOWN]) + more
 
 
-def left_unfinished(directory: str | os.PathLike[str]) -> bool:
+def left_unfinished(directory: str | Path) -> bool:
     """Whether another run writes DIR, or was killed when it did."""
     out = absolute(directory)
     return any(name.startswith(f".{out.name}{OWN}") for name in os.listdir(out.parent))
@@ -160,18 +161,14 @@ class Work:
 
 @contextmanager
 def turn(
-    directory: str | os.PathLike[str],
-    schema: str,
-    others: str = REFUSE,
-    say: Say = _print,
-    wait: float = WAIT_SECONDS,
+    directory: str | Path, schema: str, others: str = REFUSE, say: Say = _print, wait: float = WAIT_SECONDS
 ) -> Iterator[Work]:
     """Be the only one who writes DIR, a folder of that schema; what killed runs left is settled first.
 
-    Waits up to `wait` seconds for another process, and says so once. Raises InputError where DIR is not ours to
-    replace (see `looked_at`) or the place cannot be written to; CheckFailure where the wait was in vain, the disk is
-    full, or, after the new DIR stands, where something in the earlier one appeared meanwhile and was kept.
-    Whatever is raised inside, the earlier DIR stands.
+    Waits up to `wait` seconds for another process, and says so once. Raises InputError where DIR is not ours
+    to replace (see `looked_at`) or the place cannot be written to; CheckFailure where the wait was in vain,
+    the disk is full, or, after the new DIR stands, where something in the earlier one appeared meanwhile and
+    was kept. Whatever is raised inside, the earlier DIR stands.
     """
     out = absolute(directory)
     kept: list[str] = []
@@ -208,6 +205,7 @@ def turn(
 def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say: Say, until: float) -> Path:
     """Our unfinished folder beside DIR, once no other process has one."""
     said = False
+    holders: tuple[str, ...] | None
     while True:
         parent = os.open(out.parent, os.O_RDONLY | os.O_DIRECTORY)
         try:  # one at a time looks around; closing gives the lock back
@@ -235,7 +233,8 @@ def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say:
 
 
 def _recover(left: Path, out: Path, schema: str, kept: list[str]) -> None:
-    """Settle what a killed run left in its folder: DIR is put back where it is gone, all else as `Work` does."""
+    """Settle what a killed run left in its folder: DIR is put back where it is gone, all else as `Work`
+    does."""
     if os.path.lexists(left / "earlier") and not os.path.lexists(out):
         os.rename(left / "earlier", out)
     work = Work(out, schema, REFUSE, _print, left, NOTHING, kept)

@@ -6,14 +6,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.parts.description import Characteristic, Part, Vector
+from tactcad.parts.description import Characteristic, Part, Vector, vector
 
-from .ink import Point
+from .boxes import Box, Point
 from .keys import Values, Variable
-from .measure import Measure
+from .measures import Measure
 
 Side = Literal["top", "bottom", "left", "right"]
-Box = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True)
@@ -132,6 +131,11 @@ class Datum:
     end: Point
     away: Point
 
+    def at(self, share: float) -> Point:
+        """The point of the edge at a share of its length from the start."""
+        (x0, y0), (x1, y1) = self.start, self.end
+        return (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
+
 
 @dataclass(frozen=True)
 class Bore:
@@ -146,7 +150,7 @@ class Bore:
 
 
 @dataclass(frozen=True)
-class Section:
+class SectionPlane:
     """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes
     lie in its plane."""
 
@@ -182,7 +186,7 @@ class View:
     centres: tuple[tuple[Point, float], ...] = ()  # circles that carry centre lines
     threads: tuple[tuple[Point, float], ...] = ()  # seen along their axis: middle, nominal diameter
     axes: tuple[tuple[Point, Point], ...] = ()  # other centre lines
-    section: Section | None = None
+    section: SectionPlane | None = None
 
     @property
     def right(self) -> Vector:
@@ -200,6 +204,10 @@ class View:
 def seen(view: View, p: Vector) -> Point:
     """A point of the part in the view's plane."""
     return (sum(a * b for a, b in zip(view.right, p)) + 0.0, sum(a * b for a, b in zip(view.up, p)) + 0.0)
+
+
+def opposite(v: Vector, share: float = 1.0) -> Vector:
+    return vector(-share * a for a in v)
 
 
 @dataclass(frozen=True)
@@ -223,7 +231,7 @@ class Breaks:
 
 
 @dataclass(frozen=True)
-class Plan:
+class SheetPlan:
     """The whole sheet: views, notes, and what drawing conventions say beside the dimensions."""
 
     part: Part

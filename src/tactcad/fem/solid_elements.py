@@ -10,8 +10,8 @@ from skfem import Basis, ElementHex2
 from tactcad.account import making
 
 from . import elasticity
-from .mesh import PlaneMesh, hex_mesh, plane_mesh
-from .plane import Array, end_nodes, fixed_unknowns, parabola
+from .mapped_mesh import PlaneMesh, hex_mesh, plane_mesh
+from .plane_elements import Array, end_nodes, fixed_unknowns, parabola
 from .shape import ElementShape
 
 

@@ -16,14 +16,14 @@ from tactcad.contour import Arc, Contour, Line
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
 
-from .callouts import hole_callout, radius_callout
+from .boxes import Box, Point
+from .callouts import equal_radii, hole_callout
 from .holes import Group, Round, groups, rounds
-from .ink import Point
 from .keys import OUTER, THICKNESS, Spot
-from .measure import Level, Radius, Slope, Span, conventions, halfway, level, size
-from .plan import Across, Callout, Datum, Dimension, Linear, Plan, View
+from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .prism import FRONT, side_view
-from .sketch import ALIKE, Sketch, closed, view_box
+from .sheet_plan import Across, Callout, Datum, Dimension, Linear, SheetPlan, View
+from .sketch import ALIKE, Sketch, closed, view_of
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
@@ -33,7 +33,7 @@ ARM_ROOM = (190.0, 75.0)
 
 
 @dataclass(frozen=True)
-class Corner:
+class OutlineCorner:
     """A sharp corner of the outline: its levels, and where it is."""
 
     x: Level
@@ -70,23 +70,25 @@ class Outline:
         """A segment's start or end."""
         return Spot(OUTER, (self.index[name] + end) % len(self.contour))
 
-    def corner(self, before: str, after: str) -> Corner:
+    def corner(self, before: str, after: str) -> OutlineCorner:
         """The corner between two edges, of which fillets may have used up one."""
         point = self.point(before, True) if before in self else self.point(after, False)
         at = self.end(before) if before in self else self.start(after)
-        return Corner(level(point.place(0)), level(point.place(1)), at)
+        return OutlineCorner(level(point.place(0)), level(point.place(1)), at)
 
-    def arcs(self, names: Sequence[str]) -> list[str]:
-        return [n for n in names if n in self and isinstance(self.segment(n), Arc)]
+    def arc(self, name: str) -> Arc:
+        segment = self.segment(name)
+        assert isinstance(segment, Arc)
+        return segment
 
 
-def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> Plan:
+def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> SheetPlan:
     """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
     with the arm.
 
     Raises CheckFailure where a dimension is missing or given twice.
     """
-    o = Outline(part.body.outer)
+    o = Outline(part.extrusion.outer)
     sketch = Sketch(part)
     for row in conventions(OUTER, o.contour):
         sketch.convention(row)
@@ -102,7 +104,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
     thickness = _within((size(THICKNESS),), "thickness", design.tolerance.sheet_thickness)
     edge = replace(side_view(sketch, part, front, [], thickness), hidden=False, datums=())
     closed(sketch)
-    return Plan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
 
 
 def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
@@ -111,8 +113,7 @@ def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
 
 
 def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group], dowel: Round) -> View:
-    view = View("front", *FRONT, (0, 0, 0, 0))
-    view = replace(view, box=view_box(view, part))
+    view = view_of(part, "front", *FRONT)
     x, at = level(dowel.owner.place(0)), dowel.at[:2]
     top = o.start("clamp_edge")  # upper corner of the rear body, at the clamp edge
     linears = []
@@ -155,23 +156,12 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
 
 def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list[Callout]:
     """Fillets by name, equal ones together; none for a full round, whose width says it."""
-    kinds: dict[float, list[str]] = {}
-    for n in o.arcs(names):
-        kinds.setdefault(round(o.segment(n).radius, 6), []).append(n)
-    callouts = []
-    for some in kinds.values():
-        new = [n for n in some if sketch.account.takes(Radius(OUTER, o.index[n]))]
-        if new:
-            d = Dimension(
-                " and ".join(n.replace("_", " ") for n in new),
-                tuple(Radius(OUTER, o.index[n]) for n in new),
-                "R",
-            )
-            callouts.append(radius_callout(sketch, view, d, [o.segment(n) for n in new]))
-    return callouts
+    named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
+    arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
+    return equal_radii(sketch, view, arcs)
 
 
-def _slot(o: Outline) -> tuple[Corner, Corner]:
+def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
     """The slot's upper corners, arm side and body side."""
     return o.corner("slot_arm_wall", "arm_back"), o.corner("ledge", "slot_body_wall")
 
@@ -194,7 +184,7 @@ def _hinge_view(
     view = View(
         "hinge",
         *FRONT,
-        part_box(part),
+        o.contour.box,
         label="Z",
         window=window,
         room=WIDE_ROOM if tall else HINGE_ROOM,
@@ -215,7 +205,7 @@ def _hinge_view(
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
     called = _radii(sketch, view, o, fillets)
     if "slot_floor" not in o:
-        arc = o.segment(next(n for n in fillets if n in o))
+        arc = o.arc(next(n for n in fillets if n in o))
         ends = "full round" if one else "full round, both slots"
         called.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
     callouts += [] if tall else called
@@ -235,7 +225,7 @@ def _hinge_view(
     return view, ([*heights, along], called) if tall else ([], [])
 
 
-def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> tuple[float, float, float, float]:
+def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> Box:
     """The window of a hinge alone: its leaf, of a long one its middle; `flat` is None for two slots."""
     floor = _floor(o, "slot_floor", "slot_")[1]
     low = _floor(o, "hinge_face", "front_slot_")[1] if flat is None else flat
@@ -246,7 +236,7 @@ def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> tuple[f
 
 
 def _heights(
-    sketch: Sketch, tolerance: float, o: Outline, arm: Corner, body: Corner, near: Level
+    sketch: Sketch, tolerance: float, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
 ) -> list[Linear]:
     """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
     right."""
@@ -273,17 +263,13 @@ def _heights(
     return heights
 
 
-def part_box(part: Part) -> tuple[float, float, float, float]:
-    return part.body.outer.box
-
-
 def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
     """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's
     side."""
     if face in o:
         return o.y(face), o.start(face)[1]
     arc = next(n for n in (f"{slot}body_fillet", f"{slot}arm_fillet") if n in o)
-    i, s = o.index[arc], o.segment(arc)
+    i, s = o.index[arc], o.arc(arc)
     half = 0.5 if (s.end[0] > s.start[0]) == slot.startswith("front") else -0.5
     up = slot.startswith("front")
     ends = ((Spot(OUTER, i).place(0), -half), (o.point(arc, True).place(0), half))
@@ -303,7 +289,7 @@ def _arm_view(
     land, flat = o.segment("stop_land"), o.start("flat_face")[1]
     margin = 0.2 * back
     window = (tip[0] - margin, pad[1] - margin, xb + 0.5 * back, max(ledge, back) + margin)
-    view = View("arm", *FRONT, part_box(part), label="X", window=window, room=ARM_ROOM)
+    view = View("arm", *FRONT, o.contour.box, label="X", window=window, room=ARM_ROOM)
     tip_x = o.x("tip")
     middle = (xa + xb) / 2
     arm = sketch.must(_within((Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))

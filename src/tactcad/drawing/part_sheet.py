@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from tactcad.design.messages import CheckFailure
@@ -11,16 +11,16 @@ from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, Part, Vector
 
 from .broken import broken
-from .compose import Curve, NoPlace, compose
-from .element import element_plan
+from .compose import NoPlace, compose
+from .element_plan import element_plan
 from .gate import drawing_faults
-from .ink import Sheet, preliminary
+from .ink import Curve, DrawnSheet, preliminary
 from .notes import MadeFrom, notes_of
 from .paper import A0, A1, A2, A3, A4, Paper
-from .plan import Plan, Section, View
 from .prism import prism_plan
-from .scale import SERIES, factor
-from .title import TitleBlock
+from .scale import SERIES, Scale, factor
+from .sheet_plan import SectionPlane, SheetPlan, View
+from .title import TitleBlock, block_of
 from .workers import Written
 
 LEAST_WHOLE = 1 / 2  # scale: a long part comes out broken before it comes out smaller
@@ -44,7 +44,7 @@ class Order:
 
 def part_plan(
     part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
-) -> Plan | None:
+) -> SheetPlan | None:
     """What a part's sheet shows.
 
     Parameters
@@ -70,21 +70,21 @@ def part_plan(
     return prism_plan(part, design, notes, not spare, shortened)
 
 
-def part_sheet(order: Order) -> Sheet:
+def part_sheet(order: Order) -> DrawnSheet:
     """The finished sheet, its layout clean."""
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
-    from .cut import cut
     from .hidden_lines import projected
+    from .section_cut import cut
 
     shape = from_bytes(order.shape)
 
     @cache
-    def curves(eye: Vector, up: Vector, section: Section | None) -> list[Curve]:
+    def curves(eye: Vector, up: Vector, section: SectionPlane | None) -> list[Curve]:
         view = View("", eye, up, (0.0, 0.0, 0.0, 0.0), section=section)
         if section is None:
-            return projected(shape, eye, view.right)
-        half, face = cut(shape, view)
+            return [*projected(shape, eye, view.right)]
+        half, face = cut(shape, view, section)
         return [face, *projected(half, eye, view.right)]
 
     title = title_of(order.design, order.part, order.draft)
@@ -99,19 +99,20 @@ def part_sheet(order: Order) -> Sheet:
     raise refused
 
 
-def _attempts(order: Order) -> Iterator[tuple[Plan, Sequence[Paper], Sequence[tuple[int, int]]]]:
+def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequence[Scale]]]:
     """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them
     down to 1:2 before broken ones, and smaller only after these."""
 
-    def plans(shortened: bool = False) -> list[Plan]:
-        plan = part_plan(order.part, order.design, order.files, shortened=shortened)
-        if plan is None:
-            return []
-        if all(view.window is None and view.section is None for view in plan.views):
-            return [plan]
-        return [plan, part_plan(order.part, order.design, order.files, spare=True, shortened=shortened)]
+    def plans(shortened: bool = False) -> Iterator[SheetPlan]:
+        for spare in (False, True):
+            plan = part_plan(order.part, order.design, order.files, spare, shortened)
+            if plan is None:
+                return
+            yield plan
+            if all(view.window is None and view.section is None for view in plan.views):
+                return  # there is nothing to spare
 
-    small, whole, short = (A4, A3), plans(), plans(shortened=True)
+    small, whole, short = (A4, A3), [*plans()], [*plans(shortened=True)]
     large = [s for s in SERIES if factor(s) >= LEAST_WHOLE] if short else SERIES
     yield from ((plan, small, large) for plan in whole)
     yield from ((plan, small, SERIES) for plan in short)
@@ -121,22 +122,9 @@ def _attempts(order: Order) -> Iterator[tuple[Plan, Sequence[Paper], Sequence[tu
 
 
 def title_of(design: Design, part: Part, draft: bool) -> TitleBlock:
-    d, m = design.design, part.material
-    return TitleBlock(
-        legal_owner=d.organisation,
-        number=part.part_no,
-        revision=d.revision,
-        date=d.date,
-        title=part.name,
-        supplementary=d.title,
-        creator=d.author,
-        document_type="Part drawing",
-        status="draft" if draft else "for manufacture",
-        scale="",
-        material=f"{m.name} {m.temper}".strip(),
-        mass=part.mass,
-        finish=part.finish,
-    )
+    block = block_of(design.design, part.part_no, part.name, draft)
+    material = f"{part.material.name} {part.material.temper}".strip()
+    return replace(block, document_type="Part drawing", material=material, mass=part.mass, finish=part.finish)
 
 
 def written(order: Order) -> Written:

@@ -17,8 +17,8 @@ from .occt import as_face
 def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.ndarray, np.ndarray]:
     """Vertices (n, 3) in mm and triangles (m, 3) of a shape, facing outwards.
 
-    linear is the largest chord error (mm), angular the largest turn between facets (radians), which
-    usually governs. Vertices that faces share are merged: they are the kernel's own edge points.
+    linear is the largest chord error (mm), angular the largest turn between facets (radians), which usually
+    governs. Vertices that faces share are merged: they are the kernel's own edge points.
     """
     BRepTools.Clean_s(shape)
     BRepMesh_IncrementalMesh(shape, linear, False, angular, False)

@@ -11,8 +11,6 @@ from io import BytesIO
 from math import isclose
 
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.BRepGProp import BRepGProp
-from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Quantity import Quantity_Color, Quantity_ColorRGBA, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
@@ -30,6 +28,7 @@ from tactcad.account import under_way
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part
 from tactcad.scenes.scene import Placement, Scene
+from tactcad.solids.measure import volume
 from tactcad.solids.occt import TDF_LabelSequence
 from tactcad.solids.place import location
 from tactcad.solids.step import set_up_writer, silence
@@ -42,7 +41,8 @@ PLACE_AGREES = 1e-7
 
 
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
-    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back otherwise."""
+    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back
+    otherwise."""
     document, shape_tool = _document()
     _add_prototype(document, shape_tool, part, shape)
     data = _written(document, header)
@@ -102,9 +102,8 @@ def _written(document: TDocStd_Document, header: Header) -> bytes:
     writer.SetNameMode(True)
     set_up_writer()
     writer.Transfer(document, STEPControl_AsIs)
-    stream = (
-        BytesIO()
-    )  # no file: a killed export leaves none behind, and a full temporary folder does not matter
+    # no file: a killed export leaves none behind, and a full temporary folder does not matter
+    stream = BytesIO()
     if writer.WriteStream(stream) != IFSelect_RetDone:
         raise CheckFailure(f"{header.name}: the kernel could not write the STEP file")
     return canonical(stream.getvalue().decode("latin-1"), header).encode("latin-1")
@@ -124,7 +123,8 @@ class Instance:
 
 @dataclass(frozen=True)
 class Assembly:
-    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are valid."""
+    """A STEP file as read. solids: product name -> volumes (mm3) of its solids, and whether they are
+    valid."""
 
     name: str
     instances: tuple[Instance, ...]
@@ -147,7 +147,8 @@ def read_assembly(data: bytes) -> Assembly:
     top = free.Value(1)
     parts = TDF_LabelSequence()
     XCAFDoc_ShapeTool.GetComponents_s(top, parts)
-    instances, products = [], {}
+    instances: list[Instance] = []
+    products: dict[str, TDF_Label] = {}
     for i in range(1, parts.Length() + 1):
         component, prototype = parts.Value(i), TDF_Label()
         XCAFDoc_ShapeTool.GetReferredShape_s(component, prototype)
@@ -162,7 +163,7 @@ def read_assembly(data: bytes) -> Assembly:
     return Assembly(
         _name_of(top),
         tuple(instances),
-        {name: tuple(_volume(s) for s in _solids(shape)) for name, shape in shapes.items()},
+        {name: tuple(map(volume, _solids(shape))) for name, shape in shapes.items()},
         all(BRepCheck_Analyzer(shape).IsValid() for shape in shapes.values()),
     )
 
@@ -173,17 +174,11 @@ def _name_of(label: TDF_Label) -> str:
 
 
 def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
-    explorer, found = TopExp_Explorer(shape, TopAbs_SOLID), []
+    explorer, solids = TopExp_Explorer(shape, TopAbs_SOLID), []
     while explorer.More():
-        found.append(explorer.Current())
+        solids.append(explorer.Current())
         explorer.Next()
-    return found
-
-
-def _volume(shape: TopoDS_Shape) -> float:
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
-    return properties.Mass()
+    return solids
 
 
 def _check_part(data: bytes, part: Part) -> None:

@@ -1,6 +1,6 @@
 """How finite elements fare on hinges at the ends of what can be written, as a picture and as numbers.
 
-`python -m tactcad.fit.fem_extremes docs/images/fem-extremes.svg [FILE.json]`
+`python benchmarks/fem_extremes.py docs/images/fem-extremes.svg [FILE.json]`
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ import numpy as np
 
 from tactcad.fem.convergence import ORDER, PLANE_DENSITIES, richardson
 from tactcad.fem.health import corner_angles, plane_health
-from tactcad.fem.mesh import plane_mesh
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
+from tactcad.fit.accuracy_samples import draw_range
+from tactcad.fit.fit_samples import section
 from tactcad.mechanics import beams
 from tactcad.mechanics.section import REFERENCE, HingeSection
-
-from .accuracy_samples import draw_range
-from .fit_samples import section
 
 THICKNESSES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # mm: least that a file may hold to twice the usual
 DENSITIES = (1, 2, 3)

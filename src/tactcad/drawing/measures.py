@@ -18,9 +18,10 @@ from math import atan2, degrees, hypot
 import numpy as np
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.parts.description import Extrusion, Hole, Part, Pocket
+from tactcad.parts.description import Hole, Part
 
-from .keys import OUTER, THICKNESS, Owner, Quantity, Spot, Values, Variable
+from .contours import axis_of, contours
+from .keys import THICKNESS, Owner, Quantity, Spot, Values, Variable
 
 STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth at this size
 INDEPENDENT = 1e-6  # share of a row's length that must be new
@@ -192,22 +193,14 @@ def _xy(point: Spot) -> tuple[Variable, Variable]:
 
 def variables(part: Part) -> dict[Variable, float]:
     """Every variable of an extruded part with its value (mm)."""
-    body = part.body
-    if not isinstance(body, Extrusion):
-        raise TypeError(f"{part.part_no} is not an extrusion: its sheet is not written yet")
-    values = {THICKNESS: body.thickness}
-    _add_contour(values, OUTER, body.outer)
-    for i, opening in enumerate(body.openings):
-        _add_contour(values, Owner("opening", i), opening)
+    values = {THICKNESS: part.extrusion.thickness}
+    for owner, contour in contours(part):
+        _add_contour(values, owner, contour)
     for k, feature in enumerate(part.features):
         if isinstance(feature, Hole):
             values |= _hole(k, feature)
         else:
-            pocket = Owner("pocket", k)
-            values[pocket.size(Quantity.DEPTH)] = feature.depth
-            _add_contour(values, pocket, in_part(feature, feature.contour))
-            for i, island in enumerate(feature.island):
-                _add_contour(values, Owner("island", k, i), in_part(feature, island))
+            values[Owner("pocket", k).size(Quantity.DEPTH)] = feature.depth
     return values
 
 
@@ -233,39 +226,6 @@ def _hole(k: int, hole: Hole) -> dict[Variable, float]:
     if hole.thread and hole.thread_depth < hole.depth:
         values[owner.size(Quantity.THREAD)] = hole.thread_depth
     return values
-
-
-def axis_of(feature: Hole | Pocket) -> int:
-    """0, 1 or 2: the axis that a feature is sunk along. Raises ValueError for a slanting one."""
-    along = [i for i, a in enumerate(feature.axis) if a]
-    if len(along) != 1:
-        raise ValueError(f"{feature.name}: axis {feature.axis} is not along x, y or z")
-    return along[0]
-
-
-def in_part(pocket: Pocket, contour: Contour) -> Contour:
-    """A contour of a pocket along z, in the part's x and y."""
-    if axis_of(pocket) != 2:
-        raise ValueError(f"{pocket.name}: pockets in side faces have no sheet yet")
-    (ux, uy, _), sign = pocket.x_axis, pocket.axis[2]
-    vx, vy = -uy * sign, ux * sign  # y_axis = axis x x_axis
-
-    def in_frame(p: tuple[float, float]) -> tuple[float, float]:
-        # rounded to a picometre: turning may leave 1e-17 where a coordinate is 0
-        return (
-            round(pocket.at[0] + p[0] * ux + p[1] * vx, 12),
-            round(pocket.at[1] + p[0] * uy + p[1] * vy, 12),
-        )
-
-    turned = ux * vy - uy * vx < 0
-    return Contour(
-        tuple(
-            Line(in_frame(s.start), in_frame(s.end), s.name)
-            if isinstance(s, Line)
-            else Arc(in_frame(s.start), in_frame(s.end), in_frame(s.centre), s.ccw != turned, s.name)
-            for s in contour
-        )
-    )
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:

@@ -9,21 +9,23 @@ such plane will do, y = constant, seen from the side whose place above or below 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isclose
 
 from tactcad.contour import Arc, Line
-from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height
+from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height, vector
 
-from .contours import contours
-from .holes import Round
-from .measure import axis_of, in_part
-from .plan import Bore, Section, View, seen
+from .boxes import Point
+from .contours import axis_of, contours, in_part
+from .holes import Round, widest
+from .sheet_plan import Bore, SectionPlane, View, opposite, seen
+from .sketch import view_of
 
 LETTER = "S"  # neither a datum's (A, B, C) nor a detail's (X, Z)
 SAME = 1e-6  # mm: a plane nearer to an axis than this goes through it
 
 
-def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> Section | None:
+def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> SectionPlane | None:
     """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to
     the middle; None where nothing is sunk, or every plane through an axis would cut another hole off its axis
     or run along a wall.
@@ -37,28 +39,29 @@ def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | 
             continue
         bare = View("", *_sight(front, below, k), (0, 0, 0, 0))
         bores = [_bore(bare, r.hole) for r in holes if not r.hole.axis[k] and abs(r.at[k] - at) < SAME]
-        return Section(LETTER, k, at, tuple(bores))
+        return SectionPlane(LETTER, k, at, tuple(bores))
     return None
 
 
-def section_view(front: View, below: Vector | None, section: Section) -> View:
+def section_view(part: Part, front: View, below: Vector | None, section: SectionPlane) -> View:
     """The bare view of a section, where first-angle projection puts it."""
     eye, up = _sight(front, below, section.axis)
     name = "right" if section.axis == 0 else "below" if eye == front.up else "above"
-    return View(name, eye, up, (0, 0, 0, 0), hidden=False, section=section)
+    return replace(view_of(part, name, eye, up), hidden=False, section=section)
 
 
 def _sight(front: View, below: Vector | None, k: int) -> tuple[Vector, Vector]:
     """Eye and up of a section across axis k."""
     if k == 0:
-        return tuple(-r for r in front.right), front.up
-    from_above = below is None or below != front.up
-    eye = front.up if from_above else tuple(-u for u in front.up)
-    return eye, tuple(-e if from_above else e for e in front.eye)
+        return opposite(front.right), front.up
+    if below is None or below != front.up:
+        return front.up, opposite(front.eye)
+    return opposite(front.up), front.eye
 
 
 def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, way: float) -> float | None:
-    low, high = part.body.outer.box[k], part.body.outer.box[k + 2]
+    box = part.extrusion.outer.box
+    low, high = box[k], box[k + 2]
     planes = sorted(
         {round(v, 9) for f in sunk if (v := _middle(f, k)) is not None and low + SAME < v < high - SAME}
     )
@@ -103,16 +106,16 @@ def _kind(f: Feature) -> tuple:
 
 def _depth(f: Feature) -> float:
     """Depth of the floor that hidden lines would show, mm."""
-    return f.depth if isinstance(f, Pocket) or not f.through else f.counterbore[1]
+    return f.counterbore[1] if isinstance(f, Hole) and f.through and f.counterbore else f.depth
 
 
 def _cuts_off_axis(holes: Sequence[Round], k: int, at: float) -> bool:
     """Whether the plane would show a hole narrower than it is."""
-    return any(SAME < abs(r.at[k] - at) < _widest(r.hole) / 2 + SAME for r in holes if not r.hole.axis[k])
-
-
-def _widest(h: Hole) -> float:
-    return max(h.diameter, h.counterbore[0] if h.counterbore else 0.0, h.thread_diameter)
+    return any(
+        SAME < abs(r.at[k] - at) < max(widest(r.hole), r.hole.thread_diameter) / 2 + SAME
+        for r in holes
+        if not r.hole.axis[k]
+    )
 
 
 def _runs_along(part: Part, k: int, at: float) -> bool:
@@ -135,8 +138,8 @@ def _bore(view: View, h: Hole) -> Bore:
     counterbore = h.counterbore[1] if h.counterbore else 0.0
     cone = drill_point_height(h.diameter) if h.drill_point else 0.0
 
-    def at(depth: float) -> tuple[float, float]:
-        return seen(view, tuple(p + depth * a for p, a in zip(h.at, h.axis)))
+    def at(depth: float) -> Point:
+        return seen(view, vector(p + depth * a for p, a in zip(h.at, h.axis)))
 
     full = min(counterbore + h.thread_depth, h.depth) if h.thread else 0.0
     ends_inside = not (h.through and isclose(full, h.depth))

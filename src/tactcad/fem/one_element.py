@@ -10,8 +10,8 @@ from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.section import HingeSection
 
 from .convergence import SOLID_MESH, Converged, converged_plane, converged_solid
+from .face_strain import face_strain
 from .shape import ElementShape, reference_shape
-from .surface import face_strain
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import hypot
 
-from .ink import Arc, Fill, Hatch, Item, Point, Sheet, Stroke, Text, points_of
+from .boxes import Chord, Point, bounds
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Stroke, Text, points_of
 from .paper import LEFT, OTHER
 
 # Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's
@@ -20,12 +21,11 @@ BESIDE_LINE = 0.25
 # Lines that meet nearer to their ends than this touch there on purpose (mm of paper).
 END = 0.3
 
-Chord = tuple[Point, Point]
 Quad = tuple[Point, Point, Point, Point]
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _Straight:
     """A straight piece of an item: half its line's width, what it is for, and which item it belongs to."""
 
     ends: Chord
@@ -34,7 +34,7 @@ class _Drawn:
     item: int
 
 
-def layout_faults(sheet: Sheet) -> list[str]:
+def layout_faults(sheet: DrawnSheet) -> list[str]:
     """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension
     lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
@@ -48,12 +48,12 @@ def layout_faults(sheet: Sheet) -> list[str]:
     ]
 
 
-def _pieces(items: Sequence[Item]) -> Iterator[_Drawn]:
+def _pieces(items: Sequence[Item]) -> Iterator[_Straight]:
     for n, item in enumerate(items):
-        if isinstance(item, Stroke | Arc | Fill | Hatch):
+        if isinstance(item, Stroke | DrawnArc | Fill | Hatch):
             half = 0.0 if isinstance(item, Fill) else item.line.width / 2
             for chord in item.chords():
-                yield _Drawn(chord, half, item.role, n)
+                yield _Straight(chord, half, item.role, n)
 
 
 def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
@@ -63,7 +63,7 @@ def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
             yield f"text {a.text!r} over text {b.text!r} at {_shown(a.at)}"
 
 
-def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Drawn]) -> Iterator[str]:
+def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator[str]:
     for text in texts:
         hit = text_hits(text, drawn)
         if hit:
@@ -77,7 +77,7 @@ def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[
             yield f"text {text.text!r} at {_shown(text.at)} over hatching"
 
 
-def text_hits(text: Text, drawn: Sequence[_Drawn]) -> set[str]:
+def text_hits(text: Text, drawn: Sequence[_Straight]) -> set[str]:
     """Roles of the lines that come nearer to the text's ink than BESIDE_LINE."""
     quad = text.corners(BESIDE_LINE)
     x0, y0, x1, y1 = bounds(quad)
@@ -92,7 +92,7 @@ def text_hits(text: Text, drawn: Sequence[_Drawn]) -> set[str]:
     return hit
 
 
-def _outside(sheet: Sheet) -> Iterator[str]:
+def _outside(sheet: DrawnSheet) -> Iterator[str]:
     """Everything but the frame itself lies inside it; the frame inside the paper."""
     w, h = sheet.size
     for item in sheet.items:
@@ -106,7 +106,7 @@ def _outside(sheet: Sheet) -> Iterator[str]:
             yield f"{what} at {_shown((x0, y0))} lies outside the {beyond}"
 
 
-def _dimension_lines(drawn: Sequence[_Drawn]) -> Iterator[str]:
+def _dimension_lines(drawn: Sequence[_Straight]) -> Iterator[str]:
     """Dimension lines cross neither each other nor the part's visible edges (ISO 129-1, 5.3 and 5.4)."""
     lines = [p for p in drawn if p.role == "dimension" and p.half]
     others = [p for p in drawn if p.role in ("outline", "dimension") and p.half]
@@ -130,11 +130,6 @@ def crossing(a: Chord, b: Chord, end: float = END) -> bool:
     t = ((rx - px) * vy - (ry - py) * vx) / det * la
     s = ((rx - px) * uy - (ry - py) * ux) / det * lb
     return end < t < la - end and -1e-9 <= s <= lb + 1e-9
-
-
-def bounds(points: Sequence[Point]) -> tuple[float, float, float, float]:
-    xs, ys = zip(*points)
-    return (min(xs), min(ys), max(xs), max(ys))
 
 
 def quads_meet(a: Quad, b: Quad) -> bool:

@@ -11,7 +11,7 @@ from skfem import Basis, ElementQuad2
 from tactcad.account import making
 
 from . import elasticity
-from .mesh import PlaneMesh, plane_mesh, quad_mesh
+from .mapped_mesh import PlaneMesh, plane_mesh, quad_mesh
 from .shape import ElementShape
 
 Array = NDArray[np.float64]

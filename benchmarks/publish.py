@@ -1,4 +1,4 @@
-"""A run's report becomes the published one: `python -m tactcad.bench.publish REPORT [FURTHER]...` in the
+"""A run's report becomes the published one: `python benchmarks/publish.py REPORT [FURTHER]...` in the
 checkout.
 
 What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's
@@ -15,14 +15,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tactcad.design.messages import InputError
-from tactcad.fit.ladder_tables import filled
-from tactcad.paper.report import standalone
+from choice import choice
+from ladder_tables import filled
 
-from . import render, tables, truth
-from .choice import choice
-from .figures import figures
-from .run import BENCHMARKS, SCHEMA
+from tactcad.bench import render, tables, truth
+from tactcad.bench.figures import figures
+from tactcad.bench.run import BENCHMARKS, SCHEMA
+from tactcad.design.messages import InputError
+from tactcad.paper.report import standalone
 
 REFERENCE = "benchmarks/results/reference.json"
 DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")

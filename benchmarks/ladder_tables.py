@@ -1,6 +1,6 @@
 """The tables of docs/mechanics.md and docs/accuracy.md, computed.
 
-`python -m tactcad.fit.ladder_tables docs/mechanics.md`, and the other likewise.
+`python benchmarks/ladder_tables.py docs/mechanics.md`, and the other likewise.
 
 Blocks stand between `<!-- table NAME -->` and `<!-- end -->`; running it writes them anew.
 """
@@ -83,7 +83,7 @@ def papers_strains() -> str:
 
 def papers_strains_by_elements() -> str:
     """The same by finite elements."""
-    from tactcad.fem.ladder import solve
+    from tactcad.fem.one_element import solve
 
     def by_elements(s: HingeSection, rung: str) -> tuple[float, float]:
         found = solve(s, rung, GRID)

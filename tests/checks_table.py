@@ -1,33 +1,33 @@
 """The table of docs/checks.md: each check, its bad part, what is then said, and what it takes.
 
-    python benchmarks/checks_table.py            messages anew, times as they stand
-    python benchmarks/checks_table.py --times    times too: the shipped array and its rigs, then 2 x 500 elements (minutes)
+    python tests/checks_table.py            messages anew, times as they stand
+    python tests/checks_table.py --times    times too: the shipped array and its rigs, then 2 x 500 elements
+    (minutes)
 
-Messages are what the checks say of the bad parts in tests/bad_parts.py. Times are processor time of one process, which
-other work on the machine changes little.
+Messages are what the checks say of the bad parts in bad_parts.py. Times are processor time of one process,
+which other work on the machine changes little.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
-import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
 
 ROOT = Path(__file__).parents[1]
 DOCUMENT = ROOT / "docs" / "checks.md"
-BEGIN, END = "<!-- checks: written by benchmarks/checks_table.py -->\n", "<!-- end of checks -->\n"
-HEAD = "| `tactcad check` times | check | its bad part | what it says | array | its rigs | largest |\n|---|---|---|---|---|---|---|\n"
-
-sys.path.insert(0, str(ROOT / "tests"))
+BEGIN, END = "<!-- checks: written by tests/checks_table.py -->\n", "<!-- end of checks -->\n"
+HEAD = "| `tactcad check` times | check | its bad part | what it says | array | its rigs | largest |\n"
+HEAD += "|---|---|---|---|---|---|---|\n"
 
 Times = dict[str, tuple[str, str, str]]
 
 
 def rows(times: Times) -> list[str]:
-    """A line a check, in the order of BAD; the times stand in the first line of those that are timed together."""
+    """A line a check, in the order of BAD; the times stand in the first line of those that are timed
+    together."""
     from bad_parts import BAD
 
     lines, before = [], ""
@@ -57,7 +57,7 @@ def measured() -> Times:
     from tactcad.bench import arrays
     from tactcad.checks import report as clocked
     from tactcad.checks.run import run_checks
-    from tactcad.export.golden import check_golden, golden_path
+    from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load
     from tactcad.scenes import scene_names
 

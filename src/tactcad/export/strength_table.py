@@ -1,4 +1,5 @@
-"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload force."""
+"""The strength summary: a CSV file with what every element is rated for, and what it bears under the overload
+force."""
 
 from __future__ import annotations
 
@@ -41,8 +42,8 @@ COLUMNS = (
 def strength_bytes(layout: Layout) -> bytes:
     """The summary (RFC 4180, UTF-8), rows by element number, by the rung `solid`; four significant digits.
 
-    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element its
-    figures are blank and the last column says why.
+    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element
+    its figures are blank and the last column says why.
     """
     design, places = layout.design, layout.elements
     section, alloy = hinge_section(layout, places), design_alloy(design)
@@ -50,9 +51,7 @@ def strength_bytes(layout: Layout) -> bytes:
     yields = strength.yield_force_where_known(section, alloy)
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
-    goodman = strength.goodman(
-        alloy, rated * alloy.yield_strength / yields
-    )  # the fillet's stress at that force
+    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)  # fillet's stress at that force
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from tactcad.design.files import make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
@@ -19,6 +19,8 @@ from tactcad.parts.finding import Finding
 from .difference import Change, differences
 from .geometry import Record, geometry
 from .golden_schema import faults
+
+Severity = Literal["fail", "flag"]
 
 SCHEMA = "tactcad-golden-1"
 MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
@@ -62,8 +64,8 @@ def read_golden(path: Path) -> Record:
 def check_golden(design: Design, path: Path) -> list[Finding]:
     """Findings on a design against its golden file.
 
-    Geometry that the golden file's revision does not have fails; under a new revision, and where there is
-    no golden file yet, what `make golden` would take up is flagged.
+    Geometry that the golden file's revision does not have fails; under a new revision, and where there is no
+    golden file yet, what `make golden` would take up is flagged.
     """
     if not path.exists():
         return [
@@ -80,23 +82,24 @@ def judge(old: Record, new: Record) -> list[Finding]:
     """What the differences between golden file and design mean."""
     changes = [c for c in differences(old, new) if c.path[0] != "revision"]
     same_revision = old["revision"] == new["revision"]
-    geometric = [c for c in changes if not from_models(c)]
     if not changes and same_revision:
         return []
+    geometric, count = [c for c in changes if not from_models(c)], len(changes)
     name, letter = new["design"], new["revision"]
     if not same_revision:
-        text = f"revision {old['revision']} -> {letter} with {len(changes)} differences: `make golden` takes it up"
-        head = Finding("golden", "flag", name, (), len(changes), 0, text)
+        said = f"revision {old['revision']} -> {letter} with {count} differences: `make golden` takes it up"
     elif geometric:
-        text = (
-            f"revision {letter} has other geometry than its golden file, {len(geometric)} differences: "
+        count = len(geometric)
+        said = (
+            f"revision {letter} has other geometry than its golden file, {count} differences: "
             "give the design a new revision letter"
         )
-        head = Finding("golden", "fail", name, (), len(geometric), 0, text)
     else:
-        text = f"the geometry is the same, but the models give {len(changes)} other figures: `make golden` takes them up"
-        head = Finding("golden", "fail", name, (), len(changes), 0, text)
-    return [head, *(_about(head.severity, c) for c in changes)]
+        said = "the geometry is the same, but the models give "
+        said += f"{count} other figures: `make golden` takes them up"
+    severity: Severity = "fail" if same_revision else "flag"
+    head = Finding("golden", severity, name, (), count, 0, said)
+    return [head, *(_about(severity, c) for c in changes)]
 
 
 def from_models(change: Change) -> bool:
@@ -104,13 +107,13 @@ def from_models(change: Change) -> bool:
     return change.path[0] == "elements" and change.path[-1] in ("stiffness_n_per_mm", "yield_force_n")
 
 
-def _about(severity: str, change: Change) -> Finding:
+def _about(severity: Severity, change: Change) -> Finding:
     number = lambda v: float(v) if isinstance(v, int | float) else 0.0  # noqa: E731
     about = change.path[1] if len(change.path) > 1 else change.path[0]
     return Finding("golden", severity, about, (), number(change.new), number(change.old), str(change))
 
 
-def _finding(severity: str, design: Design, message: str) -> Finding:
+def _finding(severity: Severity, design: Design, message: str) -> Finding:
     return Finding("golden", severity, design.name, (), 0, 0, message)
 
 

@@ -20,15 +20,14 @@ from tactcad.solids.occt import as_face, as_wire
 from .hidden_lines import CHORD
 from .ink import Hatch, Point
 from .picture import on_curve
-from .plan import View, seen
+from .sheet_plan import SectionPlane, View, seen
 
 AROUND = 1.0  # mm: the box that is kept stands out of the part
 SAME = 1e-7  # mm: the kernel's own tolerance
 
 
-def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
-    """What lies behind the plane of the view's section, and its cut face in the view's plane (mm of the
-    part).
+def cut(shape: TopoDS_Shape, view: View, section: SectionPlane) -> tuple[TopoDS_Shape, Hatch]:
+    """What lies behind the plane of a section, and its cut face in the view's plane (mm of the part).
 
     Raises CheckFailure where the plane misses the part.
     """
@@ -36,7 +35,7 @@ def cut(shape: TopoDS_Shape, view: View) -> tuple[TopoDS_Shape, Hatch]:
     BRepBndLib.Add_s(shape, box)
     low, high = ([p.X(), p.Y(), p.Z()] for p in (box.CornerMin(), box.CornerMax()))
     low, high = [v - AROUND for v in low], [v + AROUND for v in high]
-    k, at = view.section.axis, view.section.at
+    k, at = section.axis, section.at
     (low if view.eye[k] < 0 else high)[k] = at
     kept = BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
     half = BRepAlgoAPI_Common(shape, kept).Shape()
@@ -73,7 +72,8 @@ def _loop(wire: TopoDS_Wire, view: View) -> tuple[Point, ...]:
         run = on_curve(BRepAdaptor_Curve(edge), CHORD)
         if edge.Orientation() == TopAbs_REVERSED:
             run.reverse()
-        points += [tuple(round(v, 6) + 0.0 for v in seen(view, (p.X(), p.Y(), p.Z()))) for p in run[:-1]]
+        flat = [seen(view, (p.X(), p.Y(), p.Z())) for p in run[:-1]]
+        points += [(round(u, 6) + 0.0, round(v, 6) + 0.0) for u, v in flat]
         explorer.Next()
     start = points.index(min(points))
     return tuple(points[start:] + points[:start])

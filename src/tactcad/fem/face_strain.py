@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from .plane import PlaneSolution
-from .solid import SolidSolution
+from .plane_elements import PlaneSolution
+from .solid_elements import SolidSolution
 
 Array = NDArray[np.float64]
 

@@ -1,0 +1,40 @@
+"""Rules on what is taken as rigid, the array's parts and its rigs': tactcad check has the same lines
+(checks/rigidity.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..finding import Finding
+from ..layout import Layout
+from ..stiffness_remedy import remedy
+from ..stiffness_table import deflections
+from .rule import fits, rule, wrong
+
+
+@rule(after="no_slivers")
+def plates_stay_straight(layout: Layout) -> Iterator[Finding]:
+    yield from _too_much(layout, "array")
+
+
+@fits("calibration")
+def calibration_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from _too_much(layout, "calibration")
+
+
+@fits("sample-stiffness")
+def sample_stand_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from _too_much(layout, "sample-stiffness")
+
+
+@fits("grasping")
+def guide_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from _too_much(layout, "grasping")
+
+
+def _too_much(layout: Layout, scene: str) -> Iterator[Finding]:
+    """What is only flagged there refuses nothing."""
+    for line in deflections(layout.design, [scene]):
+        if line.too_much and line.severity == "fail":
+            path, value, legal = remedy(layout.design, line)
+            yield wrong(path, str(line), value, legal)

@@ -1,0 +1,66 @@
+"""What to change where a part gives way by more than it may: the field, and from where on its value is
+enough."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil, floor, log10
+from operator import attrgetter
+from typing import TypeVar
+
+from tactcad.design.fields import Number, Whole
+from tactcad.design.load import SECTION_TYPES
+from tactcad.design.tree import Design
+
+from .stiffness_table import Deflection, deflections
+
+STEPS = 40  # halvings of a field's range
+V = TypeVar("V", int, float)
+
+
+def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
+    """Path, value, and what is enough: of the first field by which alone the line gets below what is
+    allowed."""
+    for path in line.fields:
+        value, spec = attrgetter(path)(design), _spec(path)
+        for end, words in ((spec.high, "at least"), (spec.low, "at most")):
+            if _helps(design, line, path, end):
+                return (
+                    path,
+                    value,
+                    f"{words} {_nearest(design, line, path, value, end):.10g} {spec.unit}".rstrip(),
+                )
+    path = line.fields[0]
+    return (
+        path,
+        attrgetter(path)(design),
+        f"no value alone; the most is had of {', '.join(line.fields)} together",
+    )
+
+
+def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
+    """The value nearest to `far`, which does not help, that still does, as `near` does; whole, or of four
+    digits."""
+    good, bad = near, far
+    for _ in range(STEPS):
+        middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2
+        if middle in (good, bad):
+            break
+        good, bad = (middle, bad) if _helps(design, line, path, middle) else (good, middle)
+    if isinstance(far, int) or good == 0.0:
+        return good
+    digit = 10.0 ** (floor(log10(abs(good))) - 3)
+    away = ceil(good / digit) * digit if near > far else floor(good / digit) * digit
+    return min(away, near) if near > far else max(away, near)
+
+
+def _helps(design: Design, line: Deflection, path: str, value: float) -> bool:
+    section, name = path.split(".")
+    changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
+    same = (d for d in deflections(changed, [line.scene]) if (d.part, d.model) == (line.part, line.model))
+    return not next(same).too_much
+
+
+def _spec(path: str) -> Number | Whole:
+    section, name = path.split(".")
+    return SECTION_TYPES[section].__dataclass_fields__[name].metadata["spec"]
