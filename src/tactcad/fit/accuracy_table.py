@@ -20,18 +20,19 @@ from tactcad.mechanics.section import Array, HingeSection
 
 from .accuracy_samples import SECONDS, SEED, with_width_factor
 from .corner_samples import DRAWS
+from .fit import NEXT_TO_NONE
 from .fit_samples import Columns, joined, section
 
 # Promised is this much over the worst that was measured: a fresh design can always be somewhat worse, and the
 # more so the fewer were measured. The closed forms are fitted to least eighth powers, corners included, so
 # that many designs stand near the worst.
-MARGIN, MARGIN_OF_FEW, FEW = 1.4, 3.0, 60
-# Under l/t = 1 the hinge is shorter than thick and its two roots are one; from 2 they are apart. A leaf much
+MARGIN, MARGIN_OF_FEW, FEW = 1.4, 2.5, 60
+# Under l/t = 0.5 the hinge is next to none and its two roots are one; from 2 they are apart. A leaf much
 # longer than wide curls over all of its width.
 NARROW = 0.7
 ZONES: tuple[dict[str, list[float | None]], ...] = (
-    {"b/l": [NARROW, None], "l/t": [0.0, 1.0]},
-    {"b/l": [NARROW, None], "l/t": [1.0, 2.0]},
+    {"b/l": [NARROW, None], "l/t": [0.0, NEXT_TO_NONE]},
+    {"b/l": [NARROW, None], "l/t": [NEXT_TO_NONE, 2.0]},
     {"b/l": [NARROW, None], "l/t": [2.0, None]},
     {"b/l": [0.0, NARROW]},
 )
@@ -75,8 +76,7 @@ def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
     """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
 
     K_solid is fem-solid's, on the finest meshes that the design was solved on. A closed form that knows the
-    width is a product of the plane rung and a width factor; its error counts where only the plane part was
-    measured, too.
+    width is made of the plane rung's parts, whose error counts where only the plane was measured, too.
     """
     s = section(columns)
     plane = columns["plane_stiffness"] * columns["width"]
@@ -86,10 +86,10 @@ def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
         for rung in REGISTER
         if rung.compliance
     }
-    flat = compliance_by(s, ladder_data)
+    flat = np.abs(1.0 / (compliance_by(s, ladder_data) * plane) - 1.0)
     for rung in REGISTER:
         if rung.compliance and "width" in rung.fitted:
-            errors[rung.name] = np.fmax(errors[rung.name], np.abs(1.0 / (flat * plane) - 1.0))
+            errors[rung.name] = np.fmax(errors[rung.name], flat)
     errors["fem-plane"] = np.abs(plane / truth - 1.0)
     finest = np.where(np.isfinite(columns["solid_mesh_4"]), columns["solid_mesh_4"], np.nan)
     errors["fem-solid, mesh 3"] = np.abs(columns["solid_mesh_3"] / finest - 1.0)
@@ -129,7 +129,9 @@ def _measured(
         e = errors[candidate.name][inside] if candidate.mesh is None else errors[candidate.name]
         e = e[np.isfinite(e)]
         worst[candidate.name] = float(f"{e.max():.3g}")
-        counts[candidate.name] = len(e)
+        counts[candidate.name] = (
+            len(e) if candidate.mesh else int(np.isfinite(errors["fem-plane"][inside]).sum())
+        )
         closed = clock.get(candidate.name)
         seconds[candidate.name] = closed[1] if closed else _median(candidate, columns, inside)
     own = worst["fem-solid, mesh 3"]  # what the reference itself may err by
