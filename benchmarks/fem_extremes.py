@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tactcad.fem.convergence import ORDER, PLANE_DENSITIES, richardson
+from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
@@ -87,16 +87,14 @@ def refined(two_sided: bool, densities: tuple[int, ...] = REFINED) -> list[Refin
     s = REFERENCE.with_(two_sided=two_sided)
     material = float(s.youngs_modulus), float(s.poisson), float(s.width)
     found = [plane_health(reference_shape(s), *material, density) for density in densities]
-    limit = richardson((found[-2].compliance, found[-1].compliance), densities[-2:], ORDER)
+    limit = richardson((found[-2].compliance, found[-1].compliance), densities[-2:], RATE)
     return [
         Refined(_sides(two_sided), d, h.unknowns, abs(limit / h.compliance - 1.0), h.rounding, h.condition)
         for d, h in zip(densities, found)
     ]
 
 
-def angles(
-    count: int = ANGLES_OF, density: int = PLANE_DENSITIES[0]
-) -> list[tuple[float, float, float, float]]:
+def angles(count: int = ANGLES_OF, density: int = 2) -> list[tuple[float, float, float, float]]:
     """Of designs over the whole range of the closed forms."""
     s = section(draw_range(count))
     rows = []

@@ -18,9 +18,9 @@ from pathlib import Path
 from choice import choice
 from ladder_tables import filled
 
-from tactcad.bench import render, tables, truth
+from tactcad.bench import bench_tables, render, truth
 from tactcad.bench.figures import figures
-from tactcad.bench.run import BENCHMARKS, SCHEMA
+from tactcad.bench.session import BENCHMARKS, SCHEMA
 from tactcad.design.messages import InputError
 from tactcad.paper.report import standalone
 
@@ -83,7 +83,9 @@ def blocks(result: dict) -> dict[str, str]:
     for name, entry in result["benchmarks"].items():
         found[f"bench findings {name}"] = "\n".join(f"- {line}" for line in render.remarks(entry))
         for key, data in entry["tables"].items():
-            found[f"bench {key}"] = tables.markdown(data) + (f"\n\n{data['note']}" if data["note"] else "")
+            found[f"bench {key}"] = bench_tables.markdown(data) + (
+                f"\n\n{data['note']}" if data["note"] else ""
+            )
     return found
 
 

@@ -12,6 +12,11 @@ from tactcad.design.tree import Design
 
 HARDWARE = Path(__file__).parents[1] / "hardware"
 DROP = object()
+# All that a text or table of the published array needs of its origins: its modulus is not its alloy's.
+ORIGIN = {"material.youngs_modulus": "paper: 69000 MPa"}
+BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
+    0
+] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'
 
 
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:
@@ -30,10 +35,11 @@ def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> d
 
 
 def variant(changes: dict[str, Any] | None = None, base: str = "macro-array") -> Design:
-    """That table as a design. Rules between fields are not tried. Origins are left out."""
+    """That table as a design. Rules between fields are not tried. Origins are left out but for the
+    material's, without which its values would have to be those of its name."""
     tree = table(changes, base)
-    tree.pop("origin", None)
-    return from_table(tree)
+    origin = tree.pop("origin", {})
+    return from_table(tree | {"origin": {k: v for k, v in origin.items() if k.startswith("material.")}})
 
 
 _TABLES: dict[str, dict[str, Any]] = {}

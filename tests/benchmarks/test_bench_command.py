@@ -13,7 +13,7 @@ import pytest
 
 from tactcad.bench import freecad
 from tactcad.bench.process import measured, python
-from tactcad.bench.run import BENCHMARKS, SCHEMA
+from tactcad.bench.session import BENCHMARKS, SCHEMA
 from tactcad.cli.main import main
 from tactcad.fem import calculix
 
@@ -69,14 +69,15 @@ def test_every_benchmark_runs_in_smoke_mode(name, tmp_path, capsys):
 
 
 def test_a_fault_in_one_benchmark_loses_nothing_of_the_others(tmp_path, monkeypatch):
-    from tactcad.bench import element, plan, run
+    from tactcad.bench import one_element, session
+    from tactcad.bench.run_plan import RunPlan
 
     def broken(plan):
         return 1 / 0
 
-    monkeypatch.setattr(element, "measure", lambda plan: {"findings": ["Measured."]})
+    monkeypatch.setattr(one_element, "measure", lambda plan: {"findings": ["Measured."]})
     monkeypatch.setattr("tactcad.bench.meshes.measure", broken)
-    done = run.run(plan.Plan("smoke", 1, tmp_path), ["meshes", "element"], lambda *_: None)["benchmarks"]
+    done = session.run(RunPlan("smoke", 1, tmp_path), ["meshes", "element"], lambda *_: None)["benchmarks"]
     assert "ZeroDivisionError in broken" in done["meshes"]["failed"] and done["element"]["findings"] == [
         "Measured."
     ]
@@ -132,9 +133,9 @@ def test_a_peer_that_is_not_installed_is_said(tmp_path, capsys, monkeypatch):
 
 
 def test_without_the_kernel_it_says_so_and_measures_the_rest(monkeypatch, capsys):
-    from tactcad.bench import run
+    from tactcad.bench import session
 
-    monkeypatch.setattr(run, "_kernel", lambda: False)
+    monkeypatch.setattr(session, "_kernel", lambda: False)
     assert main(["bench", "--smoke", "--only", "tessellation"]) == 0
     assert "The CAD kernel is not installed: not measured." in capsys.readouterr().out
 
@@ -162,9 +163,9 @@ def test_bad_arguments_are_refused(arguments, words, capsys):
 
 
 def test_a_folder_with_other_things_is_refused_before_anything_is_measured(tmp_path, capsys, monkeypatch):
-    from tactcad.bench import run
+    from tactcad.bench import session
 
-    monkeypatch.setattr(run, "run", lambda *args: pytest.fail("measured"))
+    monkeypatch.setattr(session, "run", lambda *args: pytest.fail("measured"))
     (tmp_path / "thesis.tex").write_text("mine")
     assert main(["bench", "--smoke", "--out", str(tmp_path)]) == 2
     assert "thesis.tex" in capsys.readouterr().err and (tmp_path / "thesis.tex").read_text() == "mine"

@@ -9,10 +9,10 @@ import json
 import numpy as np
 import pytest
 
-from tactcad.bench import tables
+from tactcad.bench import bench_tables
 from tactcad.bench.exponent import fit
 from tactcad.bench.front import dominators, efficient, told
-from tactcad.bench.rungs import errors
+from tactcad.bench.rung_errors import errors
 from tactcad.bench.timing import interleaved, of_samples
 
 
@@ -85,17 +85,17 @@ ROWS = [
     {"name": "a", "time": 0.00123456, "wrong": 3, "kept": True},
     {"name": "b | c", "time": None, "wrong": 0, "kept": False},
 ]
-TABLE = tables.table("T", "name; time [ms]; wrong; kept", ROWS)
+TABLE = bench_tables.table("T", "name; time [ms]; wrong; kept", ROWS)
 
 
 def test_a_table_reads_the_same_in_every_form():
     assert json.loads(json.dumps(TABLE)) == TABLE
-    read = list(csv.DictReader(io.StringIO(tables.as_csv(TABLE))))
+    read = list(csv.DictReader(io.StringIO(bench_tables.as_csv(TABLE))))
     assert float(read[0]["time"]) == ROWS[0]["time"] and read[1]["time"] == "" and read[1]["name"] == "b | c"
-    heads, _, first, second = tables.markdown(TABLE).splitlines()
+    heads, _, first, second = bench_tables.markdown(TABLE).splitlines()
     assert heads == "| name | time, ms | wrong | kept |"
     assert first == "| a | 1.23 | 3 | yes |" and second == "| b \\| c |  | 0 | no |"
-    lines = tables.text(TABLE).splitlines()
+    lines = bench_tables.text(TABLE).splitlines()
     assert (
         lines[1].split() == ["name", "time", "wrong", "kept"]
         and lines[2].split() == ["ms"]

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from tactcad.bench.interference import Prepared, count_wrong, kernel_verdict, mesh_verdict
 from tactcad.bench.pairs import GAPS, KINDS, known_pairs, lens
+from tactcad.bench.verdicts import Prepared, count_wrong, kernel_verdict, mesh_verdict
 from tactcad.parts.description import Extrusion
 
 PAIRS = list(known_pairs(2, seed=5))

@@ -11,7 +11,7 @@ from test_bench_command import follows_schema
 
 from tactcad.bench import render
 from tactcad.bench.front import efficient
-from tactcad.bench.run import BENCHMARKS
+from tactcad.bench.session import BENCHMARKS
 from tactcad.design.messages import InputError
 
 ROOT = Path(__file__).parents[2]

@@ -10,6 +10,7 @@ import pytest
 
 from tactcad.checks.report import Report, failure_table, json_bytes, junit_bytes
 from tactcad.cli.main import main
+from tactcad.design.messages import CheckFailure
 from tactcad.parts.finding import Finding
 
 
@@ -35,6 +36,19 @@ def test_junit_has_a_case_for_every_check_and_every_failure():
     assert bad.find("failure").get("message") == 'web of 0.1 mm < 0.5 mm & "thin" <here>'
     assert "quote it" in bad.find("system-out").text
     assert cases["d.wire-cut", "d-spacer"].find("failure") is None
+
+
+def test_a_check_that_yields_is_taken_at_its_word_and_its_refusal_is_a_flag():
+    """What stops the estimator halfway stops it inside the check, not when the report is read."""
+
+    def stops(part):
+        yield Finding("web", "fail", part.part_no, (), 0.1, 0.5, "thin")
+        raise CheckFailure("beyond the fit")
+
+    made = Report("d", "A")
+    made.run("web", stops, SimpleNamespace(part_no="d-plate"))
+    (finding,) = made.findings
+    assert (finding.severity, finding.message) == ("flag", "not checked: beyond the fit")
 
 
 def test_json_and_table_name_every_failure():

@@ -6,13 +6,20 @@ named, or passes every check.
 
 from __future__ import annotations
 
+from operator import attrgetter
+
 import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
 from variants import variant
 
 from tactcad.checks.brep import check_brep
-from tactcad.parts.element import element
+from tactcad.contour import LEAST_EDGE
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.parts.element import element, outline
 from tactcad.parts.layout import Layout
 from tactcad.parts.rules import broken_rules
+from tactcad.parts.stop_gap import stop_gap
 from tactcad.scenes import left_out, scene_names
 from tactcad.solids.build import build
 
@@ -161,3 +168,82 @@ def test_an_edge_at_the_limit_is_the_same_to_rule_and_check(short, sides):
     part = element(layout, layout.elements[0])
     tiny = [f for f in check_brep(part, build(part).wrapped) if f.check == "tiny-edge"]
     assert bool(refused) == bool(tiny) == (short < 0.001)
+
+
+MOVED = (
+    "element.hinge_length",
+    "element.arm_height",
+    "element.body_height",
+    "element.pad_length",
+    "element.pad_height",
+    "element.seat_length",
+    "element.recess_depth",
+    "element.recess_offset",
+    "element.rear_height",
+    "element.rear_length",
+    "stop.land_length",
+    "holes.web",
+)
+
+
+def pieces(design) -> dict[str, float]:
+    """Lengths (mm) of the named pieces of the first element's contour."""
+    layout = Layout(design)
+    p = layout.elements[0]
+    return {s.name: s.length for s in outline(layout, p.arm, p.hinge, stop_gap(layout, p)) if s.name}
+
+
+def slope(changes: dict, path: str, piece: str) -> float:
+    """How much longer the piece is for each mm more of the field."""
+    beside = {**changes, path: attrgetter(path)(variant(changes)) + 1e-4}
+    return (pieces(variant(beside))[piece] - pieces(variant(changes))[piece]) / 1e-4
+
+
+def at_the_limit(changes: dict, path: str, piece: str, length: float) -> dict:
+    """The design with the field moved, by two secants, so that the piece is that long (mm)."""
+    for _ in range(2):
+        value = attrgetter(path)(variant(changes))
+        missing = length - pieces(variant(changes))[piece]
+        changes = {**changes, path: round(value + missing / slope(changes, path, piece), 9)}
+    return changes
+
+
+@pytest.mark.cad
+def test_no_piece_near_the_limit_passes_the_rule_and_fails_the_check():
+    """Any field that makes any piece short, moved until the piece is 0.001 mm long but for 1e-3 to 1e-6 mm.
+
+    What the rules accept has no edge that the check on the built solid finds too short.
+    """
+    bases = {
+        sides: {"array.row_arms": [[4.0]], "element.sides": sides, "element.body_height": height}
+        for sides, height in (("one", 3.0), ("two", 3.6))
+    }
+    moves = [
+        (sides, path, piece)
+        for sides, base in bases.items()
+        for piece in sorted(pieces(variant(base)))
+        for path in MOVED
+        if abs(slope(base, path, piece)) > 1e-6
+    ]
+    judged = {"accepted": 0, "slivers": 0}
+
+    @settings(max_examples=60, derandomize=True, deadline=None, phases=[Phase.generate])
+    @given(st.sampled_from(moves), st.floats(-6, -3), st.booleans())
+    def each(move, digits, longer):
+        sides, path, piece = move
+        off = 10.0**digits * (1 if longer else -1)
+        try:
+            design = variant(at_the_limit(bases[sides], path, piece, LEAST_EDGE + off))
+        except (InputError, CheckFailure, ValueError, ZeroDivisionError, KeyError):
+            return  # out of the field's range, no contour, or the piece is gone
+        refused = [b.check for b in broken_rules(design)]
+        judged["slivers"] += refused == ["no_slivers"]
+        if refused:
+            return
+        judged["accepted"] += 1
+        layout = Layout(design)
+        part = element(layout, layout.elements[0])
+        assert [f for f in check_brep(part, build(part).wrapped) if f.check == "tiny-edge"] == [], move
+
+    each()
+    assert judged["accepted"] >= 5 and judged["slivers"] >= 5, judged

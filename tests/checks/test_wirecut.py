@@ -6,12 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from parallel_curve import offset
 
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.checks.wirecut import check_wirecut
 from tactcad.cli.main import main
 from tactcad.contour import Arc, Contour, Corner, Line, chain, circle, rectangle, rounded_polygon
-from tactcad.contour.offset import offset
 from tactcad.design.messages import InputError
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 

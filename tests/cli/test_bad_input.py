@@ -11,7 +11,7 @@ from pathlib import Path
 from unittest.mock import Mock
 
 import pytest
-from variants import DROP, HARDWARE, table
+from variants import DROP, HARDWARE, ORIGIN, table
 
 from tactcad.cli.main import COMMANDS, main
 from tactcad.export.manifest import SCHEMA
@@ -41,7 +41,7 @@ def as_toml(tree: dict) -> str:
 
 def bad(**changes) -> bytes:
     tree = table({path.replace("__", "."): value for path, value in changes.items()})
-    tree.pop("origin")
+    tree["origin"] = ORIGIN
     return as_toml(tree).encode()
 
 

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from variants import HARDWARE
+from variants import BARE_TEXT
 
 from tactcad.cli.main import main
 from tactcad.parts.designs import load
@@ -15,11 +15,7 @@ from tactcad.parts.designs import load
 pytestmark = pytest.mark.cad
 
 TEXT = (
-    re.sub(
-        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)",
-        "",
-        (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
-    )
+    re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", BARE_TEXT)
     .replace('name = "macro-array"', 'name = "tiny"')
     .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
 )

@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import pi
 
 import pytest
+from parallel_curve import offset
 
 from tactcad.contour import Corner, chain, circle, rectangle, rounded_polygon
 from tactcad.contour.inside import clearance
-from tactcad.contour.offset import offset
 
 L_SHAPE = chain([(0, 0), (9, 0), (9, 1), (1, 1), (1, 9), (0, 9)])
 SLOT = rounded_polygon(

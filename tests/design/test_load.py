@@ -69,7 +69,12 @@ BAD_VALUES = {
     "arms without rows": ({"array.row_arms": [4, 5]}, "array.row_arms[0]", "not a list", "numbers"),
     "third row": ({"array.row_arms": [[4], [4], [4]]}, "array.row_arms", "one plane", "one or two rows"),
     "truth value in a row": ({"array.row_arms": [[4, False]]}, "array.row_arms[0][1]", "not a number", "mm"),
-    "unknown alloy": ({"material.alloy": "brass"}, "material.alloy", "choice", "'7075-T6'"),
+    "unknown alloy": (
+        {"material.alloy": "brass", "material.density": DROP},
+        "material.alloy",
+        "not in the table of materials, and density is not given",
+        "7075-T6",
+    ),
     "number for a choice": ({"element.sides": 1}, "element.sides", "choice", "'one'"),
     "name with a path": ({"design.name": "../evil"}, "design.name", "text", "a-z"),
     "absolute name": ({"design.name": "/etc/passwd"}, "design.name", "text", "a-z"),
@@ -318,12 +323,12 @@ def test_overrides_are_sorted_and_keep_what_they_do_not_name():
 
 
 def test_an_alloy_gives_what_the_file_leaves_out():
-    from tactcad.design.materials import ALLOYS
+    from tactcad.design.materials import ALLOYS, OPTIONAL
 
     left_out = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
     for name, alloy in ALLOYS.items():
         d = variant({"material.alloy": name, **{f"material.{f}": DROP for f in left_out}})
-        assert all(getattr(d.material, f) == getattr(alloy, f) for f in left_out)
+        assert all(getattr(d.material, f) == getattr(alloy, f) for f in (*left_out, *OPTIONAL))
     d = variant({"material.youngs_modulus": 70500})
     assert d.material.youngs_modulus == 70500.0
 

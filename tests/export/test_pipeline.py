@@ -14,7 +14,7 @@ from math import atan2, cos, hypot, pi, sin, sqrt, tau
 from pathlib import Path
 
 import pytest
-from variants import HARDWARE, variant
+from variants import BARE_TEXT, HARDWARE, variant
 
 import tactcad
 from tactcad.design.messages import CheckFailure, InputError
@@ -38,12 +38,7 @@ print(json.dumps({"status": status, "loaded": sorted(loaded), "rooms": sorted(ro
 HEAVY = {"OCP", "build123d", "cadquery", "numpy", "scipy", "ezdxf", "matplotlib", "skfem"}
 REVISION = tomllib.loads((HARDWARE / "macro-array.toml").read_text())["design"]["revision"]
 TWO_ARMS = {"array.row_arms": [[4.0, 6.0]]}
-TWO_ARMS_TEXT = (
-    (HARDWARE / "macro-array.toml")
-    .read_text()
-    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
-    .split("\n[origin]\n")[0]
-)
+TWO_ARMS_TEXT = BARE_TEXT.replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[4, 6]]")
 
 
 def run(*arguments: str, cwd: Path, source: Path | None = None, **environment: str) -> tuple[dict, str]:

@@ -28,7 +28,9 @@ def one_by_one(arm: float, revision: str) -> str:
     """The shipped array's file with one element and no rig."""
     text = (ROOT / "hardware" / "macro-array.toml").read_text(encoding="utf-8")
     table = re.compile(rf"^\[(?:{'|'.join((*RIGS, 'origin'))})\]\n(?:(?!\[).*\n)*", re.MULTILINE)
-    text = table.sub("", text + "\n")
+    text = table.sub("", text + "\n").replace(
+        "youngs_modulus = 69000\n", ""
+    )  # the paper's, which wants an origin
     text = re.sub(r"^row_arms = .*$", f"row_arms = [[{arm}]]", text, count=1, flags=re.MULTILINE)
     text = re.sub(r'^revision = ".*"$', f'revision = "{revision}"', text, count=1, flags=re.MULTILINE)
     found = tomllib.loads(text)

@@ -11,8 +11,9 @@ from tactcad.fem import elasticity
 from tactcad.fem.convergence import converged_plane
 from tactcad.fem.free_mesh import Fine, triangle_mesh
 from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.plane_elements import end_nodes, fixed_unknowns, parabola
+from tactcad.fem.plane_elements import fixed_unknowns, parabola
 from tactcad.fem.shape import reference_contour, reference_shape
+from tactcad.fem.space import line_load
 from tactcad.lab.array_estimate import compare_uncut
 from tactcad.mechanics.section import REFERENCE
 from tactcad.parts.designs import load
@@ -35,8 +36,10 @@ def test_free_mesh_and_mapped_mesh_agree_on_the_reference_design(two):
     mapped = plane_mesh(shape, 1, whole=True)
     A = elasticity.stiffness_matrix(basis, *elasticity.lame(69000.0, 0.33, plane_stress=True)) * 3.0
     f = np.zeros(A.shape[0])
-    end = end_nodes(basis.doflocs, mapped)
-    f[2 * end + 1] = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mapped))
+    x, z = basis.doflocs
+    end = np.flatnonzero(np.abs(x - mapped.load_x) < 1e-9)
+    end = end[np.argsort(z[end])]
+    f[2 * end + 1] = line_load(z[end], lambda z: parabola(z, mapped), 2)
     u = elasticity.solve(A, f, fixed_unknowns(basis.doflocs, mapped, 2))
     assert 1.0 / (f @ u) == pytest.approx(converged_plane(shape, 69000.0, 0.33, 3.0).stiffness, rel=2e-3)
 

@@ -105,7 +105,7 @@ def test_one_per_cent_is_a_closed_form_nearly_everywhere_and_a_tenth_never(draw)
     assert all(not isinstance(c, str) and c.candidate.rung == "fem-solid" for c in tenth)
 
 
-def test_the_quickest_that_is_good_enough_is_taken():
+def test_the_least_work_that_is_good_enough_is_taken():
     """Over accuracies, against a plain search of the file."""
     s = REFERENCE
     (zone,) = (
@@ -113,9 +113,51 @@ def test_the_quickest_that_is_good_enough_is_taken():
     )
     for wanted in np.geomspace(3e-4, 0.9, 40):
         choice = choose(s, wanted)
-        good = [name for name, error in zone["promised"].items() if error <= wanted]
-        best = min(good, key=lambda name: accuracy_data()["seconds a call"][name] + zone["seconds"][name])
-        assert choice.candidate.name == best and choice.expected_error == zone["promised"][best] <= wanted
+        first = next(c.name for c in CANDIDATES if zone["promised"][c.name] <= wanted)
+        assert choice.candidate.name == first and choice.expected_error == zone["promised"][first] <= wanted
+
+
+def test_meshes_are_chosen_by_their_work_whatever_a_clock_said(monkeypatch):
+    """Where one disturbed run made the finer of two meshes the quicker one in the file, the coarser is still
+    taken."""
+    disturbed = json.loads(json.dumps(accuracy_data()))
+    for zone in disturbed["zones"]:
+        zone["seconds"] |= {"fem-solid, mesh 2": 6.9, "fem-solid, mesh 3": 6.4}
+    monkeypatch.setattr(accuracy, "accuracy_data", lambda: disturbed)
+    for s in (REFERENCE, NARROW):
+        assert choose(s, 1e-3).candidate.mesh == 2
+        assert choose_each(s, 1e-3)[0].candidate.mesh == 2
+
+
+NARROW = REFERENCE.with_(hinge_length=2.4, width=1.5)  # b/l under 0.7
+NOTCH = REFERENCE.with_(
+    hinge_thickness=0.3,
+    hinge_length=0.11,
+    fillet_radius=0.05,
+    load_arm=4.0,
+    arm_height=3.0,
+    body_height=3.0,
+    body_length=1.2,
+    poisson=0.42,
+    width=2.0,
+    two_sided=False,
+)
+
+
+def test_solid_elements_keep_their_promise_at_a_thin_notch():
+    """A fillet of a sixth of the thickness: mesh 2 was 0.089 % off where 0.039 % was promised, mesh 3 0.026
+    and 0.0059 %."""
+    K = [elements.stiffness(NOTCH, "fem-solid", mesh) for mesh in (2, 3)]
+    promised = [float(accuracy.expected_error(NOTCH, c)) for c in CANDIDATES if c.mesh]
+    assert abs(K[0] / K[1] - 1.0) < promised[0] - promised[1]
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("s", [NOTCH, NARROW], ids=["notch", "narrow"])
+def test_solid_elements_keep_their_promise_against_a_higher_order(s):
+    K = [elements.stiffness(s, "fem-solid", mesh) for mesh in (2, 3, 4)]
+    for found, candidate in zip(K, (c for c in CANDIDATES if c.mesh)):
+        assert abs(found / K[2] - 1.0) < float(accuracy.expected_error(s, candidate))
 
 
 def test_a_tighter_wish_is_never_quicker():

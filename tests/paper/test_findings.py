@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -228,7 +228,8 @@ def test_explanations_give_the_measured_stiffness_back(paper, array):
 def test_bands_are_what_the_tolerances_give(paper, array):
     """Thickness alone, +-5 um as two standard deviations: 95 % is 3.92/2 times the half-width on either
     side."""
-    tol = replace(array.tolerance, hinge_length=0.0, load_arm=0.0, sheet_thickness=0.0, arm_height=0.0)
+    tol = array.tolerance
+    tol = replace(tol, **{f.name: 0.0 for f in fields(tol) if f.name != "hinge_thickness"})
     r = residuals.residuals(paper, replace(array, tolerance=tol), RNG())
     s = array.section
     both = [
@@ -248,7 +249,7 @@ def test_stiffness_findings_follow_the_data(paper, array):
     )
     assert (
         "5 of 9 elements" in as_printed
-        and "at the edge: no. 8" in as_printed
+        and "With the contact anywhere on the pad, still outside: no. 8" in as_printed
         and "no common factor is left" in as_printed
     )
     _, s = residuals.matched(paper, array)
@@ -461,6 +462,15 @@ def test_effects_of_the_budget_by_hand(paper, array):
     assert b.sensitivity_reference == pytest.approx(
         r * (m + x) / (x * (r - m))
     ) and b.sensitivity_reference + b.sensitivity_measuring == pytest.approx(1)
+    cell = by["load cell in series in the calibration"]  # K = k K_c/(K_c - k): dlnK/dlnK_c = -K/K_c
+    assert cell.short_arm == pytest.approx(0.02 * r / 57.04) and cell.long_arm == pytest.approx(
+        0.02 * m / 57.04
+    )
+    assert by["design's modulus instead of its material's"].long_arm == pytest.approx(np.log(72 / 69))
+    assert by["gauges creep"].on_object == pytest.approx(
+        -b.sensitivity_ratio * 2**0.5 * 0.001 * np.log10(300 / 10)
+    )
+    assert by["gauges creep"].remaining < by["gauges creep"].on_object
     sizes = [e.on_object for e in b.effects]
     assert sizes == sorted(sizes, reverse=True)
     assert b.total() > 5 * b.total(remaining=True)

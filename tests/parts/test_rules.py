@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
-from variants import DROP, table, variant
+from variants import DROP, ORIGIN, table, variant
 
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
@@ -387,7 +387,7 @@ def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_draw
     arms = data.draw(st.sampled_from([[[4]], [[0.1]], [[100]], [[4, 5], [6]], [[8, 4]]]))
     changes["array.row_arms"] = arms
     tree = table(changes)
-    tree.pop("origin")
+    tree["origin"] = ORIGIN
     design: Design = from_table(tree)
     if not broken_rules(design):
         make_scene(design, "array")

@@ -17,7 +17,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import pytest
-from variants import HARDWARE
+from variants import BARE_TEXT
 
 import tactcad
 from tactcad.cli.main import main
@@ -34,9 +34,7 @@ pytestmark = pytest.mark.cad
 
 TEXT = (
     re.sub(  # the paper's array cut down to one element, without rigs
-        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)",
-        "",
-        (HARDWARE / "macro-array.toml").read_text().split("\n[origin]\n")[0],
+        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", BARE_TEXT
     )
     .replace('name = "macro-array"', 'name = "tiny"')
     .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")

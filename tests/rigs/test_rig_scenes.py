@@ -224,7 +224,7 @@ def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_co
         ({}, None),
         ({"calibration.travel": 0.16}, "flag"),
         ({"calibration.travel": 0.20}, "fail"),
-        ({"material.yield_strength": 275}, "fail"),
+        ({"material.alloy": "soft", "material.yield_strength": 275}, "fail"),
     ],
 )
 def test_a_calibration_beyond_the_rated_deflection_is_seen(changes, severity):

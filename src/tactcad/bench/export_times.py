@@ -7,9 +7,10 @@ from pathlib import Path
 
 from tactcad.parts.designs import load
 
-from . import arrays, tables
-from .plan import Plan
+from . import arrays
+from .bench_tables import table
 from .process import child, command, cost, in_turns, measured, python
+from .run_plan import RunPlan
 
 TITLE = "Whole exports"
 QUESTION = "How long from design file to finished folder: first, again, and after a change?"
@@ -18,7 +19,7 @@ GOALS = {"cold / plain": 1.5, "unchanged / numpy": 3.0, "STEP over smallest": 5.
 GOAL_ESTIMATE = 3.0  # times `import numpy`
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     sizes = plan.of({2: 1}, {10: 1}, {10: 5, 100: 3, 1000: 1})  # elements: runs
     rows = [_row(elements, runs, plan) for elements, runs in sizes.items()]
     for row in rows:
@@ -39,14 +40,14 @@ def measure(plan: Plan) -> dict:
     )
     return {
         "tables": {
-            "export": tables.table(TITLE, columns, rows, note),
-            "start-up": tables.table("Starting up", started, starts, "Whole processes, in turns."),
+            "export": table(TITLE, columns, rows, note),
+            "start-up": table("Starting up", started, starts, "Whole processes, in turns."),
         },
         "findings": findings(rows, starts),
     }
 
 
-def _row(elements: int, runs: int, plan: Plan) -> dict:
+def _row(elements: int, runs: int, plan: RunPlan) -> dict:
     times: dict[str, list[float]] = {name: [] for name in ("cold", "plain", "changed", "unchanged", "numpy")}
     peaks = []
     for run in range(runs):
@@ -80,7 +81,7 @@ def _row(elements: int, runs: int, plan: Plan) -> dict:
     return row
 
 
-def _starts(plan: Plan) -> list[dict]:
+def _starts(plan: RunPlan) -> list[dict]:
     commands = {
         "python -c 'import numpy'": python("-c", "import numpy"),
         "tactcad estimate": command("estimate"),

@@ -18,15 +18,16 @@ from scipy.sparse import csc_matrix
 from tactcad.design.messages import CheckFailure
 from tactcad.design.present import present
 from tactcad.fem import calculix, elasticity
-from tactcad.fem.convergence import ORDER, richardson
+from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.fem.solid_elements import solve_solid
 
-from . import tables, truth
+from . import truth
+from .bench_tables import table
 from .front import efficient, told
-from .plan import Plan
+from .run_plan import RunPlan
 from .timing import interleaved
 
 TITLE = "Mesh densities"
@@ -38,7 +39,7 @@ Answer = tuple[float, int]
 
 
 @dataclass(frozen=True)
-class Case:
+class Solver:
     """One way to solve an element; `solve` gives stiffness (unit modulus) and the number of unknowns."""
 
     code: str
@@ -47,27 +48,29 @@ class Case:
     solve: Callable[[ElementShape, float, float], Answer]
 
 
-def cases(plan: Plan) -> list[Case]:
+def cases(plan: RunPlan) -> list[Solver]:
     plane, solid = plan.of((1, 2), (1, 2, 3, 4, 6), (1, 2, 3, 4, 6, 8)), plan.of((1,), (1, 2), (1, 2, 3))
-    found = [Case("tactcad", "plane", d, partial(_plane, d)) for d in plane]
-    found += [Case("tactcad", "plane, two meshes", d, partial(_extrapolated, d)) for d in plane if d % 2 == 0]
-    found += [Case("tactcad", "solid", d, partial(_solid, d)) for d in solid]
-    found += [Case("tactcad", "solid, corrected", d, partial(_corrected, d)) for d in solid]
+    found = [Solver("tactcad", "plane", d, partial(_plane, d)) for d in plane]
+    found += [
+        Solver("tactcad", "plane, two meshes", d, partial(_extrapolated, d)) for d in plane if d % 2 == 0
+    ]
+    found += [Solver("tactcad", "solid", d, partial(_solid, d)) for d in solid]
+    found += [Solver("tactcad", "solid, corrected", d, partial(_corrected, d)) for d in solid]
     if calculix.executable():
         found += [
-            Case("CalculiX", "plane", d, partial(_ccx_plane, d, plan.folder))
+            Solver("CalculiX", "plane", d, partial(_ccx_plane, d, plan.folder))
             for d in plan.of((1,), (1, 2, 3, 4), (1, 2, 3, 4, 6))
         ]
         found += [
-            Case("CalculiX", "solid", d, partial(_ccx_solid, d, plan.folder))
+            Solver("CalculiX", "solid", d, partial(_ccx_solid, d, plan.folder))
             for d in plan.of((), (1,), (1, 2))
         ]
     if _cholmod():
-        found += [Case("CHOLMOD", "solid", d, partial(_with_cholmod, d)) for d in solid]
+        found += [Solver("CHOLMOD", "solid", d, partial(_with_cholmod, d)) for d in solid]
     return found
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     fine = truth.of_run(plan)
     count = plan.of(2, 4, 12)
@@ -107,13 +110,13 @@ def measure(plan: Plan) -> dict:
     missing = [] if calculix.executable() else ["CalculiX (ccx) is not installed: not compared."]
     missing += [] if _cholmod() else ["CHOLMOD (scikit-sparse) is not installed: all systems by SuperLU."]
     return {
-        "tables": {"meshes": tables.table(TITLE, columns, rows, note)},
+        "tables": {"meshes": table(TITLE, columns, rows, note)},
         "findings": findings(rows),
         "missing": missing,
     }
 
 
-def _error(case: Case, designs: list[tuple]) -> dict:
+def _error(case: Solver, designs: list[tuple]) -> dict:
     against = "plane" if case.elements.startswith("plane") else "solid"
     unknowns, errors = 0, []
     for shape, nu, width, plane, solid in designs:
@@ -168,7 +171,7 @@ def _plane(density: int, shape: ElementShape, nu: float, width: float) -> Answer
 def _extrapolated(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
     """Richardson's limit from this density and half of it, as fem-plane takes it from 6 and 3."""
     coarse, fine = (solve_plane(shape, 1.0, nu, width, density=d) for d in (density // 2, density))
-    limit = richardson((coarse.compliance, fine.compliance), (density // 2, density), ORDER)
+    limit = richardson((coarse.compliance, fine.compliance), (density // 2, density), RATE)
     return 1.0 / limit, fine.unknowns
 
 
@@ -198,7 +201,7 @@ def _nodes(path: Path) -> int:
     return path.read_text("ascii").split("*ELEMENT")[0].count("\n") - 1
 
 
-def _own_clock(case: Case, design: tuple, folder: Path) -> float | None:
+def _own_clock(case: Solver, design: tuple, folder: Path) -> float | None:
     """Seconds that CalculiX itself reports: its process without starting up."""
     if case.code != "CalculiX":
         return None

@@ -23,7 +23,7 @@ ALONG_X = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0))  # local z runs a
 
 
 @dataclass(frozen=True)
-class Pair:
+class KnownPair:
     """Two placed parts: their kind, the gap between them (mm), and the volume that they share (mm3)."""
 
     kind: str
@@ -40,14 +40,14 @@ class Pair:
         return Scene(self.kind, self.placements)
 
 
-def known_pairs(rounds: int, seed: int) -> Iterator[Pair]:
+def known_pairs(rounds: int, seed: int) -> Iterator[KnownPair]:
     """Every kind at every gap, `rounds` times, each time placed and sized anew."""
     rng = np.random.default_rng(seed)
     for _ in range(rounds):
         for kind, make in KINDS.items():
             for gap in GAPS:
                 overlap, first, second = make(gap, rng)
-                yield Pair(kind, gap, overlap, _thrown((first, second), rng))
+                yield KnownPair(kind, gap, overlap, _thrown((first, second), rng))
 
 
 def box_on_box(gap: float, rng: np.random.Generator) -> tuple[float, Placement, Placement]:
@@ -92,7 +92,7 @@ def pin_on_plate(gap: float, rng: np.random.Generator) -> tuple[float, Placement
     r, length = rng.uniform(0.8, 3.0), rng.uniform(2.0, 6.0)
     sunk = max(-gap, 0.0)
     segment = r * r * acos((r - sunk) / r) - (r - sunk) * sqrt(max(2 * r * sunk - sunk * sunk, 0.0))
-    turn = rotation(np.array(ALONG_X) @ np.array(_spun(rng)))
+    turn = rotation((np.array(ALONG_X) @ np.array(_spun(rng))).tolist())
     return (
         segment * length,
         Placement("A", _block("A", 16.0, 16.0, 3.0)),
@@ -153,7 +153,7 @@ def _thrown(pair: tuple[Placement, Placement], rng: np.random.Generator) -> tupl
             p.designator,
             p.part,
             vector((q @ np.array(p.origin) + shift).tolist()),
-            rotation(q @ np.array(p.rotation)),
+            rotation((q @ np.array(p.rotation)).tolist()),
         )
         for p in pair
     )

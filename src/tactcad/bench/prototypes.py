@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from tactcad.scenes.scene import Scene
 
-from . import tables
-from .plan import Plan
+from .bench_tables import table
 from .process import child, cost, in_turns, last_line
+from .run_plan import RunPlan
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -34,7 +34,7 @@ def unshared(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> tuple[Scene, d
     return replace(scene, placements=placements), copies
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     rows = []
     for elements in plan.of((2,), (10, 40), (10, 100, 400)):
         commands = {name: child("step", elements=elements, shared=shared) for name, shared in FORMS.items()}
@@ -56,4 +56,4 @@ def measure(plan: Plan) -> dict:
         f"{last['size ratio']:.1f} times as large, and "
         f"writing it and reading it back {last['time ratio']:.1f} times as long."
     )
-    return {"tables": {"prototypes": tables.table(TITLE, columns, rows)}, "findings": [finding]}
+    return {"tables": {"prototypes": table(TITLE, columns, rows)}, "findings": [finding]}

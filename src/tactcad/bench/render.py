@@ -6,7 +6,7 @@ import json
 
 from tactcad.paper.report import standalone
 
-from . import tables
+from . import bench_tables
 from .figures import figures
 
 
@@ -39,7 +39,7 @@ def to_text(result: dict) -> str:
     for name, entry in result["benchmarks"].items():
         lines += ["", f"{name}: {entry['question']}"]
         for data in entry["tables"].values():
-            lines += ["", tables.text(data)]
+            lines += ["", bench_tables.text(data)]
         lines += ["", *(f"  - {line}" for line in remarks(entry))]
     return "\n".join(lines)
 
@@ -63,7 +63,7 @@ def to_markdown(result: dict, plots: str = "plots") -> str:
                 "",
                 f"### {data['title']}",
                 "",
-                tables.markdown(data),
+                bench_tables.markdown(data),
                 *(["", data["note"]] if data["note"] else []),
             ]
     return "\n".join(lines) + "\n"
@@ -86,7 +86,7 @@ def files(result: dict) -> dict[str, bytes]:
         "report.txt": to_text(result) + "\n",
     }
     for entry in result["benchmarks"].values():
-        made |= {f"tables/{key}.csv": tables.as_csv(data) for key, data in entry["tables"].items()}
+        made |= {f"tables/{key}.csv": bench_tables.as_csv(data) for key, data in entry["tables"].items()}
     for shown in figures(result).values():
         made |= {f"plots/{f.name}.svg": standalone(f) for f in shown}
     return {name: text.encode() for name, text in made.items()}

@@ -11,10 +11,10 @@ from tactcad.fit import fit_samples
 from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import ladder
 
-from . import tables
+from .bench_tables import table
 from .exponent import fit
-from .plan import Plan
 from .process import child, command, cost, last_line, measured
+from .run_plan import RunPlan
 from .timing import interleaved, of_samples
 
 TITLE = "Scaling with the number of elements"
@@ -29,7 +29,7 @@ EXPLAINED = {"picture, above": _PICTURES, "picture, open": _PICTURES, "all of th
 NOISE = 0.15  # by which the exponent between two single times of a linear cost may be off
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     rows = _estimates(plan) + _elements(plan) + _batches(plan) + _geometry(plan)
     exponents = _exponents(rows)
@@ -46,8 +46,8 @@ def measure(plan: Plan) -> dict:
     )
     return {
         "tables": {
-            "exponents": tables.table("Fitted exponents", fitted, exponents, note),
-            "scaling": tables.table(
+            "exponents": table("Fitted exponents", fitted, exponents, note),
+            "scaling": table(
                 TITLE, columns, rows, "Geometry: stages of one export and check in a fresh process."
             ),
         },
@@ -55,7 +55,7 @@ def measure(plan: Plan) -> dict:
     }
 
 
-def _estimates(plan: Plan) -> list[dict]:
+def _estimates(plan: RunPlan) -> list[dict]:
     """The default closed form in this process, range checks included."""
     sizes = plan.of((10, 100), (10, 100, 1000, 10_000), (10, 30, 100, 300, 1000, 3000, 10_000))
     plan.say("estimates by the default rung")
@@ -65,7 +65,7 @@ def _estimates(plan: Plan) -> list[dict]:
     return [_row("estimate, rung solid", n, t.seconds, t.median) for n, t in timed.items()]
 
 
-def _elements(plan: Plan) -> list[dict]:
+def _elements(plan: RunPlan) -> list[dict]:
     from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape
 
@@ -78,7 +78,7 @@ def _elements(plan: Plan) -> list[dict]:
     return [_row("plane elements, density 3", n, t.seconds, t.median) for n, t in timed.items()]
 
 
-def _batches(plan: Plan) -> list[dict]:
+def _batches(plan: RunPlan) -> list[dict]:
     """`tactcad estimate --batch` as a process, from CSV file to CSV file."""
     rows = []
     for n in plan.of((10, 100), (10, 100, 1000, 10_000), (10, 100, 1000, 10_000)):
@@ -94,7 +94,7 @@ def _batches(plan: Plan) -> list[dict]:
     return rows
 
 
-def _geometry(plan: Plan) -> list[dict]:
+def _geometry(plan: RunPlan) -> list[dict]:
     rows = []
     for n in plan.of((2,), (10, 20, 40, 100), (10, 30, 100, 300, 1000)):
         plan.say(f"geometry of {n} elements")

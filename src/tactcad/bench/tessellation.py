@@ -6,9 +6,10 @@ import numpy as np
 
 from tactcad.scenes import make_scene
 
-from . import arrays, tables
+from . import arrays
+from .bench_tables import table
 from .front import efficient
-from .plan import Plan
+from .run_plan import RunPlan
 from .timing import interleaved
 
 TITLE = "Tessellation tolerance"
@@ -19,7 +20,7 @@ OTHER_LINEAR = ((0.5, 0.2), (0.005, 0.2), (0.0005, 0.2))  # to tell the two apar
 STL_HEAD, STL_TRIANGLE = 84, 50  # bytes of a binary STL file
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     from tactcad.solids.build import build
     from tactcad.solids.mesh_overlap import volume
     from tactcad.solids.triangles import triangles
@@ -65,7 +66,7 @@ def measure(plan: Plan) -> dict:
         f"All {len(shapes)} parts of the array, each once; volume error against the closed form. STL: "
         "binary, 84 + 50 n bytes a part."
     )
-    return {"tables": {"tessellation": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
+    return {"tables": {"tessellation": table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
 def findings(rows: list[dict]) -> list[str]:

@@ -12,14 +12,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tactcad.fem.convergence import ORDER, richardson
+from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.fem.solid_elements import solve_solid
 from tactcad.fit.fit_samples import BOX, Columns, draw_box, draw_edges, joined, load, section, write
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
-from .plan import Plan
+from .run_plan import RunPlan
 
 DENSITIES = (6, 12)
 SOLID_DENSITIES = (2, 3)
@@ -67,7 +67,7 @@ def compute(columns: Columns, solids: int, say: Callable[[str], None]) -> Column
 def plane(shape: ElementShape, nu: float) -> tuple[float, float]:
     """Stiffness (unit width and modulus), and the share by which the limit differs from the finer mesh."""
     coarse, fine = (solve_plane(shape, 1.0, nu, 1.0, density=d).compliance for d in DENSITIES)
-    limit = richardson((coarse, fine), DENSITIES, ORDER)
+    limit = richardson((coarse, fine), DENSITIES, RATE)
     return 1.0 / limit, abs(limit / fine - 1.0)
 
 
@@ -92,7 +92,7 @@ def shipped() -> Columns:
     return load(resources.files("tactcad.bench") / "data" / SHIPPED)
 
 
-def of_run(plan: Plan) -> Columns:
+def of_run(plan: RunPlan) -> Columns:
     """full: solved anew on designs of this run's seed, once, into the scratch folder; else the shipped
     ones."""
     if plan.mode != "full":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 from xml.etree import ElementTree
@@ -57,7 +57,7 @@ class Report:
             grouped.setdefault(case.check, []).append(case)
         return grouped
 
-    def run(self, name: str, check: Callable[..., list[Finding]], *args: Any) -> None:
+    def run(self, name: str, check: Callable[..., Iterable[Finding]], *args: Any) -> None:
         """Run one check on its first argument (something with a part number or a name); keep what it says.
 
         Where the estimator does not reach a design, what rests on it is flagged as not checked.
@@ -65,7 +65,7 @@ class Report:
         subject = getattr(args[0], "part_no", None) or args[0].name
         start = time.perf_counter()
         try:
-            found = check(*args)
+            found = list(check(*args))  # one that yields does its work here
         except CheckFailure as error:
             found = [Finding(name, "flag", subject, (), 0, 0, f"not checked: {error}")]
         seconds = time.perf_counter() - start

@@ -3,7 +3,6 @@ one element."""
 
 from __future__ import annotations
 
-from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.element import element_number
 from tactcad.parts.finding import Finding
@@ -40,7 +39,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         f"when {design.rating.overload_force:g} N have closed the stop at {state.gap:g} mm, "
         "tolerance included"
     )
-    stress = present(design.material.yield_strength) / design.rating.deflection_factor
+    stress = design.material.yield_strength / design.rating.deflection_factor
     found = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
         found.append(

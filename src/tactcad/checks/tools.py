@@ -117,5 +117,5 @@ def _placed(p: Placement, tool: Part, z: float, way: float) -> Placement:
     """The tool on the fastener's axis, from its own z on, along z or against it."""
     turn = np.array(p.rotation)
     origin = np.array(p.origin) + turn @ np.array((0.0, 0.0, z))
-    name, turned = f"tool at {p.designator}", rotation(turn @ np.diag((1.0, way, way)))
+    name, turned = f"tool at {p.designator}", rotation((turn @ np.diag((1.0, way, way))).tolist())
     return Placement(name, tool, vector(origin.tolist()), turned)

@@ -16,6 +16,7 @@ from tactcad.contour.inside import encloses, place_for_circle
 from tactcad.contour.intersect import crossings, self_intersections, smallest_distance
 from tactcad.contour.necks import SAME_DIRECTION, Neck, direction, necks
 from tactcad.contour.rounded import ROUNDING_MM
+from tactcad.design.materials import family
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.parts.section import section
@@ -24,8 +25,6 @@ from .shop import Shop
 
 # The CAD kernel fuses what is nearer (measured), and no shop resolves it.
 TOUCHING_MM = 1e-6
-# kg/m3: wrought aluminium alloys lie between, and no other metal that is wire-cut does.
-ALUMINIUM_DENSITY = (2600.0, 2900.0)
 # Contour pieces that bound a hinge, as the element names them.
 _HINGE_FACE = re.compile(r"(front_)?slot_(floor|(arm|body)_fillet)|hinge_face")
 
@@ -139,8 +138,7 @@ def slots(cut: _Cut) -> Iterator[Finding]:
 def walls(cut: _Cut) -> Iterator[Finding]:
     """Walls stand by themselves; a hinge is flagged with what its quotation must say."""
     limits, source = cut.shop.limits, cut.shop.source
-    low, high = ALUMINIUM_DENSITY
-    field = "wall_aluminium" if low <= cut.part.material.density <= high else "wall"
+    field = "wall_aluminium" if family(cut.part.material.density) == "aluminium" else "wall"
     limit = getattr(limits, field)
     hinges = []
     for neck in _necks(cut, "material", limit):

@@ -43,9 +43,9 @@ def run(args: argparse.Namespace) -> int:
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # before numpy: one thread, as every child
         os.environ[variable] = "1"
     from tactcad.bench import render, truth
-    from tactcad.bench.plan import Mode, Plan
-    from tactcad.bench.run import SCHEMA
-    from tactcad.bench.run import run as measure
+    from tactcad.bench.run_plan import Mode, RunPlan
+    from tactcad.bench.session import SCHEMA
+    from tactcad.bench.session import run as measure
     from tactcad.design.files import scratch_folder
     from tactcad.export.publication import turn
 
@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     seed = _seed(args.seed, args.full)
     with turn(args.out, SCHEMA, args.others, say.line) if args.out else nullcontext() as work:
         with scratch_folder("bench") as scratch:
-            plan = Plan(mode, seed, scratch)
+            plan = RunPlan(mode, seed, scratch)
             say.line(f"{mode} run, seed {plan.seed}")
             result = measure(plan, names, say.step)
             files = render.files(result)
@@ -70,7 +70,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(only: list[str] | None) -> list[str]:
-    from tactcad.bench.run import BENCHMARKS
+    from tactcad.bench.session import BENCHMARKS
     from tactcad.design.messages import InputError, one_of
 
     for name in only or ():

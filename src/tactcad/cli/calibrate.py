@@ -1,15 +1,23 @@
-"""tactcad calibrate FILE [--load-cell K] [--level P] [--drop-outliers] [--out FILE] [--json]"""
+"""tactcad calibrate FILE [--load-cell K | --design DESIGN] [--level P] [--drop-outliers] [--out FILE]
+[--json]"""
 
 from __future__ import annotations
 
 import argparse
 import sys
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import InputError
+
+if TYPE_CHECKING:
+    from tactcad.lab.load_cell import LoadCell
 
 EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
   tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
   tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
-  tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
+  tactcad calibrate mine.csv --design my-sensor.toml                      the load cell as its [calibration]
+  has it tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
@@ -26,6 +34,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
         "assumed); the "
         "intervals hold for every load cell within them",
+    )
+    parser.add_argument(
+        "--design",
+        metavar="DESIGN",
+        help="take the load cell and its limits from the design's [calibration] instead "
+        "(load_cell_stiffness, load_cell_accuracy)",
     )
     parser.add_argument(
         "--run-scatter",
@@ -46,14 +60,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.lab import calibration, calibration_text, readings
-    from tactcad.lab.load_cell import LoadCell
-    from tactcad.paper import published
 
     from .progress import slow_work
 
     if args.out:
         refuse_overwriting(args.out, args.file)
-    load_cell = LoadCell.parse(args.load_cell or str(published.load().figure["load_cell_stiffness"]))
+    load_cell = _load_cell(args.load_cell, args.design)
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         rows = calibration.calibrate(
@@ -72,3 +84,23 @@ def run(args: argparse.Namespace) -> int:
         else calibration_text.to_text(rows, load_cell, args.level)
     )
     return 0
+
+
+def _load_cell(given: str | None, design: str | None) -> LoadCell:
+    """What is typed, else the design's, else the paper's with limits that are assumed."""
+    from tactcad.lab.load_cell import LoadCell
+
+    if design is None:
+        from tactcad.paper import published
+
+        return LoadCell.parse(given or str(published.load().figure["load_cell_stiffness"]))
+    if given is not None:
+        raise InputError(
+            "--load-cell", "stands in the design's [calibration]; leave out one of both", value=given
+        )
+    from tactcad.parts.designs import load
+
+    rig = load(design).calibration
+    if rig is None:
+        raise InputError(f"design {design}", "has no [calibration] table, where its load cell would stand")
+    return LoadCell(rig.load_cell_stiffness, rig.load_cell_accuracy * rig.load_cell_stiffness)

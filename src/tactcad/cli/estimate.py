@@ -13,7 +13,7 @@ from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
 
 if TYPE_CHECKING:
-    from tactcad.design.tree import Design
+    from tactcad.design.tree import Design, Tolerance
     from tactcad.mechanics.accuracy import Choice
     from tactcad.parts.layout import Layout
 
@@ -110,11 +110,12 @@ def run(args: argparse.Namespace) -> int:
         asdict(row) | {"expected_error": e}
         for row, e in zip(estimate(layout, model, args.force, mesh), errors)
     ]
+    shares = _shares(layout, model)
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
-        print(json.dumps(_document(design, model, rows, uncut) | _chosen(choice, accuracy), indent=2))
+        print(json.dumps(_document(design, model, rows, uncut, shares) | _chosen(choice, accuracy), indent=2))
     else:
-        print(_report(layout, model, rows, uncut))
+        print(_report(design, model, rows, uncut, shares))
         if choice and accuracy:
             print(_why(choice, accuracy))
     return 0
@@ -211,7 +212,8 @@ def _worst(rows: list[dict]) -> float | None:
     return None if None in errors else max(errors)
 
 
-def _document(design: Design, model: str, rows: list[dict], uncut: dict | None) -> dict:
+def _document(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> dict:
+    from tactcad.lab import material_text
     from tactcad.mechanics.accuracy import accuracy_data
 
     document = {
@@ -224,19 +226,25 @@ def _document(design: Design, model: str, rows: list[dict], uncut: dict | None) 
         "expected_error": _worst(rows),
         "reference": accuracy_data()["reference"],
         "elements": rows,
+        "as_built": [
+            {"number": row["number"]} | {field: float(share[i]) for field, share in (shares or {}).items()}
+            for i, row in enumerate(rows)
+        ],
     }
-    return document | ({"uncut": uncut} if uncut else {})
+    return document | material_text.record(design) | ({"uncut": uncut} if uncut else {})
 
 
-def _report(layout: Layout, model: str, rows: list[dict], uncut: dict | None) -> str:
+def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, shares: dict | None) -> str:
+    from tactcad.lab import material_text
     from tactcad.mechanics.accuracy import stated
 
-    design, first = layout.design, rows[0]
+    first = rows[0]
     lines = [
         f"{design.name} {design.design.revision}, {design.material.alloy}, rung {model}, "
         f"{first['force']:g} N on each pad",
         *_table([_shown(row) for row in rows]),
     ]
+    lines += material_text.lines(design, [row["stiffness"] for row in rows])
     plastic = [str(row["number"]) for row in rows if not row["elastic"]]
     if plastic:
         lines.append(
@@ -251,8 +259,8 @@ def _report(layout: Layout, model: str, rows: list[dict], uncut: dict | None) ->
         )
     if (worst := _worst(rows)) is not None:
         lines.append(stated(worst))
-    if model in FITTED:
-        lines.append(_spread(layout, model))
+    if shares:
+        lines += _spread(design.tolerance, shares)
     return "\n".join(lines)
 
 
@@ -281,13 +289,32 @@ def _cell(row: dict, field: str, spec: str) -> str:
     return "-" if row["elastic"] else "invalid"
 
 
-def _spread(layout: Layout, model: str) -> str:
-    """What the hinge's tolerance does to these numbers, by the rung's own derivative."""
-    from tactcad.mechanics.derivative import elasticity
+def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
+    """What the hinge's tolerance does to these numbers, and what all of [tolerance] does, worst element."""
+    from tactcad.mechanics.as_built import together
+
+    alone = shares["hinge_thickness"]
+    least, most = float(alone.min()), float(alone.max())
+    share = f"{alone.mean():.1%}" if most < 1.1 * least else f"{least:.1%} to {most:.1%}"
+    total = together(shares)
+    worst = int(total.argmax())
+    largest = sorted(shares, key=lambda field: -shares[field][worst])
+    parts = ", ".join(
+        f"{field} {shares[field][worst]:.1%}" for field in largest if shares[field][worst] > 0.0005
+    )
+    return [
+        f"as cut: hinge thickness +-{1e3 * tolerance.hinge_thickness:g} um alone is K +-{share}; measure it",
+        f"as built: all of [tolerance] together K +-{total[worst]:.1%} at no. {worst + 1} "
+        f"(root of squares): {parts}",
+    ]
+
+
+def _shares(layout: Layout, model: str) -> dict | None:
+    """Relative half-widths of every element's K, by field of [tolerance]; None by a rung that knows no
+    fillets."""
+    if model not in FITTED:
+        return None
+    from tactcad.mechanics.as_built import half_widths
     from tactcad.parts.hinge_section import hinge_section
 
-    section, tolerance = hinge_section(layout, layout.elements), layout.design.tolerance.hinge_thickness
-    shares = elasticity(section, "hinge_thickness", model) * tolerance / section.hinge_thickness
-    least, most = float(shares.min()), float(shares.max())
-    share = f"{shares.mean():.1%}" if most < 1.1 * least else f"{least:.1%} to {most:.1%}"
-    return f"as cut: hinge thickness +-{1e3 * tolerance:g} um alone is K +-{share}; measure it"
+    return half_widths(hinge_section(layout, layout.elements), layout.design.tolerance, model)

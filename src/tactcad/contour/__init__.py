@@ -1,6 +1,6 @@
 """Lines, arcs and closed contours in mm: the truth that every output is made from.
 
-In: exact points, radii, corners. Out: contours, their area and moments, cuts, offsets, distances, all in
+In: exact points, radii, corners. Out: contours, their area and moments, cuts, distances, all in
 closed form.
 """
 

@@ -14,10 +14,23 @@ ON_LINE_MM = 1e-9  # nearer to the cut than this counts as on it: rounding, not 
 def cut(
     contour: Contour, axis: Literal["x", "y"], at: float, keep: Literal["below", "above"], name: str = "cut"
 ) -> tuple[Contour, ...]:
-    """The parts of the enclosed area on one side of the line x = at (or y = at), mm.
+    """The parts of the enclosed area on one side of a line parallel to an axis.
 
-    Counter-clockwise contours; what lies along the cut is a line of the given name. None is left where the
-    whole contour lies on the other side.
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    axis, at
+        The line x = at or y = at, mm.
+    keep
+        Which side is kept.
+    name
+        Of the lines that then lie along the cut.
+
+    Returns
+    -------
+    tuple of Contour
+        Counter-clockwise; none where the whole contour lies on the other side.
     """
     i = 0 if axis == "x" else 1
     side = -1.0 if keep == "below" else 1.0
@@ -40,9 +53,19 @@ def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("c
 
 
 def crossings(contour: Contour, axis: Literal["x", "y"], at: float) -> list[float]:
-    """Sorted other coordinates (mm) at which the line x = at (or y = at) crosses the contour.
+    """Where a line parallel to an axis crosses a contour.
 
-    A vertex on the line counts once for each segment that ends there.
+    Parameters
+    ----------
+    contour
+        A closed contour, mm.
+    axis, at
+        The line x = at or y = at, mm.
+
+    Returns
+    -------
+    list of float
+        The other coordinates (mm), sorted; a vertex on the line counts once for each segment that ends there.
     """
     i = 0 if axis == "x" else 1
     crossed = [p[1 - i] for s in contour for p in _crossings(s, i, at)]

@@ -141,9 +141,29 @@ def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...
 def numeric(
     table: Table, fields: tuple[Field, ...], optional: tuple[Field, ...] = (), least: int = 1
 ) -> Rows:
-    """The numeric columns `fields` (and `optional` where present) of a table of `least` rows.
+    """Numeric columns of a table.
 
-    Raises InputError: a column missing, too few rows, text for a number, a number outside its legal range.
+    Parameters
+    ----------
+    table
+        As `read_table` gives it.
+    fields
+        Columns that have to be there.
+    optional
+        Columns that are read where they are there.
+    least
+        Rows that have to be there.
+
+    Returns
+    -------
+    Rows
+        Each column as float64, shape (rows,), in the field's unit.
+
+    Raises
+    ------
+    InputError
+        With line and column: a column missing, too few rows, text for a number, a number outside its legal
+        range.
     """
     require_columns(table, [f.name for f in fields])
     chosen = fields + tuple(f for f in optional if f.name in table.header)
@@ -178,9 +198,23 @@ def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
 
 
 def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comments: bool = True) -> Table:
-    """A CSV file up to its header; `kind` says in messages what was expected ("readings (CSV)").
+    """A CSV file up to its header.
 
-    Raises InputError: file not there, not text, no header, a column named twice.
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    kind
+        What was expected, for messages: "readings (CSV)".
+    most_bytes
+        What is larger is refused unread.
+    comments
+        Whether lines that start with # are left out.
+
+    Raises
+    ------
+    InputError
+        With line and column: file not there, not text, no header, a column named twice.
     """
     shown, text = str(path), read_text(path, most_bytes, kind)
     hint = re.match(r"sep=.\r?\n", text)  # Excel's

@@ -41,10 +41,21 @@ REFUSED_BY_MACHINE = NO_ROOM | {
 
 
 def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
-    """All bytes of a regular file; `kind` says in messages what was expected ("a design file (TOML)").
+    """All bytes of a regular file.
 
-    Raises InputError where there is no such file, or it is a folder, pipe or device, larger than
-    `most_bytes`, or may not be read.
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    most_bytes
+        What is larger is refused unread.
+    kind
+        What was expected, for messages: "a design file (TOML)".
+
+    Raises
+    ------
+    InputError
+        Where there is no such file, it is a folder, pipe or device, too large, or may not be read.
     """
     shown = str(path)
     if "\0" in shown:
@@ -71,8 +82,17 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
 
 
 def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
-    """The same as UTF-8 text, without a byte order mark. Raises InputError, with line and column (in bytes)
-    where it is not UTF-8.
+    """All of a regular file as UTF-8 text, without a byte order mark.
+
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_bytes`; with line and column (in bytes) where it is not UTF-8, or holds a NUL.
     """
     data = read_bytes(path, most_bytes, kind)
     try:
@@ -92,9 +112,18 @@ def read_text(path: str | Path, most_bytes: int, kind: str) -> str:
 
 
 def read_json(path: str | Path, most_bytes: int, kind: str) -> Any:
-    """The value of a JSON file. Raises InputError, with line and column where it is not JSON.
+    """The value of a JSON file.
 
-    NaN and infinities, which JSON has not, are refused too.
+    Parameters
+    ----------
+    path, most_bytes, kind
+        As for `read_bytes`.
+
+    Raises
+    ------
+    InputError
+        As `read_text`; with line and column where it is not JSON, which has neither NaN nor infinities, where
+        it is nested too deeply, or where a text holds characters that nobody sees.
     """
     text = read_text(path, most_bytes, f"{kind} (JSON)")
     try:
@@ -198,9 +227,22 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
-    """Raises InputError where writing `out` would take away what is read: `out` is one of the inputs, under
-    whatever name or link, lies in a folder that is one, or is a folder with one in it. What is not there is
-    no matter.
+    """Refuse an output that would take away what is read.
+
+    Parameters
+    ----------
+    out
+        File or folder to be written.
+    inputs
+        Files and folders that are read; None and what is not there are no matter.
+    option
+        The option that names `out`, for the message.
+
+    Raises
+    ------
+    InputError
+        Where `out` is one of the inputs, under whatever name or link, lies in a folder that is one, or is a
+        folder with one in it.
     """
     absolute(out)  # a folder to start from is there
     place, around = _identity(out), _folders(out)

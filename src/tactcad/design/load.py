@@ -11,11 +11,11 @@ from typing import Any
 
 from .fields import Number, shown_text
 from .files import read_text
-from .materials import ALLOYS
+from .materials import ALLOYS, LOT_SPREAD, completed
 from .messages import InputError, near, one_of
 from .plain_numbers import as_number
 from .toml_text import parse_toml
-from .tree import Design, Element, Hinge, Stop
+from .tree import Design, Element, Hinge, SheetMaterial, Stop, Tolerance
 
 # A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
 MOST_BYTES = 1_000_000
@@ -88,8 +88,12 @@ def from_table(table: dict[str, Any]) -> Design:
         if name not in table and section.default is None:
             continue  # a rig that this design does not have
         values[name] = _section(kind, table.get(name, {}), name)
-    design = Design(**_with_alloy(values), origin={})
-    return dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
+    values["material"] = _material(values["material"])
+    values["tolerance"] = _tolerance(values["tolerance"], values["material"].alloy)
+    design = Design(**values, origin={})
+    design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
+    _ = design.differences  # refuses values that are not those of the material's name
+    return design
 
 
 SECTION_TYPES = {
@@ -151,16 +155,18 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
     return dict(sorted(gaps.items()))
 
 
-def _with_alloy(values: dict[str, Any]) -> dict[str, Any]:
-    """Fill in [material] from the alloy's table where the file says nothing."""
-    material = values["material"]
-    alloy = ALLOYS[material.alloy]
-    missing = {
-        f.name: float(getattr(alloy, f.name))
-        for f in dataclasses.fields(material)
-        if getattr(material, f.name) is None
-    }
-    return {**values, "material": dataclasses.replace(material, **missing)}
+def _material(given: SheetMaterial) -> SheetMaterial:
+    """[material] with what the file leaves out from the table of materials."""
+    return SheetMaterial(**completed(given.alloy, vars(given)))
+
+
+def _tolerance(given: Tolerance, alloy: str) -> Tolerance:
+    """[tolerance] with the spread of Young's modulus that the material's row has, where the file gives
+    none."""
+    if given.youngs_modulus is not None:
+        return given
+    row = ALLOYS.get(alloy)
+    return dataclasses.replace(given, youngs_modulus=row.spread["youngs_modulus"] if row else LOT_SPREAD)
 
 
 def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:

@@ -1,19 +1,44 @@
-"""Alloys of the sensing element: elastic constants and strength, each with where it is from."""
+"""Materials of the sensing element: the table of those known by name, and what a design's own values differ
+from it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import csv
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import isclose
+from pathlib import Path
+from typing import Any
 
-from .messages import InputError, one_of
+from .messages import InputError, in_brackets, near, one_of
+
+# A part that differs by more than this from what its name says is of another material, whatever the reason.
+MOST_DIFFERENCE = 0.10
+# Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as
+# the widest of the wrought alloys but the cold-rolled.
+LOT_SPREAD = 0.02
+# What a design may give, by the table's columns; the last three may stay unknown in a material of one's own.
+PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
+OPTIONAL = ("tensile_strength", "conductivity", "magnetic")
+MAGNETIC = ("no", "weakly", "yes")
+UNITS = {"poisson": "", "density": " kg/m3"}  # others: MPa
+# kg/m3: wrought alloys of these families lie between, and no other metal that is wire-cut does.
+FAMILIES = {
+    "aluminium": (2600.0, 2900.0),
+    "titanium": (4300.0, 4900.0),
+    "steel": (7500.0, 8150.0),
+    "copper": (8200.0, 9000.0),
+}
 
 
 @dataclass(frozen=True)
 class Alloy:
-    """A sheet alloy.
+    """A sheet material.
 
-    youngs_modulus, yield_strength, fatigue_strength (fully reversed, 5e8 cycles) and tensile_strength in MPa,
-    density in kg/m3. `tensile_strength` is None where it is not known; the Goodman line then ends at the
-    yield strength, which is Soderberg's.
+    youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in
+    kg/m3, conductivity in W/(m K). `tensile_strength` is None where it is not known; the Goodman line then
+    ends at the yield strength, which is Soderberg's. spread: relative, by property.
     """
 
     name: str
@@ -24,25 +49,133 @@ class Alloy:
     fatigue_strength: float
     source: str
     tensile_strength: float | None = None
+    conductivity: float | None = None
+    magnetic: str | None = None
+    standard: str = ""
+    temper: str = ""
+    spread: Mapping[str, float] = field(default_factory=dict)
 
 
-_TYPICAL = (
-    "typical values: E, yield, fatigue (R = -1, 5e8 cycles) after aerodynamicmetals.com data sheets; "
-    "density, Poisson's ratio and tensile strength after ASM Handbook vol. 2; not a guaranteed minimum"
-)
+@dataclass(frozen=True)
+class Difference:
+    """A property that a design has otherwise than the table's row of its name. origin: the value's source."""
 
-ALLOYS = {
-    alloy.name: alloy
-    for alloy in (
-        Alloy("6061-T6", 69000.0, 0.33, 2700.0, 275.0, 95.0, _TYPICAL, 310.0),
-        Alloy("2024-T3", 73000.0, 0.33, 2780.0, 345.0, 140.0, _TYPICAL, 483.0),
-        Alloy("7075-T6", 72000.0, 0.33, 2810.0, 505.0, 160.0, _TYPICAL, 572.0),
+    alloy: str
+    name: str
+    value: float
+    table: float
+    origin: str
+
+    @property
+    def relative(self) -> float:
+        return self.value / self.table - 1.0
+
+    def __str__(self) -> str:
+        side = "above" if self.relative > 0 else "below"
+        unit = UNITS.get(self.name, " MPa")
+        return (
+            f"{self.name} {self.value:g}{unit} is {abs(self.relative):.1%} {side} {self.alloy}'s "
+            f"{self.table:g}"
+        )
+
+
+def _table() -> dict[str, Alloy]:
+    """The rows of data/materials.csv."""
+    text = (Path(__file__).parent / "data" / "materials.csv").read_text("utf-8")
+    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
+    return {row["name"]: _alloy(row) for row in rows}
+
+
+def _alloy(row: dict[str, str]) -> Alloy:
+    prefix = "spread_"
+    return Alloy(
+        name=row["name"],
+        **{name: float(row[name]) for name in (*PROPERTIES, "tensile_strength", "conductivity")},
+        magnetic=row["magnetic"],
+        source=row["source"],
+        standard=row["standard"],
+        temper=row["temper"],
+        spread={
+            key.removeprefix(prefix): float(value) for key, value in row.items() if key.startswith(prefix)
+        },
     )
-}
+
+
+ALLOYS = _table()
+
+
+def family(density: float) -> str:
+    """Which metal a density (kg/m3) belongs to: aluminium, titanium, steel or copper; "" for none of them."""
+    return next((name for name, (low, high) in FAMILIES.items() if low <= density <= high), "")
+
+
+PLATE_ALLOYS = tuple(name for name, alloy in ALLOYS.items() if family(alloy.density) == "aluminium")
 
 
 def alloy(name: str) -> Alloy:
-    """The alloy of that name; raises InputError naming the legal ones."""
+    """The table's row of that name; raises InputError naming the legal ones."""
     if name not in ALLOYS:
         raise InputError("material.alloy", "unknown alloy", value=name, legal=one_of(name, ALLOYS))
     return ALLOYS[name]
+
+
+def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """The properties of a design's material: those given, else the table's. Raises InputError where the name
+    is not in the table and a property is missing, or is one of the table's in another spelling."""
+    row = ALLOYS.get(name)
+    if row:
+        return {key: getattr(row, key) if value is None else value for key, value in given.items()}
+    labels = f"{', '.join(ALLOYS)}; or a label of its own with {', '.join(PROPERTIES)}"
+    for known in ALLOYS:
+        if re.search(_spelled(known), name, re.IGNORECASE):
+            what = f"holds {known}, a name of the table: a label of its own must not"
+            raise InputError("material.alloy", what, value=name, legal=labels)
+    missing = next((key for key in PROPERTIES if given[key] is None), None)
+    if missing:
+        what = f"not in the table of materials, and {missing} is not given"
+        raise InputError("material.alloy", what, value=name, legal=labels + in_brackets(near(name, ALLOYS)))
+    return dict(given)
+
+
+def _spelled(name: str) -> str:
+    """A pattern for the name with any or no marks between its letters and digits, as a word of its own."""
+    return r"(?<![0-9])" + r"[\W_]*".join(re.findall("[0-9a-zA-Z]", name)) + r"(?![0-9a-zA-Z])"
+
+
+def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) -> tuple[Difference, ...]:
+    """What a design's material differs by from the table's row of its name; none for a label of its own.
+
+    Raises InputError where a value leaves the row by more than its spread and `origin` does not say where it
+    is from, or by more than MOST_DIFFERENCE.
+    """
+    row = ALLOYS.get(name)
+    if row is None:
+        return ()
+    if given["magnetic"] != row.magnetic:
+        raise InputError(
+            "material.magnetic", f"not {name}'s", value=given["magnetic"], legal=f"{row.magnetic!r}"
+        )
+    found = []
+    for key, spread in row.spread.items():
+        value, table = given[key], getattr(row, key)
+        if isclose(value, table, rel_tol=1e-9):
+            continue
+        path = f"material.{key}"
+        difference = Difference(name, key, value, table, origin.get(path, ""))
+        off = abs(difference.relative) * (1 - 1e-9)
+        if off > MOST_DIFFERENCE:
+            raise InputError(
+                path,
+                f"not {name}: {difference}",
+                value=value,
+                legal=f"within {MOST_DIFFERENCE:.0%} of it, or a label of its own in material.alloy",
+            )
+        if off > spread and not difference.origin:
+            raise InputError(
+                path,
+                f"{difference}, more than its spread of {spread:.1%}",
+                value=value,
+                legal=f'within it, or with the value\'s source in [origin] as "{path}" = "..."',
+            )
+        found.append(difference)
+    return tuple(found)

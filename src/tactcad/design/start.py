@@ -36,9 +36,21 @@ def name_of(path: Path) -> str:
 
 
 def started(source: str, name: str, today: date) -> str:
-    """The text of the design `source` under another name, at revision A of today, comments and origins kept.
+    """The text of a design under another name, its comments and origins kept.
 
-    Raises InputError where the source is no design, or its [design] is not written a value a line.
+    Parameters
+    ----------
+    source
+        The design to start from: a path, or a name in hardware/.
+    name
+        Of the new design.
+    today
+        Its date; its revision is A.
+
+    Raises
+    ------
+    InputError
+        Where the source is no design, or its [design] is not written a value a line.
     """
     text = read_text(find(source), MOST_BYTES, "a design file (TOML)").replace("\r\n", "\n")
     old, revision = parse_toml(text, source), parse(text, source).design.revision

@@ -8,9 +8,11 @@ of None is derived from other fields (design/layout.py says how).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
-from .materials import ALLOYS
+from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
+from .rigs import Calibration, Cart, Grasping, Holder, Sample
 
 # Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
 _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
@@ -42,21 +44,34 @@ class Identity:
     organisation: str = given(_line("legal owner, for the title block"))
 
 
+def _property(spec: Number | OneOf, optional: bool = False) -> Any:
+    left_out = "the table's value" + ("; unknown of a label of its own" if optional else "")
+    return given(spec, None, left_out)
+
+
 @dataclass(frozen=True)
 class SheetMaterial:
-    """[material]: the sheet that the elements are cut from."""
+    """[material]: the sheet that the elements are cut from. Of a name in the table (data/materials.csv) what
+    is left out is the table's; a label of its own needs all properties but the last three."""
 
-    alloy: str = given(OneOf(tuple(ALLOYS), "alloy and temper of the sheet"))
-    youngs_modulus: float | None = given(
-        Number("MPa", 1e3, 1e6, "Young's modulus"), None, "the alloy's value"
+    alloy: str = given(
+        TextLine(
+            r"[A-Za-z0-9](?:[A-Za-z0-9 .,+/()_-]{0,28}[A-Za-z0-9)+])?",
+            f"{', '.join(ALLOYS)}, or a label of its own (1 to 30 letters, digits, blanks and .,+/()_-)",
+            "material and temper of the sheet: a name of the table, or a label of its own",
+        )
     )
-    poisson: float | None = given(Number("", 0.0, 0.49, "Poisson's ratio"), None, "the alloy's value")
-    density: float | None = given(Number("kg/m3", 500, 25000, "density"), None, "the alloy's value")
-    yield_strength: float | None = given(
-        Number("MPa", 1, 5000, "0.2 % proof stress"), None, "the alloy's value"
+    youngs_modulus: float = _property(Number("MPa", 1e3, 1e6, "Young's modulus"))
+    poisson: float = _property(Number("", 0.0, 0.49, "Poisson's ratio"))
+    density: float = _property(Number("kg/m3", 500, 25000, "density"))
+    yield_strength: float = _property(Number("MPa", 1, 5000, "0.2 % proof stress"))
+    fatigue_strength: float = _property(Number("MPa", 1, 5000, "fatigue strength, R = -1, 5e8 cycles"))
+    tensile_strength: float | None = _property(
+        Number("MPa", 1, 5000, "tensile strength; where unknown, Goodman's line ends at yield"), optional=True
     )
-    fatigue_strength: float | None = given(
-        Number("MPa", 1, 5000, "fatigue strength, R = -1, 5e8 cycles"), None, "the alloy's value"
+    conductivity: float | None = _property(Number("W/(m K)", 0.1, 500, "thermal conductivity"), optional=True)
+    magnetic: str | None = _property(
+        OneOf(MAGNETIC, "whether a magnet draws it; on the drawing's notes"), optional=True
     )
 
 
@@ -148,7 +163,7 @@ class Clamp:
 
     screw: str = given(OneOf(("M2", "M2.5", "M3", "M4", "M5"), "clamping screws, ISO 4762 A2-70"), "M3")
     dowel: str = given(OneOf(("2", "2.5", "3", "4", "5"), "dowel diameter in mm, ISO 8734"), "3")
-    plate_alloy: str = given(OneOf(tuple(ALLOYS), "end plates and carrier"), "6061-T6")
+    plate_alloy: str = given(OneOf(PLATE_ALLOYS, "end plates and carrier"), "6061-T6")
     end_plate_thickness: float = given(Number("mm", 2, 40, "end plate along the row"), 8.0)
     end_plate_bottom: float = given(
         Number("mm", 0, 50, "end plates start this far over the flat face: clear of the object"), 0.5
@@ -220,94 +235,38 @@ class Readout:
 
 @dataclass(frozen=True)
 class Tolerance:
-    """[tolerance]: plus and minus, taken as two standard deviations; on drawings and in the budget."""
+    """[tolerance]: plus and minus, taken as two standard deviations; on drawings, in bands and budget.
+
+    docs/mechanics.md says where the defaults of what no drawing holds are from.
+    """
 
     hinge_thickness: float = given(Number("mm", 1e-4, 0.1, "hinge thickness"), 0.005)
     hinge_length: float = given(Number("mm", 1e-4, 0.5, "slot length"), 0.02)
+    fillet_radius: float = given(Number("mm", 1e-4, 0.5, "radius of the slot's fillets"), 0.02)
     load_arm: float = given(Number("mm", 1e-4, 1, "pad edges, and element in its clamp"), 0.05)
     sheet_thickness: float = given(Number("mm", 1e-4, 1, "sheet thickness"), 0.1)
     arm_height: float = given(Number("mm", 1e-4, 0.5, "arm height"), 0.02)
     pad_height: float = given(Number("mm", 1e-4, 0.5, "pad height over the dowel hole"), 0.01)
     tilt: float = given(Number("degree", 0, 5, "array against object"), 0.1)
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """[calibration]: the set-up that measures each element's stiffness."""
-
-    load_cell_stiffness: float = given(Number("N/mm", 0.01, 1e6, "force sensor's own stiffness"), 57.04)
-    load_cell_range: float = given(Number("N", 0.001, 1e5, "force sensor's range"), 5.0)
-    load_cell_resolution: float = given(Number("N", 0, 100, "force sensor's resolution"), 0.001)
-    step: float = given(Number("mm", 1e-5, 1, "micrometer step"), 0.025)
-    travel: float = given(Number("mm", 1e-4, 10, "whole displacement"), 0.150)
-    micrometer_resolution: float = given(Number("mm", 0, 0.1, "micrometer's resolution"), 0.0005)
-    friction: float = given(Number("", 0, 1, "friction between tip and pad"), 0.2)
-    load_point: float = given(Number("mm", 0, 1, "uncertainty of the load point along the arm"), 0.02)
-    stage_travel: float = given(
-        Number("mm", 0.5, 100, "horizontal micro-stages reach this far each way"), 12.5
+    youngs_modulus: float = given(
+        Number("", 0, 0.2, "Young's modulus of the lot, relative"),
+        None,
+        f"the spread of the material's row; {LOT_SPREAD:g} of a label of its own",
     )
-    axis_travel: float = given(
-        Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 6.5
+    recast_layer: float = given(
+        Number("mm", 0, 0.05, "layer of every cut face that carries nothing, at most"), 0.001
     )
-    retract: float = given(Number("mm", 0.1, 50, "tip is lifted this far before the stages move"), 1.0)
-    roller: str = given(
-        OneOf(("2", "2.5", "3"), "diameter in mm of the roller that touches the pad, ISO 8734"), "2"
+    clamp_compliance: float = given(
+        Number("rad/(N mm)", 0, 1e-3, "turn of the clamp under the moment at its edge, at most"), 1e-5
     )
-
-
-@dataclass(frozen=True)
-class Sample:
-    """[sample]: the rubber sample."""
-
-    thickness: float = given(Number("mm", 0.1, 100, "sample thickness"), 6.0)
-    poisson: float = given(Number("", 0, 0.4999, "Poisson's ratio"), 0.49)
-    stiffness: float = given(Number("N/mm", 1e-6, 1e6, "stiffness under one pad"), 3.85)
-    side: float = given(Number("mm", 4, 300, "side of the square sample"), 32.0)
-    step: float = given(Number("mm", 1e-4, 5, "step of the force sensor into the sample"), 0.050)
-    travel: float = given(Number("mm", 1e-3, 10, "whole way of the force sensor into the sample"), 0.300)
-
-
-@dataclass(frozen=True)
-class Grasping:
-    """[grasping]: array on a vertical axis over the sample, loaded by weights."""
-
-    moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), 3.235)
-    weight: float = given(Number("N", 1e-4, 1e3, "one added weight"), 0.980665)
-    weights: int = given(Whole(0, 1000, "how many weights are added"), 10)
-    lift: float = given(Number("mm", 1, 200, "the array is lifted this far to change the sample"), 20.0)
-    weight_diameter: float = given(Number("mm", 10, 120, "disc weights"), 50.0)
-    rail_length: float = given(Number("mm", 40, 600, "vertical guide rail, a multiple of 20"), 100.0)
-
-
-@dataclass(frozen=True)
-class Cart:
-    """[cart]: plate on four ball bearings that roll along the arms."""
-
-    bearing: str = given(
-        OneOf(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
+    zero_drift: float = given(
+        Number("", 0, 0.01, "dR/R by which a bridge's zero drifts during a grasp, by its leads' warmth"),
+        1.1e-5,
     )
-    length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
-    width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)
-    thickness: float = given(Number("mm", 2, 40, "plate"), 10.0)
-    wheel_base: float = given(Number("mm", 5, 400, "distance of the axles along the arms"), 50.0)
-    clearance: float = given(Number("mm", 0.1, 20, "plate over the base plate"), 2.0)
-    shim: float = given(Number("mm", 0.05, 5, "shim each side of a wheel's inner ring: its side play"), 0.5)
-    roll: float = given(Number("mm", 0.1, 50, "the cart may roll this far each way"), 5.0)
-
-
-@dataclass(frozen=True)
-class Holder:
-    """[holder]: vacuum holder of the sample, on the cart."""
-
-    vacuum_diameter: float = given(Number("mm", 4, 250, "holes and plenum lie inside this circle"), 26.0)
-    hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
-    rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), 3)
-    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), 6.0)
-    plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
-    floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
-    margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)
-    vacuum: float = given(Number("kPa", 1, 100, "below the air's pressure"), 40.0)
-    pull: float = given(Number("N", 0, 1000, "what may pull the sample off: tack of the pads"), 0.6)
+    creep: float = given(
+        Number("", 0, 0.1, "share of a gauge's signal that creeps under a held load, each decade of time"),
+        0.001,
+    )
 
 
 @dataclass(frozen=True)
@@ -376,3 +335,8 @@ class Design:
     @property
     def name(self) -> str:
         return self.design.name
+
+    @property
+    def differences(self) -> tuple[Difference, ...]:
+        """What the material differs by from the table's row of its name; see `materials.differences`."""
+        return differences(self.material.alloy, vars(self.material), self.origin)

@@ -31,10 +31,23 @@ def assembly_sheets(
     shapes: Mapping[str, TopoDS_Shape],
     draft: bool = False,
 ) -> list[DrawnSheet]:
-    """All sheets of the scene, their layout clean. `shapes` by part number, `rows` the scene's bill of
-    materials.
+    """All sheets of a scene, their layout clean.
 
-    Raises CheckFailure where the scene is larger than the sheet at 1:50, or a view leaves no clean layout.
+    Parameters
+    ----------
+    design, scene
+        What is drawn.
+    rows
+        The scene's bill of materials.
+    shapes
+        Solids by part number, each in its own frame, mm.
+    draft
+        Marks every sheet PRELIMINARY.
+
+    Raises
+    ------
+    CheckFailure
+        Where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
     """
     name = f"Assembly: {scene.name.replace('-', ' ')}"
     block = block_of(design.design, f"{design.name}-{scene.name}", name, draft)

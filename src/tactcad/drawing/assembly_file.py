@@ -81,8 +81,23 @@ def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
-    """What is wrong with an assembly's PDF: number, revision and sheet count on every page, an item that has
-    a solid without balloon, a row of the bill of materials that is not in the parts list."""
+    """What is wrong with an assembly's PDF.
+
+    Parameters
+    ----------
+    pdf
+        The written file.
+    number, revision
+        That every page has to name.
+    rows
+        The scene's bill of materials.
+
+    Returns
+    -------
+    list of str
+        Pages without number, revision or sheet count; items that have a solid and not just one balloon; rows
+        that are not in the parts list as the bill has them. Empty where nothing is wrong.
+    """
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):

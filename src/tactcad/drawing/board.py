@@ -8,8 +8,9 @@ from math import cos, hypot, radians, sin
 import numpy as np
 
 from .boxes import Box, Chord, Point, bounds, corners, grown, overlap
-from .dimension_lines import ARROW, HEIGHT, PAD, boxed, boxed_width, datum, datum_letter
-from .ink import THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
+from .dimension_lines import ARROW, HEIGHT, PAD, datum, datum_letter
+from .fonts import width
+from .ink import THIN, Fill, Item, Stroke, Text, arrow, bounds_of_items, polar, segment
 from .layout_check import BESIDE_LINE, Quad, chord_meets, quads_meet
 from .sheet_plan import Callout, Datum
 
@@ -143,9 +144,8 @@ class Board:
         if len(passed) < len(tried):
             return [], 0.0
         cost = reach + sum(passed) + (4.0 if abs(sin(radians(angle))) > 0.97 else 0.0)
-        head = [] if c.dot else [arrow(tip, elbow, ARROW, "leader")]
         lines = [segment(tip, elbow, THIN, "leader"), segment(elbow, start, THIN, "leader")]
-        return [*lines, *head, *texts, *extras], cost
+        return [*lines, arrow(tip, elbow, ARROW, "leader"), *texts, *extras], cost
 
     def free(self, quads: Sequence[Quad]) -> bool:
         """Whether texts may stand there: inside the area, on no view, over nothing."""
@@ -226,23 +226,14 @@ def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, 
     ]
 
 
-def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:
-    """Texts beside the shelf's end, the first line level with it; frames around what is a key or a datum."""
+def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Stroke]]:
+    """Texts beside the shelf's end, the first line level with it, and the frame of a datum's letter below."""
     x, y = start
-    key = int(c.boxed) if c.boxed else 0
-    wide = max(boxed_width(line, key if i == 0 else 0) for i, line in enumerate(c.lines))
-    gap = 0.0 if key else 1.0
-    left = x + gap if towards > 0 else x - gap - wide
+    wide = max(width(line, HEIGHT) for line in c.lines)
+    left = x + 1.0 if towards > 0 else x - 1.0 - wide
     base = y - HEIGHT / 2
     texts = [Text((left, base - STEP * i), line, HEIGHT) for i, line in enumerate(c.lines)]
-    extras: list[Item] = []
-    if key:
-        framed = boxed(texts[0], key)
-        texts = [t for t in framed if isinstance(t, Text)] + texts[1:]
-        extras += [item for item in framed if not isinstance(item, Text)]
-    if c.datum:
-        drop = y - STEP * len(c.lines) - 1.9
-        extras += datum_letter(c.datum, (left + 2.5, drop))
-        texts += [t for t in extras if isinstance(t, Text)]
-        extras = [item for item in extras if not isinstance(item, Text)]
-    return texts, extras
+    if not c.datum:
+        return texts, []
+    frame, letter = datum_letter(c.datum, (left + 2.5, y - STEP * len(c.lines) - 1.9))
+    return [*texts, letter], [frame]

@@ -119,8 +119,11 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
     return callouts
 
 
-def equal_radii(sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]]) -> list[Callout]:
-    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout."""
+def equal_radii(
+    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], tolerance: float | None = None
+) -> list[Callout]:
+    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout, with plus and
+    minus `tolerance` mm or the general one."""
     kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
     for name, row, arc in arcs:
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
@@ -128,7 +131,8 @@ def equal_radii(sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Ar
     for some in kinds.values():
         if new := [one for one in some if sketch.account.takes(one[1])]:
             name = " and ".join(dict.fromkeys(name for name, _, _ in new))
-            d = Dimension(name, tuple(row for _, row, _ in new), "R")
+            limits = (tolerance, -tolerance) if tolerance else None
+            d = Dimension(name, tuple(row for _, row, _ in new), "R", limits=limits)
             callouts.append(_radius_callout(sketch, view, d, [arc for _, _, arc in new]))
     return callouts
 

@@ -69,9 +69,24 @@ def compose(
     papers: Sequence[Paper],
     scales: Sequence[Scale] = SERIES,
 ) -> DrawnSheet:
-    """The sheet at the largest preferred scale, and on the first paper, at which its layout is clean.
+    """The sheet of a plan at the largest preferred scale, and on the first paper, at which its layout is
+    clean.
 
-    Raises NoPlace where no scale down to 1:10 fits, or none leaves a clean layout.
+    Parameters
+    ----------
+    plan
+        Views and what is written on them.
+    curves
+        Each view's curves by its name, mm of the part.
+    block
+        What the title block says; its scale is filled in.
+    papers, scales
+        To try, the best first.
+
+    Raises
+    ------
+    NoPlace
+        Where no scale fits, or none leaves a clean layout.
     """
     width_, height_ = _main_size(plan)
     said: list[str] = []
@@ -158,8 +173,7 @@ def _attempt(
         for callout in d.view.callouts:
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
                 return None, [f"callout {callout.lines[0]!r} finds no place"]
-    keys = tuple(d.text(plan.values) for d in plan.dimensions if d.key)
-    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items), keys)
+    sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items))
     return sheet, layout_faults(sheet)
 
 

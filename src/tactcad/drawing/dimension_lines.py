@@ -287,10 +287,11 @@ def datum(at: Point, away: Point, reach: float, letter: str) -> list[Item]:
     ]
 
 
-def datum_letter(letter: str, middle: Point) -> list[Item]:
+def datum_letter(letter: str, middle: Point) -> tuple[Stroke, Text]:
+    """A letter in its square."""
     x, y = middle
     square = Stroke(corners(grown((x, y, x, y), 2.5)), THIN, "symbol", True)
-    return [square, Text((x, y - HEIGHT / 2), letter, HEIGHT, "middle")]
+    return square, Text((x, y - HEIGHT / 2), letter, HEIGHT, "middle")
 
 
 def centre_lines(centre: Point, diameter: float, scale: float) -> list[Item]:

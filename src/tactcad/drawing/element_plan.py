@@ -154,11 +154,14 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
     )
 
 
-def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str]) -> list[Callout]:
-    """Fillets by name, equal ones together; none for a full round, whose width says it."""
+def _radii(
+    sketch: Sketch, view: View, o: Outline, names: Sequence[str], tolerance: float | None = None
+) -> list[Callout]:
+    """Fillets by name, equal ones together, with a tolerance of their own or the general one; none for a full
+    round, whose width says it."""
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
     arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
-    return equal_radii(sketch, view, arcs)
+    return equal_radii(sketch, view, arcs, tolerance)
 
 
 def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
@@ -203,7 +206,7 @@ def _hinge_view(
         linears.append(along)
         linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
-    called = _radii(sketch, view, o, fillets)
+    called = _radii(sketch, view, o, fillets, t.fillet_radius)
     if "slot_floor" not in o:
         arc = o.arc(next(n for n in fillets if n in o))
         ends = "full round" if one else "full round, both slots"

@@ -45,8 +45,20 @@ def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) ->
 
 
 def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:
-    """Key characteristics that do not stand exactly once, framed with their number, or not with the model's
-    value."""
+    """What is wrong with the key characteristics on a sheet.
+
+    Parameters
+    ----------
+    runs
+        Texts of the page in the order in which they were drawn.
+    keys
+        The part's key characteristics, in order.
+
+    Returns
+    -------
+    list of str
+        Those that do not stand exactly once, framed with their number, or not with the model's value.
+    """
     wrong, shown = [], []
     for n, c in enumerate(keys, start=1):
         at = [i for i, run in enumerate(runs) if run == f"K{n}"]

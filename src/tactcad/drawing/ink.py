@@ -194,16 +194,12 @@ Item = Stroke | DrawnArc | Fill | Hatch | Text
 
 @dataclass(frozen=True)
 class DrawnSheet:
-    """One sheet: its paper's size (mm), number and title, and everything on it in drawing order.
-
-    `keys` are the texts of its key characteristics, each of which has to stand on it exactly once.
-    """
+    """One sheet: its paper's size (mm), number and title, and everything on it in drawing order."""
 
     number: str
     title: str
     size: tuple[float, float]
     items: tuple[Item, ...]
-    keys: tuple[str, ...] = ()
 
     @property
     def texts(self) -> tuple[Text, ...]:

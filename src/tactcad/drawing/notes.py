@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tactcad.design.materials import ALLOYS
+from tactcad.design.materials import family
 from tactcad.parts.description import Part
 
 
@@ -42,7 +42,7 @@ def _wire_cut(part: Part) -> list[str]:
     ]
     if part.extrusion.openings:
         lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
-    if part.material.name in ALLOYS and part.material.density < 3000:  # aluminium
+    if family(part.material.density) == "aluminium":
         lines.append("Anti-electrolysis supply")
     return lines
 

@@ -85,9 +85,21 @@ class Drawing:
 
 
 def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
-    """What is seen of the placed shapes from the view's eye, in canonical order.
+    """What is seen of placed shapes, in canonical order.
 
     Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles, window by window.
+
+    Parameters
+    ----------
+    shapes
+        Each at its place, mm.
+    view
+        Where from.
+
+    Returns
+    -------
+    Drawing
+        Lines in the picture plane, mm, y up.
     """
     onto = projector(view.eye, view.right)
     if len(shapes) <= EXACT_UP_TO:
@@ -159,7 +171,17 @@ def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
 
 
 def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = None) -> bytes:
-    """The drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white; `marked` over it in blue."""
+    """A drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white.
+
+    Parameters
+    ----------
+    drawn
+        What is seen, mm; smaller than a hand it is shown enlarged.
+    title, description
+        What the file says of itself.
+    marked
+        Drawn over it in blue.
+    """
     x0, y0, x1, y1 = drawn.box
     left, top = x0 - MARGIN, y1 + MARGIN
     width, height = x1 - x0 + 2 * MARGIN, y1 - y0 + 2 * MARGIN
@@ -192,9 +214,20 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
 
 
 def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint) -> None:
-    """Raise CheckFailure unless the written picture spans what the placements' descriptions project to.
+    """Hold a written picture against the descriptions of what it shows.
 
-    Where models from files stand among them it spans the others at least, and all boxes at most.
+    Parameters
+    ----------
+    data
+        The SVG file.
+    placements, view
+        What it shows, and where from.
+
+    Raises
+    ------
+    CheckFailure
+        Where it does not span what the descriptions project to (within 0.05 mm); where models from files
+        stand among them it spans the others at least, and all boxes at most.
     """
     text = data.decode()
     points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]

@@ -117,8 +117,6 @@ class Callout:
     dimensions: tuple[Dimension, ...] = ()
     spans: tuple[tuple[float, float], ...] = ()  # of arcs: start and end angle, degrees, a target each
     datum: str = ""
-    boxed: str = ""  # a key characteristic's number
-    dot: bool = False
 
 
 @dataclass(frozen=True)

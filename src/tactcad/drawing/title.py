@@ -33,11 +33,9 @@ class TitleBlock:
     scale: str = ""
     sheet: int = 1
     sheets: int = 1
-    approval: str = ""  # empty: signed by hand
     material: str = ""
     mass: float | None = None
     finish: str = ""
-    language: str = "en"
 
 
 def block_of(identity: Identity, number: str, title: str, draft: bool) -> TitleBlock:
@@ -76,14 +74,14 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
                 (96, "Surface finish", t.finish),
                 (54, "Dimensions", "mm, angles in degrees"),
                 (15, "Paper", paper.name),
-                (15, "Language", t.language),
+                (15, "Language", "en"),
             ),
         ),
         (
             10,
             (
                 (46, "Created by", t.creator),
-                (46, "Approved by", t.approval),
+                (46, "Approved by", ""),  # signed by hand
                 (44, "Document type", t.document_type),
                 (44, "Document status", t.status),
             ),

@@ -57,9 +57,26 @@ def all_written(
     make: Callable[..., Written],
     say: Callable[[int, int, str], None] = lambda *_: None,
 ) -> list[Written]:
-    """What `make` makes of every order, in their order; side by side on the machine's cores where it pays.
+    """Make drawings side by side on the machine's cores.
 
-    Raises CheckFailure for the first that cannot be drawn, or where a process was killed.
+    Parameters
+    ----------
+    orders
+        What each drawing is made of.
+    make
+        Makes one; called in a process of its own.
+    say
+        Is told (done, total, text) at least every EVERY seconds.
+
+    Returns
+    -------
+    list of Written
+        In the orders' order.
+
+    Raises
+    ------
+    CheckFailure
+        For the first that cannot be drawn, or where a process was killed.
     """
     if not orders:
         return []

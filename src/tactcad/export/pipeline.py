@@ -75,13 +75,36 @@ class ExportOptions:
 def export(
     design: Design, options: ExportOptions, out: str | Path, progress: Progress, others: str = REFUSE
 ) -> Exported:
-    """Write the design's scenes to the folder `out`, all or nothing; `others` says what becomes of files
-    there that tactcad did not write so (publish.py).
+    """Write a design's scenes to a folder, all or nothing.
 
     Nothing is written where the folder already holds just this; the rules between fields, which the earlier
-    export kept, are tried only where something has to be made. Raises InputError where the design breaks a
-    rule, or `out` is not ours to replace or cannot be written, CheckFailure where a file does not read back
-    as it should, or where something in `out` had changed meanwhile and was kept.
+    export kept, are tried only where something has to be made.
+
+    Parameters
+    ----------
+    design
+        Read field by field.
+    options
+        Which scenes, in which pose and detail, with what besides.
+    out
+        The folder.
+    progress
+        Is told what is done, and why.
+    others
+        What becomes of files in the folder that tactcad did not write so (publication.py).
+
+    Returns
+    -------
+    Exported
+        What was made, and why; nothing where nothing had changed.
+
+    Raises
+    ------
+    InputError
+        Where the design breaks a rule, or `out` is not ours to replace or cannot be written.
+    CheckFailure
+        Where a file does not read back as it should, or where something in `out` had changed meanwhile and
+        was kept.
     """
     inputs = inputs_of(
         {"design": design, "options": options}, ROOMS, LIBRARIES + (DRAWN_WITH if options.drawings else ())

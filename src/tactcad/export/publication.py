@@ -163,12 +163,35 @@ class Work:
 def turn(
     directory: str | Path, schema: str, others: str = REFUSE, say: Say = _print, wait: float = WAIT_SECONDS
 ) -> Iterator[Work]:
-    """Be the only one who writes DIR, a folder of that schema; what killed runs left is settled first.
+    """Be the only one who writes a folder; what killed runs left is settled first.
 
-    Waits up to `wait` seconds for another process, and says so once. Raises InputError where DIR is not ours
-    to replace (see `looked_at`) or the place cannot be written to; CheckFailure where the wait was in vain,
-    the disk is full, or, after the new DIR stands, where something in the earlier one appeared meanwhile and
-    was kept. Whatever is raised inside, the earlier DIR stands.
+    Whatever is raised inside, the earlier folder stands.
+
+    Parameters
+    ----------
+    directory
+        The folder, DIR.
+    schema
+        Of the manifest that it has, or will have.
+    others
+        What becomes of files in it that tactcad did not write so: refuse, keep or discard.
+    say
+        Gets a line worth keeping, such as that another process is waited for.
+    wait
+        How long to wait for another process, s.
+
+    Yields
+    ------
+    Work
+        A folder to write into, and what lay in DIR when the turn came.
+
+    Raises
+    ------
+    InputError
+        Where DIR is not ours to replace (see `looked_at`), or the place cannot be written to.
+    CheckFailure
+        Where the wait was in vain, the disk is full, or, after the new DIR stands, where something in the
+        earlier one appeared meanwhile and was kept.
     """
     out = absolute(directory)
     kept: list[str] = []

@@ -41,8 +41,27 @@ PLACE_AGREES = 1e-7
 
 
 def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
-    """The part alone, in its own frame: one PRODUCT, no assembly. Raises CheckFailure if it reads back
-    otherwise."""
+    """A part alone as a STEP file: one PRODUCT, no assembly.
+
+    Parameters
+    ----------
+    part
+        What the file is compared with.
+    shape
+        Its solid in its own frame, mm.
+    header
+        What the file says of itself.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
+    """
     document, shape_tool = _document()
     _add_prototype(document, shape_tool, part, shape)
     data = _written(document, header)
@@ -51,9 +70,26 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
 
 
 def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header) -> bytes:
-    """A scene as an assembly named after header.name; shapes are by part number, each in its own frame.
+    """A scene as a STEP assembly named after the header.
 
-    Raises CheckFailure where the file does not read back to the same names, places and volumes.
+    Parameters
+    ----------
+    scene
+        Its placements become instances, named by designator, of one product a part.
+    shapes
+        Solids by part number, each in its own frame, mm.
+    header
+        What the file says of itself.
+
+    Returns
+    -------
+    bytes
+        The file in canonical form.
+
+    Raises
+    ------
+    CheckFailure
+        Where it does not read back to the same names, places (1e-7 mm) and volumes.
     """
     document, shape_tool = _document()
     prototypes = {p.part_no: _add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .elasticity import line_load
-from .mapped_mesh import PlaneMesh, merged, swept
+from .mapped_mesh import PlaneMesh, merged
 from .plane_elements import parabola
+from .space import AcrossSpace, line_load
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
     force = np.zeros_like(points)
     end = _on(points[:, 0], mesh.load_x)
     end = end[np.argsort(points[end, 1])]
-    force[end, 1] = line_load(points[end, 1], lambda z: parabola(z, mesh))
+    force[end, 1] = line_load(points[end, 1], lambda z: parabola(z, mesh), 2)
     supports = _supports(points, mesh, 2)
     _write(path, points, cells, "CPS8", f"{THIN}", E, nu, supports, force)
     return force
@@ -48,7 +48,7 @@ def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
 
 def write_solid(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, path: Path) -> Array:
     """Input file of the solid problem, 20-node bricks on half the width; returns nodal forces (nodes, 3)."""
-    bricks = swept(mesh, width / 2.0, across)
+    bricks = _swept(mesh, AcrossSpace.of(mesh, width / 2.0, across, 2))
     points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
     flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
     cells = _turned(points, cells, flipped)
@@ -76,6 +76,16 @@ def solid_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, across: 
     """Tip stiffness by CalculiX's C3D20, N/mm."""
     force = write_solid(mesh, E, nu, width, across, folder / "solid.inp")
     return 1.0 / ((4.0 if mesh.half else 2.0) * run(folder / "solid.inp", force))
+
+
+def _swept(mesh: PlaneMesh, across: AcrossSpace) -> Array:
+    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index."""
+    count = len(across.nodes) // 2
+    cells = np.empty((count, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(count):
+        cells[k, ..., 2] = across.nodes[2 * k : 2 * k + 3]
+    return cells.reshape(-1, 3, 3, 3, 3)
 
 
 def _turned(points: Array, cells: NDArray[np.int64], flipped: list[int]) -> NDArray[np.int64]:

@@ -8,13 +8,16 @@ from .plane_elements import PlaneSolution, solve_plane
 from .shape import ElementShape
 from .solid_elements import SolidSolution, solve_solid
 
-# Of nine-node elements' energy on this geometry, observed: 4 but for the clamp's corners (tests/fem).
-ORDER = 4.0
-PLANE_DENSITIES = (3, 6)
+ORDER = 4  # of the elements that fem-plane is solved with
+PLANE_DENSITIES = (1, 2)
+# Rate of the energy on these meshes, observed: 3.3 to 4.4, held back by the clamp's corners and the fillets'
+# ends where the faces' curvature jumps (tests/fem).
+RATE = 4.0
 SOLID_MESH = 2  # of fem-solid, where none is asked for
-# Of the solid's share between plane stress and plane strain, observed: 1.9 to 3.3 over 28 designs of the
-# box's edges and of the whole range (measured on densities 1, 2 and 4).
-SHARE_ORDER = 2.5
+ACROSS = 2  # order of the elements over the width beside the finest in the plane
+# By how much elements of twice the order err less in the solid's share between plane stress and plane strain:
+# observed 37 or more over the range's corners (tests/fem).
+GAIN = 16.0
 NO_POISSON = 1e-9  # relative: plane stress and plane strain are one problem, and so is the solid
 
 
@@ -26,11 +29,17 @@ def richardson(compliance: tuple[float, float], densities: tuple[int, int], orde
 
 @dataclass(frozen=True)
 class Converged:
-    """Compliance (mm/N), its estimated relative error, and the finest solution behind it."""
+    """Compliance (mm/N), its estimated relative error, and the solutions that it is made of.
+
+    plane     plane stress, on the finest mesh
+    solids    of a solid: the finest in the plane, then on the plane's coarsest mesh with finer and with the
+              finest's elements across
+    """
 
     compliance: float
     error: float
-    solution: PlaneSolution | SolidSolution
+    plane: PlaneSolution
+    solids: tuple[SolidSolution, ...] = ()
 
     @property
     def stiffness(self) -> float:
@@ -42,51 +51,39 @@ def converged_plane(
     shape: ElementShape, E: float, nu: float, width: float, *, plane_strain: bool = False
 ) -> Converged:
     """Rung fem-plane: two meshes and Richardson's limit; the error is what the limit adds to the finer."""
-    pair = [solve_plane(shape, E, nu, width, density=d, plane_strain=plane_strain) for d in PLANE_DENSITIES]
-    limit = richardson((pair[0].compliance, pair[1].compliance), PLANE_DENSITIES, ORDER)
+    pair = [
+        solve_plane(shape, E, nu, width, density=d, order=ORDER, plane_strain=plane_strain)
+        for d in PLANE_DENSITIES
+    ]
+    limit = richardson((pair[0].compliance, pair[1].compliance), PLANE_DENSITIES, RATE)
     return Converged(limit, abs(limit / pair[1].compliance - 1.0), pair[1])
 
 
 def converged_solid(
     shape: ElementShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
 ) -> Converged:
-    """Rung fem-solid on meshes of density mesh - 1 and `mesh` (2 or 3); `error` is what the limit adds to the
-    finer.
+    """Rung fem-solid by elements of order 2 `mesh` in the plane.
 
     On one mesh of the plane the solid stands between plane stress and plane strain, at the share
     chi = (C_stress - C_solid)/(C_stress - C_strain), which converges faster than the compliances: the three
-    problems miss the fillets by nearly the same share. Three steps: chi's limit in the plane by Richardson;
-    what finer meshes across the width add to it, found on the coarsest mesh in the plane, where it is cheap;
-    and the limits of plane stress and plane strain between which it stands.
+    problems miss the fillets by nearly the same share. Three steps: chi by the finest elements in the plane;
+    what elements of a higher order across the width add to it, found with quadratic ones in the plane, where
+    it is cheap; and the limits of plane stress and plane strain between which it stands.
     """
     stress, strain = (converged_plane(shape, E, nu, width, plane_strain=p) for p in (False, True))
-    fine = solve_solid(shape, E, nu, width, density=mesh, across=1)
+
+    orders = (2 * mesh, ACROSS), (2, ACROSS * mesh), (2, ACROSS)  # in the plane, across
+    solids = tuple(solve_solid(shape, E, nu, width, density=1, order=n, order_across=m) for n, m in orders)
     if abs(stress.compliance - strain.compliance) < NO_POISSON * stress.compliance:
-        return Converged(stress.compliance, stress.error, fine)
-    shares = {
-        (density, across): _share(shape, E, nu, width, density, across)
-        for density, across in {(1, 1), (1, 2), (mesh - 1, 1)}
-    } | {(mesh, 1): _share_of(fine, shape, E, nu, width, mesh)}
-    across = richardson((shares[1, 1], shares[1, 2]), (1, 2), ORDER) - shares[1, 1]
-    in_plane = richardson((shares[mesh - 1, 1], shares[mesh, 1]), (mesh - 1, mesh), SHARE_ORDER)
-
-    def between(share: float) -> float:
-        return stress.compliance - share * (stress.compliance - strain.compliance)
-
-    limit = between(in_plane + across)
-    return Converged(limit, abs(between(shares[mesh, 1] + across) / limit - 1.0) + stress.error, fine)
+        return Converged(stress.compliance, stress.error, stress.plane, solids)
+    fine, across, coarse = (_share(solid) for solid in solids)
+    limit = stress.compliance - (fine + across - coarse) * (stress.compliance - strain.compliance)
+    left = abs(fine - coarse) * (stress.compliance - strain.compliance) / GAIN
+    return Converged(limit, left / limit + stress.error, stress.plane, solids)
 
 
-def _share(shape: ElementShape, E: float, nu: float, width: float, density: int, across: int) -> float:
-    solid = solve_solid(shape, E, nu, width, density=density, across=across)
-    return _share_of(solid, shape, E, nu, width, density)
-
-
-def _share_of(
-    solid: SolidSolution, shape: ElementShape, E: float, nu: float, width: float, density: int
-) -> float:
-    """Where the solid stands between plane stress (0) and plane strain (1) of its own mesh in the plane."""
-    stress, strain = (
-        solve_plane(shape, E, nu, width, density=density, plane_strain=p).compliance for p in (False, True)
-    )
+def _share(solid: SolidSolution) -> float:
+    """Where the solid stands between plane stress (0) and plane strain (1) by the same elements of the
+    plane."""
+    stress, strain = (solid.flat(plane_strain).compliance for plane_strain in (False, True))
     return (stress - solid.compliance) / (stress - strain)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csc_matrix
@@ -47,23 +45,6 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
     rows = np.broadcast_to(dofs.reshape(-1, size, 1), (len(A), size, size))
     cols = np.broadcast_to(dofs.reshape(-1, 1, size), (len(A), size, size))
     return coo_matrix((A.ravel(), (rows.ravel(), cols.ravel())), shape=(dim * basis.N,) * 2).tocsc()
-
-
-def line_load(nodes: Array, load: Callable[[Array], Array]) -> Array:
-    """int N_i load dx over a line of quadratic elements with sorted nodes (2 m + 1), by Gauss points.
-
-    Four points: exact for the product of shape functions and a cubic on evenly spaced nodes.
-    """
-    xi, weights = np.polynomial.legendre.leggauss(4)
-    shape = np.stack([xi * (xi - 1.0) / 2.0, 1.0 - xi * xi, xi * (xi + 1.0) / 2.0])  # node, point
-    slope = np.stack([xi - 0.5, -2.0 * xi, xi + 0.5])
-    elements = np.lib.stride_tricks.sliding_window_view(nodes, 3)[::2]
-    x, dx = elements @ shape, elements @ slope
-    shares = (load(x) * dx * weights) @ shape.T
-    f = np.zeros(len(nodes))
-    for i in range(3):
-        f[i : i + 2 * len(elements) : 2] += shares[:, i]
-    return f
 
 
 def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:

@@ -1,98 +1,168 @@
-"""Strain along the faces of the hinge, from the displacements of the nodes on them."""
+"""Strain and stress along the faces of the hinge at mid-width, from the displacements of the nodes on
+them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
+from scipy.interpolate import CubicSpline
 
 from .plane_elements import PlaneSolution
+from .shape import ElementShape
 from .solid_elements import SolidSolution
+from .space import PlaneSpace, gauss, lagrange
 
 Array = NDArray[np.float64]
 
-# Gauss points of two an edge, where the derivative of a quadratic interpolation is most accurate
-_POINTS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+DENSE = 16  # places looked at for a peak or an end, for each point that the elements are read at
 
 
 @dataclass(frozen=True)
 class FaceStrain:
-    """Tangential strain per newton at points along one face; x from the hinge's centre towards the arm, mm.
+    """Strain and stress per newton at points along one face, in the order of the face.
 
-    `length` is the face's length (mm) that each point stands for. Positive in tension, for a force
-    that bends this face convex.
+    along        length along the face from its end at the body, mm
+    x            from the hinge's centre towards the arm, mm
+    strain       tangential, 1/N; positive in tension, for a force that bends this face convex
+    stress       tangential, MPa/N: the largest principal stress, of which the others are at most half, and so
+                 Tresca's too
+
+    Points are those of Gauss, where elements' strains err least; in between cubic splines.
     """
 
+    along: Array
     x: Array
-    length: Array
     strain: Array
+    stress: Array
 
     @property
     def peak(self) -> float:
         """Largest strain on the face, 1/N."""
-        return float(self.strain.max())
+        return self.largest(self.strain)
+
+    @property
+    def peak_stress(self) -> float:
+        """Largest stress on the face, MPa/N."""
+        return self.largest(self.stress)
 
     @property
     def centre(self) -> float:
-        """Strain at the hinge's centre, 1/N, by a parabola through the nearest points."""
-        near = np.argsort(np.abs(self.x))[:6]
-        return float(np.polynomial.polynomial.polyfit(self.x[near], self.strain[near], 2)[0])
+        """Strain at the hinge's centre, 1/N."""
+        return float(CubicSpline(self.along, self.strain)(self._at(np.zeros(1)))[0])
 
-    def mean(self, grid: float) -> float:
-        """Mean over |x| <= grid/2, weighted by face length, 1/N: what a gauge's grid of that length reads."""
-        order = np.argsort(self.x)
-        total = np.concatenate([[0.0], np.cumsum((self.strain * self.length)[order])])
-        along = np.concatenate([[0.0], np.cumsum(self.length[order])])
-        # points stand for equal shares left and right of them: cumulative sums hold at the borders between
-        x = self.x[order]
-        borders = np.concatenate([[2 * x[0] - x[1]], (x[1:] + x[:-1]) / 2.0, [2 * x[-1] - x[-2]]])
-        ends = (-grid / 2.0, grid / 2.0)
-        return float(
-            np.diff(np.interp(ends, borders, total))[0] / np.diff(np.interp(ends, borders, along))[0]
-        )
+    def mean(self, grid: Array | float) -> Array:
+        """Mean over |x| <= grid/2, weighted by face length, 1/N: what gauges' grids of these lengths read."""
+        ends = self._at(np.multiply.outer((-0.5, 0.5), grid))
+        integral = CubicSpline(self.along, self.strain).antiderivative()(ends)
+        return (integral[1] - integral[0]) / (ends[1] - ends[0])
+
+    def largest(self, values: Array) -> float:
+        """Largest of a quantity that is given at the points."""
+        near = slice(max(0, (at := int(values.argmax())) - 1), at + 2)
+        places = np.linspace(self.along[near][0], self.along[near][-1], 2 * DENSE + 1)
+        return float(CubicSpline(self.along, values)(places).max())
+
+    def _at(self, x: Array) -> Array:
+        """Length along the face at places x."""
+        return np.interp(x, *self._places)
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        count = len(self.along)
+        along = np.interp(np.arange(DENSE * (count - 1) + 1) / DENSE, np.arange(count), self.along)
+        return CubicSpline(self.along, self.x)(along), along
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What is read off a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge face,
+    the largest strain (1/N) and principal stress (MPa/N) of the gauge face and of the slot's."""
+
+    gauge: Array
+    face_strain: float
+    face_stress: float
+    fillet_strain: float
+    fillet_stress: float
+
+    def __mul__(self, other: Readings) -> Readings:
+        return Readings(*(a * b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
+    def __truediv__(self, other: Readings) -> Readings:
+        return Readings(*(a / b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
+
+def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float) -> Readings:
+    slot, flat = face_strain(solution, "slot"), face_strain(solution, "flat")
+    return Readings(flat.mean(grid_length), flat.peak, flat.peak_stress, slot.peak, slot.peak_stress)
+
+
+def solid_readings(
+    plane: PlaneSolution, solids: tuple[SolidSolution, ...], grid_length: Array | float
+) -> Readings:
+    """Of the solid, on the mesh of the plane that `plane` (in plane stress) is solved on: its readings times
+    how much the solid differs from plane stress by the same, coarser elements, times what a higher order
+    across changes.
+
+    `solids`: the finest in the plane, then two of one coarser order there, the first of a higher order
+    across, the second of the finest's.
+    """
+    fine, across, coarse = (readings(s, grid_length) for s in solids)
+    flat = readings(solids[0].flat(), grid_length)
+    return readings(plane, grid_length) * fine / flat * across / coarse
 
 
 def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrain:
-    """Strain along the "slot" face (upper floor and its fillets), or the "flat" face below the hinge.
+    """Along the "slot" face (upper floor and its fillets), or the "flat" face below the hinge.
 
     A solid is read on its mid-plane y = 0. A two-sided hinge has a slot face on both sides, equal and
     opposite; its "flat" face is the lower one. Reaches from wall to wall of the slot, on a flat
     face over its whole length.
     """
-    mesh = solution.mesh
-    shape = mesh.shape
+    space, shape = solution.space, solution.mesh.shape
     upper = face == "slot" or shape.two_sided
-    nodes = solution.basis.doflocs
-    on_plane = np.ones(nodes.shape[1], dtype=bool) if len(nodes) == 2 else nodes[2] < 1e-9
-    fillets = (shape.arm.slot_corner(upper=True), shape.body.slot_corner(upper=True))
-    centre = (fillets[0].wall + fillets[1].wall) / 2.0
-    edges = _face_edges(mesh.cells, shape, upper)
-    index = _lookup(nodes[:2, on_plane], edges)
-    u = solution.displacement[:2, on_plane][:, index]  # component, edge, node
-    p = np.moveaxis(edges, -1, 0)
-    # derivative of the quadratic through nodes at -1, 0, 1
-    xi = _POINTS
-    weights = np.stack([xi - 0.5, -2.0 * xi, xi + 0.5])  # node, point
-    dp, du = (np.einsum("cen,nq->ceq", q, weights) for q in (p, u))
-    speed = np.hypot(*dp)
-    value = np.stack([xi * (xi - 1.0) / 2.0, 1.0 - xi * xi, xi * (xi + 1.0) / 2.0])
-    x = np.einsum("en,nq->eq", p[0], value) - centre
+    walls = shape.arm.slot_corner(upper=True).wall, shape.body.slot_corner(upper=True).wall
     direction = 1.0 if shape.arm.end > shape.body.end else -1.0
-    strain = np.sum(dp * du, axis=0) / speed**2
+    x = direction * (space.nodes[0] - sum(walls) / 2.0)
+    edges = _in_order(_face_edges(space, shape, upper), x)
+    points, _ = gauss(space.order)
+    value, slope = lagrange(space.order, points)
+    u = solution.displacement[:2].reshape(2, space.nodes.shape[1], -1)[:, :, 0]  # at mid-width
+    tangent, moved = (np.einsum("cen,nq->ceq", q[:, edges], slope) for q in (space.nodes, u))
+    speed = np.hypot(*tangent)
     # a force towards +z bends the upper face hollow
     sign = -1.0 if upper else 1.0
-    return FaceStrain(direction * x.ravel(), speed.ravel(), sign * strain.ravel())
+    strain = sign * np.sum(tangent * moved, axis=0) / speed**2
+    E, nu = solution.youngs_modulus, solution.poisson
+    if isinstance(solution, SolidSolution):
+        across = sign * np.einsum("en,nq->eq", _strain_across(solution)[edges], value)
+    else:
+        across = np.zeros_like(strain) if solution.plane_strain else -nu * strain
+    stress = E / (1.0 - nu * nu) * (strain + nu * across)
+    columns = _lengths(speed), np.einsum("en,nq->eq", x[edges], value), strain, stress
+    return FaceStrain(*(q.ravel() for q in columns))
 
 
-def _face_edges(cells: Array, shape, upper: bool) -> Array:
-    """(edges, 3, 2) node coordinates of element edges on the hinge's face."""
-    sides = np.concatenate([cells[:, :, 0], cells[:, :, 2], cells[:, 0], cells[:, 2]])
-    x, z = sides[..., 0], sides[..., 1]
-    near = 1e-9 * np.ptp(cells[..., 0])
+def _strain_across(solution: SolidSolution) -> Array:
+    """d u_y/dy at mid-width at the plane's nodes.
+
+    u_y is odd in y: the odd powers through the nodes of the first element know its slope at y = 0 better than
+    that element's own.
+    """
+    first = slice(1, solution.across.order + 1)
+    y = solution.across.nodes[first]
+    return solution.displacement[2][:, first] @ np.linalg.inv(y[:, None] ** (2 * np.arange(len(y)) + 1))[0]
+
+
+def _face_edges(space: PlaneSpace, shape: ElementShape, upper: bool) -> NDArray[np.int64]:
+    """Nodes of the elements' edges on the hinge's face."""
+    edges = space.edges
+    x, z = space.nodes[:, edges]
+    near = 1e-9 * np.ptp(space.nodes[0])
     if not upper:
-        return sides[np.all(np.abs(z - shape.low) < near, axis=1)]
+        return edges[np.all(np.abs(z - shape.low) < near, axis=1)]
     on = np.abs(z - shape.high) < near
     fillets = [shape.arm.slot_corner(upper=True), shape.body.slot_corner(upper=True)]
     inside = (x > min(f.wall for f in fillets) - near) & (x < max(f.wall for f in fillets) + near)
@@ -103,10 +173,23 @@ def _face_edges(cells: Array, shape, upper: bool) -> Array:
         radius = np.hypot(x - centre[0], z - centre[1])
         quarter = (outward * (x - centre[0]) > -near) & (z < centre[1] + near)
         faces |= np.all((np.abs(radius - fillet.radius) < near) & quarter, axis=1)
-    return sides[faces]
+    return edges[faces]
 
 
-def _lookup(nodes: Array, edges: Array) -> NDArray[np.int64]:
-    """Index of the node at each edge point."""
-    _, index = cKDTree(nodes.T).query(edges.reshape(-1, 2))
-    return index.reshape(edges.shape[:2])
+def _in_order(edges: NDArray[np.int64], x: Array) -> NDArray[np.int64]:
+    """The edges one after the other towards rising x, as their nodes."""
+    edges = np.where((x[edges[:, 0]] > x[edges[:, -1]])[:, None], edges[:, ::-1], edges)
+    return edges[np.argsort(x[edges[:, 0]])]
+
+
+def _lengths(speed: Array) -> Array:
+    """Length along the face (mm) of every Gauss point, from how fast each edge runs there."""
+    points, weights = gauss(speed.shape[1])
+    powers = np.vander(np.array(points), increasing=True)
+    exponents = np.arange(1, len(points) + 1)
+    # integrals from -1 to each point of the polynomials through the points
+    rising = (
+        (np.array(points)[:, None] ** exponents - (-1.0) ** exponents) / exponents @ np.linalg.inv(powers)
+    )
+    edges = speed @ weights
+    return (np.cumsum(edges) - edges)[:, None] + speed @ rising.T

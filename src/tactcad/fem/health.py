@@ -11,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator, onenormest
 
 from . import elasticity
 from .mapped_mesh import PlaneMesh
-from .plane_elements import end_nodes, fixed_unknowns, parabola, solve_plane
+from .plane_elements import end_load, fixed_unknowns, solve_plane
 from .shape import ElementShape
 
 Array = NDArray[np.float64]
@@ -37,12 +37,12 @@ class Health:
 def plane_health(shape: ElementShape, E: float, nu: float, width: float, density: int) -> Health:
     """Of the plane-stress problem that `solve_plane` solves on that density."""
     solution = solve_plane(shape, E, nu, width, density=density)
-    basis, mesh = solution.basis, solution.mesh
-    A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=True)) * width
-    end = end_nodes(basis.doflocs, mesh)
+    space, mesh = solution.space, solution.mesh
+    A = space.stiffness(*elasticity.lame(E, nu, plane_stress=True)) * width
+    end, load = end_load(space, mesh)
     f = np.zeros(A.shape[0])
-    f[2 * end + 1] = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))
-    free = np.setdiff1d(np.arange(len(f)), fixed_unknowns(basis.doflocs, mesh, 2))
+    f[2 * end + 1] = load
+    free = np.setdiff1d(np.arange(len(f)), fixed_unknowns(space.nodes, mesh, 2))
     reduced = A[free][:, free].tocsc()
     solve = elasticity.factorised(reduced).solve
     inverse = LinearOperator(reduced.shape, matvec=solve, rmatvec=solve, dtype=float)

@@ -1,4 +1,4 @@
-"""Mapped quadratic mesh of a hinge shape: blocks of curved nine-node quadrilaterals, nodes on the contour.
+"""Mapped mesh of a hinge shape: blocks of curved quadrilaterals of any order, nodes on the contour.
 
 Each root is a fan: the hinge strip opens under the fillet into a quarter ring about the slot's corner,
 and rings grow outwards to the block's rectangle::
@@ -21,23 +21,25 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from skfem import ElementHex2, ElementQuad2, MeshHex2, MeshQuad2
-from skfem.assembly.dofs import Dofs
-from skfem.mesh import MeshHex, MeshQuad
 
 from tactcad.design.messages import CheckFailure
 
 from .shape import Block, ElementShape
 
-Grid = NDArray[np.float64]  # (2 nx + 1, 2 ny + 1, 2): nodes of a block of nx x ny quadratic elements
+Array = NDArray[np.float64]
+Grid = Array  # (order nx + 1, order ny + 1, 2): nodes of a block of nx x ny elements
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
 SAME_POINT = 1e-10  # of the mesh's size: rounding, far below any element
 SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are none
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
-ROWS = 2  # from a flat face or the mid-line to a slot's floor, on the coarsest mesh; even
+# Fillet radii: height of the row of elements at a slot's floor, and twice that its length, on the coarsest
+# mesh.
+NEAR = 1.0
 MOUTH = 2  # least elements under a fillet, on the coarsest mesh
-COLUMN = 0.6  # longest element along hinge and fillet, in hinge thicknesses, on the coarsest mesh
+# Longest element beside a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh.
+COLUMN = 0.6
+LONGEST = 10.0  # columns: of an element between the fillets
 # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
 STEEP = 4.0
 TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
@@ -45,15 +47,19 @@ TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns b
 
 @dataclass(frozen=True)
 class PlaneMesh:
-    """Nine-node quadrilaterals. `cells` (n, 3, 3, 2): node coordinates by local (x, z) index, mm.
+    """Quadrilaterals. `cells` (n, order + 1, order + 1, 2): node coordinates by local (x, z) index, mm.
 
     `half`: only the upper half of a shape that is symmetric about the mid-line z = middle.
     """
 
-    cells: NDArray[np.float64]
+    cells: Array
     shape: ElementShape
     half: bool
     middle: float
+
+    @property
+    def order(self) -> int:
+        return self.cells.shape[1] - 1
 
     @property
     def load_x(self) -> float:
@@ -64,18 +70,19 @@ class PlaneMesh:
         return self.shape.body.end
 
 
-def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False) -> PlaneMesh:
-    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way.
+def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order: int = 2) -> PlaneMesh:
+    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way, of
+    that order.
 
     A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
     slots from both faces differ in length or radius.
     """
     shape = _without_slivers(shape)
     if not shape.two_sided:
-        cells = _half(shape, shape.low, upper=True, density=density)
+        cells = _half(shape, shape.low, True, density, order)
         return PlaneMesh(cells, shape, False, shape.low)
     middle = (shape.low + shape.high) / 2.0
-    upper = _half(shape, middle, upper=True, density=density)
+    upper = _half(shape, middle, True, density, order)
     if not whole and _symmetric(shape, middle):
         return PlaneMesh(upper, shape, True, middle)
     for block in (shape.arm, shape.body):
@@ -84,54 +91,19 @@ def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False) -> Pl
             raise CheckFailure(
                 "slots from both faces differ in length or radius; the mapped mesh cannot join them"
             )
-    lower = _half(shape, middle, upper=False, density=density)
+    lower = _half(shape, middle, False, density, order)
     return PlaneMesh(np.concatenate([upper, lower]), shape, False, middle)
 
 
-def quad_mesh(mesh: PlaneMesh) -> MeshQuad2:
-    """The same as scikit-fem's mesh."""
-    corners = mesh.cells[:, ::2, ::2].reshape(-1, 4, 2)[:, [0, 2, 3, 1]]  # counter-clockwise in (x, z)
-    points, cells = merged(corners)
-    linear = MeshQuad(np.ascontiguousarray(points.T), np.ascontiguousarray(cells.T))
-    if len(points) - linear.facets.shape[1] + len(cells) != 1:  # Euler: a disc without holes
-        raise RuntimeError("the mapped mesh is torn: blocks do not share their nodes")
-    dofs = Dofs(linear, ElementQuad2())
-    nodes = np.empty((2, dofs.N))
-    for local, (u, v) in enumerate(np.rint(2 * ElementQuad2.doflocs).astype(int)):
-        nodes[:, dofs.element_dofs[local]] = mesh.cells[:, u, v].T
-    return MeshQuad2(nodes, linear.t)
+def layers(half_width: float, thickness: float, density: int) -> Array:
+    """Where the elements over half the width end, from y = 0 to the free side, mm.
 
-
-def hex_mesh(mesh: PlaneMesh, half_width: float, density: int) -> MeshHex2:
-    """The plane mesh swept over half the width as scikit-fem's mesh; axes x, z, y."""
-    cells = swept(mesh, half_width, density)
-    element = ElementHex2()
-    places = np.rint(2 * element.doflocs).astype(int)
-    corners = np.stack([cells[:, u, v, w] for u, v, w in places[:8]], axis=1)
-    points, index = merged(corners)
-    linear = MeshHex(np.ascontiguousarray(points.T), np.ascontiguousarray(index.T))
-    dofs = Dofs(linear, element)
-    nodes = np.empty((3, dofs.N))
-    for local, (u, v, w) in enumerate(places):
-        nodes[:, dofs.element_dofs[local]] = cells[:, u, v, w].T
-    return MeshHex2(nodes, linear.t)
-
-
-def swept(mesh: PlaneMesh, half_width: float, density: int) -> NDArray[np.float64]:
-    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index, from y = 0 to the free side.
-
-    Layers shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    They shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
     """
-    y = half_width * (1.0 - _graded(half_width, SIDE_LAYER * mesh.shape.thickness, density)[::-1])
-    layers = len(y) // 2
-    cells = np.empty((layers, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
-    cells[..., :2] = mesh.cells[None, :, :, :, None]
-    for k in range(layers):
-        cells[k, ..., 2] = y[2 * k : 2 * k + 3]
-    return cells.reshape(-1, 3, 3, 3, 3)
+    return half_width * (1.0 - _graded(half_width, SIDE_LAYER * thickness, density)[::-1])
 
 
-def merged(corners: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def merged(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     """Unique points of (elements, corners, dim), and each element's indices into them.
 
     Points are one where they share a cell of either of two shifted grids, so that no grid line can
@@ -181,7 +153,7 @@ def _symmetric(shape: ElementShape, middle: float) -> bool:
     return mirrored(shape.arm) and mirrored(shape.body)
 
 
-def _half(shape: ElementShape, middle: float, upper: bool, density: int) -> NDArray[np.float64]:
+def _half(shape: ElementShape, middle: float, upper: bool, density: int, order: int) -> Array:
     """Elements on one side of the line z = middle."""
     sign = 1.0 if upper else -1.0
     strip_height = (shape.high if upper else shape.low) - middle
@@ -191,7 +163,11 @@ def _half(shape: ElementShape, middle: float, upper: bool, density: int) -> NDAr
     column = COLUMN * shape.thickness
     to_arm, to_body = (max(0.0, abs(f.wall - centre) - f.radius) for _, f in fillets)
     straight = to_arm + to_body > 0.0
-    grids = [_strip(to_arm, to_body, sign * strip_height, column, density)] if straight else []
+    steps, finest = density * order, NEAR * min(f.radius for _, f in fillets)
+    rows = _between(_halved([0.0, 0.5, 1.0], finest / abs(strip_height)), steps)
+    grids = (
+        [_strip(to_arm, to_body, column, 2.0 * finest, steps, sign * strip_height * rows)] if straight else []
+    )
     for block, fillet in fillets:
         face = sign * ((block.high if upper else block.low) - middle)
         heights = [abs(z - middle) for z in (block.low, block.high)] if shape.two_sided else [face]
@@ -205,16 +181,19 @@ def _half(shape: ElementShape, middle: float, upper: bool, density: int) -> NDAr
             square_height=min(heights),
             column=column,
         )
-        grids += [grid * (direction, 1.0) for grid in root.grids(density)]
-    cells = np.concatenate([_cells(grid) for grid in grids])
+        grids += [grid * (direction, 1.0) for grid in root.grids(steps, rows)]
+    cells = np.concatenate([_cells(grid, order) for grid in grids])
     return cells * (arm_direction, sign) + (centre, middle)
 
 
-def _strip(to_arm: float, to_body: float, height: float, column: float, density: int) -> Grid:
-    """The hinge between the fillets' ends, x from -to_body to to_arm."""
-    columns = _count((to_arm + to_body) / column) * density
-    x = np.linspace(-to_body, to_arm, 2 * columns + 1)
-    z = np.linspace(0.0, height, 2 * ROWS * density + 1)
+def _strip(to_arm: float, to_body: float, column: float, finest: float, steps: int, z: Array) -> Grid:
+    """The hinge between the fillets' ends, x from -to_body to to_arm, z at the rows' nodes."""
+    middle, half = (to_arm - to_body) / 2.0, (to_arm + to_body) / 2.0
+    sizes = [min(finest, column)]
+    while sum(sizes) < half * (1.0 - 1e-6):
+        sizes.append(min(GROWTH * sizes[-1], LONGEST * column))
+    inwards = np.concatenate([[0.0], np.cumsum(sizes)]) / sum(sizes)
+    x = middle + half * _between([*(inwards - 1.0), *(1.0 - inwards[-2::-1])], steps)
     return np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1)
 
 
@@ -230,20 +209,21 @@ class _Root:
     square_height: float  # lesser height of the halves that share the mid-line
     column: float  # longest element along the fillet
 
-    def grids(self, density: int) -> list[Grid]:
+    def grids(self, steps: int, rows: Array) -> list[Grid]:
+        """`steps`: from node to node over the length of an element of the coarsest mesh; `rows`: shares of
+        the strip's height at which its rows of nodes stand, 1/2 among them."""
         reach = self.end - self.wall
         inner = self.strip_height + self.radius
         mouth = min(inner, 0.7 * reach)
         if self.height <= inner * (1.0 + 1e-3):
             raise CheckFailure("the slot's fillet reaches the outer face of arm or body")
         side_x, side_z = self._square(reach, inner)
-        rows = ROWS * density
-        angle = np.linspace(0.0, pi / 2.0, 2 * rows + 1)
+        angle = pi / 2.0 * rows
         ring = np.stack([self.wall + mouth * np.cos(angle), inner * np.sin(angle)], axis=-1)
 
         strip_end = self.wall - self.radius
-        columns = max(MOUTH, _count(pi / 2.0 * self.radius / self.column)) * density
-        u = np.linspace(0.0, 1.0, 2 * columns + 1)
+        columns = max(MOUTH, _count(pi / 4.0 * self.radius / self.column))
+        u = np.linspace(0.0, 1.0, columns * steps + 1)
         turn = pi / 2.0 * u
         arc = np.stack(
             [strip_end + self.radius * np.sin(turn), self.strip_height + self.radius * (1 - np.cos(turn))],
@@ -253,27 +233,25 @@ class _Root:
         floor = np.stack(
             [strip_end + self.radius * np.sin(turn) + mouth * (1.0 - np.cos(turn)), np.zeros_like(u)], axis=-1
         )
-        left = _edge((strip_end, 0.0), (strip_end, self.strip_height), np.linspace(0.0, 1.0, 2 * rows + 1))
+        left = _edge((strip_end, 0.0), (strip_end, self.strip_height), rows)
         grids = [_coons(floor, arc, left, ring, 1.0 if self.radius <= STEEP * self.strip_height else 3.0)]
 
-        step = pi / 2.0 * inner / ROWS
-        u = _graded((side_x - mouth + side_z - inner) / 2.0, step, density)
+        u = _graded((side_x - mouth + side_z - inner) / 2.0, pi / 4.0 * inner, steps)
         corner = (self.wall + side_x, side_z)
-        diagonal = _edge(ring[rows], corner, u)
+        diagonal = _edge(ring[steps], corner, u)
         foot = _edge(ring[0], (self.wall + side_x, 0.0), u)
         wall = _edge(ring[-1], (self.wall, side_z), u)
-        half = np.linspace(0.0, 1.0, rows + 1)
-        right = _edge((self.wall + side_x, 0.0), corner, half)
-        top = _edge(corner, (self.wall, side_z), half)
-        grids += [_coons(foot, diagonal, ring[: rows + 1], right), _coons(diagonal, wall, ring[rows:], top)]
+        right = _edge((self.wall + side_x, 0.0), corner, 2.0 * rows[: steps + 1])
+        top = _edge(corner, (self.wall, side_z), 2.0 * rows[steps:] - 1.0)
+        grids += [_coons(foot, diagonal, ring[: steps + 1], right), _coons(diagonal, wall, ring[steps:], top)]
 
         if reach > side_x * (1.0 + 1e-12):
-            columns = _count((reach - side_x) / side_z) * density
-            x = np.linspace(self.wall + side_x, self.end, 2 * columns + 1)
+            columns = _count((reach - side_x) / side_z)
+            x = np.linspace(self.wall + side_x, self.end, columns * steps + 1)
             grids.append(np.stack(np.meshgrid(x, right[:, 1], indexing="ij"), axis=-1))
         if self.height > side_z * (1.0 + 1e-12):
-            tall = _count((self.height - side_z) / side_x) * density
-            z = np.linspace(side_z, self.height, 2 * tall + 1)
+            tall = _count((self.height - side_z) / side_x)
+            z = np.linspace(side_z, self.height, tall * steps + 1)
             grids.append(np.stack(np.meshgrid(top[::-1, 0], z, indexing="ij"), axis=-1))
             if reach > side_x * (1.0 + 1e-12):
                 grids.append(np.stack(np.meshgrid(x, z, indexing="ij"), axis=-1))
@@ -298,16 +276,29 @@ def _count(lengths: float) -> int:
     return max(1, ceil(lengths - 1e-6))
 
 
-def _edge(start, end, u: NDArray[np.float64]) -> NDArray[np.float64]:
+def _edge(start, end, u: Array) -> Array:
     start, end = np.asarray(start), np.asarray(end)
     return start + u[:, None] * (end - start)
 
 
-def _graded(length: float, step: float, density: int) -> NDArray[np.float64]:
-    """0 to 1 in steps that grow geometrically from about step/length."""
+def _halved(ends: list[float], finest: float) -> list[float]:
+    """Elements' ends with the last element halved towards its end until it is no longer than `finest`."""
+    ends = list(ends)
+    while ends[-1] - ends[-2] > finest * (1.0 + 1e-6):
+        ends.insert(-1, (ends[-1] + ends[-2]) / 2.0)
+    return ends
+
+
+def _between(ends: list[float], steps: int) -> Array:
+    """The elements' ends with each element in that many steps."""
+    return np.interp(np.arange(steps * (len(ends) - 1) + 1) / steps, np.arange(len(ends)), ends)
+
+
+def _graded(length: float, step: float, steps: int) -> Array:
+    """0 to 1 in elements that grow geometrically from about step/length, each in that many steps."""
     rings = max(1, round(1e-9 + log(1.0 + max(length, step) / step * (GROWTH - 1.0)) / log(GROWTH)))
     rate = rings * log(GROWTH)
-    return np.expm1(rate * np.linspace(0.0, 1.0, 2 * rings * density + 1)) / np.expm1(rate)
+    return np.expm1(rate * np.linspace(0.0, 1.0, rings * steps + 1)) / np.expm1(rate)
 
 
 def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid, power: float = 1.0) -> Grid:
@@ -322,12 +313,13 @@ def _coons(bottom: Grid, top: Grid, left: Grid, right: Grid, power: float = 1.0)
     return (1 - v) * bottom[:, None] + v * top[:, None] + (1 - u) ** power * bulges[0] + u**power * bulges[1]
 
 
-def _share(edge: Grid) -> NDArray[np.float64]:
+def _share(edge: Grid) -> Array:
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(edge, axis=0).T))])
     return lengths / lengths[-1] if lengths[-1] > 0.0 else np.linspace(0.0, 1.0, len(edge))
 
 
-def _cells(grid: Grid) -> NDArray[np.float64]:
-    """(n, 3, 3, 2) elements of a block's node grid."""
-    windows = np.lib.stride_tricks.sliding_window_view(grid, (3, 3), axis=(0, 1))[::2, ::2]
-    return np.moveaxis(windows.reshape(-1, 2, 3, 3), 1, -1)
+def _cells(grid: Grid, order: int) -> Array:
+    """(n, order + 1, order + 1, 2) elements of a block's node grid."""
+    side = order + 1
+    windows = np.lib.stride_tricks.sliding_window_view(grid, (side, side), axis=(0, 1))[::order, ::order]
+    return np.moveaxis(windows.reshape(-1, 2, side, side), 1, -1)

@@ -10,20 +10,20 @@ from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.section import HingeSection
 
 from .convergence import SOLID_MESH, Converged, converged_plane, converged_solid
-from .face_strain import face_strain
+from .face_strain import Readings, readings, solid_readings
 from .shape import ElementShape, reference_shape
 
 
 @dataclass(frozen=True)
 class ElementResult:
     """Of one element: stiffness (N/mm, friction at the pad included), its estimated relative error from
-    the mesh, and strains per newton (1/N): mean under the grid, peak on the gauge face and at the fillet."""
+    the mesh, and strains and stresses per newton: at mid-width, and in plane stress, whose stress is what
+    equilibrium leaves for the mean over a solid's width."""
 
     stiffness: float
     error: float
-    gauge_strain: float
-    face_peak: float
-    fillet_peak: float
+    readings: Readings
+    flat: Readings
 
 
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
@@ -59,7 +59,6 @@ def solve(
     Raises CheckFailure where the design is impossible or the mesh cannot follow it.
     """
     found = converged(s, rung, shape, mesh)
-    slot, flat = face_strain(found.solution, "slot"), face_strain(found.solution, "flat")
-    return ElementResult(
-        found.stiffness * float(friction.factor(s)), found.error, flat.mean(grid_length), flat.peak, slot.peak
-    )
+    flat = readings(found.plane, grid_length)
+    read = solid_readings(found.plane, found.solids, grid_length) if found.solids else flat
+    return ElementResult(found.stiffness * float(friction.factor(s)), found.error, read, flat)

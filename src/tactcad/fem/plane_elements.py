@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from skfem import Basis, ElementQuad2
 
 from tactcad.account import making
 
 from . import elasticity
-from .mapped_mesh import PlaneMesh, plane_mesh, quad_mesh
+from .mapped_mesh import PlaneMesh, plane_mesh
 from .shape import ElementShape
+from .space import PlaneSpace, line_load
 
 Array = NDArray[np.float64]
 
@@ -23,9 +23,12 @@ class PlaneSolution:
 
     compliance: float
     displacement: Array
-    basis: Basis
+    space: PlaneSpace
     mesh: PlaneMesh
     unknowns: int
+    youngs_modulus: float
+    poisson: float
+    plane_strain: bool
 
     @property
     def stiffness(self) -> float:
@@ -40,35 +43,37 @@ def solve_plane(
     width: float,
     *,
     density: int = 3,
+    order: int = 2,
     plane_strain: bool = False,
     whole: bool = False,
 ) -> PlaneSolution:
     """Clamped at the body's end, parabolic shear of 1 N on the arm's end; work-conjugate deflection."""
-    with making("elements", f"plane, density {density}"):
-        return _solved(shape, E, nu, width, density, plane_strain, whole)
+    with making("elements", f"plane, density {density}, order {order}"):
+        mesh = plane_mesh(shape, density, whole, order)
+        return solved(E, nu, width, mesh, PlaneSpace.of(mesh), plane_strain)
 
 
-def _solved(
-    shape: ElementShape, E: float, nu: float, width: float, density: int, plane_strain: bool, whole: bool
+def solved(
+    E: float, nu: float, width: float, mesh: PlaneMesh, space: PlaneSpace, plane_strain: bool
 ) -> PlaneSolution:
-    mesh = plane_mesh(shape, density, whole)
-    quads = quad_mesh(mesh)
-    basis = Basis(quads, ElementQuad2(), intorder=4)
-    A = elasticity.stiffness_matrix(basis, *elasticity.lame(E, nu, plane_stress=not plane_strain)) * width
+    """`solve_plane` on a mesh and its space."""
+    A = space.stiffness(*elasticity.lame(E, nu, plane_stress=not plane_strain)) * width
     f = np.zeros(A.shape[0])
-    end = end_nodes(basis.doflocs, mesh)
-    f[2 * end + 1] = elasticity.line_load(basis.doflocs[1, end], lambda z: parabola(z, mesh))
-    u = elasticity.solve(A, f, fixed_unknowns(basis.doflocs, mesh, 2))
+    end, load = end_load(space, mesh)
+    f[2 * end + 1] = load
+    u = elasticity.solve(A, f, fixed_unknowns(space.nodes, mesh, 2))
     # the mirrored half carries the other half of the force, and as much energy
     compliance = (2.0 if mesh.half else 1.0) * (f @ u)
-    return PlaneSolution(float(compliance), u.reshape(-1, 2).T, basis, mesh, A.shape[0])
+    u = u.reshape(-1, 2).T
+    return PlaneSolution(float(compliance), u, space, mesh, A.shape[0], E, nu, plane_strain)
 
 
-def end_nodes(nodes: Array, mesh: PlaneMesh) -> NDArray[np.int64]:
-    """Indices of the nodes on the arm's end, sorted by z, and for a solid by y within that."""
-    found = np.flatnonzero(np.abs(nodes[0] - mesh.load_x) < 1e-9 * np.ptp(nodes[0]))
-    keys = [np.rint(row[found] / (1e-7 * np.ptp(nodes[0]))) for row in nodes[1:]]
-    return found[np.lexsort(keys[::-1])]
+def end_load(space: PlaneSpace, mesh: PlaneMesh) -> tuple[NDArray[np.int64], Array]:
+    """Nodes on the arm's end, sorted by z, and the parabolic shear's forces there, N."""
+    x, z = space.nodes
+    end = np.flatnonzero(np.abs(x - mesh.load_x) < 1e-9 * np.ptp(x))
+    end = end[np.argsort(z[end])]
+    return end, line_load(z[end], lambda z: parabola(z, mesh), space.order)
 
 
 def parabola(z: Array, mesh: PlaneMesh) -> Array:

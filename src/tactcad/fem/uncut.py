@@ -10,6 +10,7 @@ from tactcad.contour import Contour
 from . import elasticity
 from .free_mesh import Fine, triangle_mesh
 from .shape import ElementShape
+from .space import line_load
 
 LARGEST = 0.6  # mm of an element far from anything
 
@@ -49,6 +50,6 @@ def uncut_compliance(
     on_pad = np.flatnonzero((np.abs(z - face) < 1e-9) & (x > x0 - 1e-9) & (x < x1 + 1e-9))
     on_pad = on_pad[np.argsort(x[on_pad])]
     f = np.zeros(A.shape[0])
-    f[2 * on_pad + 1] = elasticity.line_load(x[on_pad], lambda q: np.full_like(q, 1.0 / (x1 - x0)))
+    f[2 * on_pad + 1] = line_load(x[on_pad], lambda q: np.full_like(q, 1.0 / (x1 - x0)), basis.elem.maxdeg)
     u = elasticity.solve(A, f, np.concatenate([2 * held, 2 * held + 1]))
     return float(f @ u)

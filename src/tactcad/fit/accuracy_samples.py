@@ -25,10 +25,11 @@ from .fit_samples import FULL_ROUND_SHARE, Columns, as_written, draw_edges, sect
 SEED = 1618
 SOLID_PART, REFINED_PART = 8, 16  # two designs in so many with solid elements, and with refined ones
 REFINED_EDGES = 12
+REFINED_LENGTH = 5.0  # hinge thicknesses
 THICKNESS = 0.25  # mm; all else goes with it, and stiffness is free of size
 LONGEST_BODY = 141.0  # thicknesses: of the fit's samples; a longer one is a beam and only costs elements
-# Most elements in the plane, on its coarsest mesh, for which solids of density 3 and 4 are still affordable.
-# Where there are more the hinge is long and thin, and coarser meshes err less.
+# Most elements in the plane, on its coarsest mesh, for which meshes 3 and 4 are still affordable. Where there
+# are more the hinge is long and thin, and mesh 2 errs less.
 MOST_CELLS = {2: 1000, 3: 80, 4: 45}
 
 
@@ -40,7 +41,7 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
     rows: list[dict[str, float]] = []
     while len(rows) < count:
         g = {k: math.exp(rng.uniform(math.log(low), math.log(high))) for k, (low, high) in groups.items()}
-        row = _design(g, full_round=rng.random() < FULL_ROUND_SHARE) | {"two_sided": float(len(rows) % 2)}
+        row = design(g, full_round=rng.random() < FULL_ROUND_SHARE) | {"two_sided": float(len(rows) % 2)}
         written = as_written([row])
         too_long = row["body_length"] > LONGEST_BODY * THICKNESS
         if not too_long and not validity.broken_rules(section(written), "solid"):
@@ -49,17 +50,14 @@ def draw_range(count: int, seed: int = SEED) -> Columns:
 
 
 def draw_refined(count: int = REFINED_EDGES, seed: int = SEED + 1) -> Columns:
-    """`count` designs on the promised box's edges whose meshes are small enough to be refined to density
-    4."""
+    """`count` designs on the promised box's edges whose hinges are short enough to be refined to mesh 4."""
     drawn = draw_edges(6 * count, seed)
     s = section(drawn)
-    small = [
-        i for i in range(6 * count) if len(plane_mesh(reference_shape(s.rows(i)), 1).cells) <= MOST_CELLS[4]
-    ]
+    small = np.flatnonzero(s.hinge_length < REFINED_LENGTH * s.hinge_thickness)
     return {name: values[small[:count]] for name, values in drawn.items()}
 
 
-def _design(g: dict[str, float], full_round: bool) -> dict[str, float]:
+def design(g: dict[str, float], full_round: bool) -> dict[str, float]:
     t = THICKNESS
     length, height, body = g["l/t"] * t, g["h/t"] * t, g["Hb/t"] * t
     return {

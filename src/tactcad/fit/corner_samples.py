@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.mapped_mesh import plane_mesh, swept
+from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import validity
 from tactcad.mechanics.constants import ladder_data
@@ -31,7 +31,7 @@ DRAWS = {
 # there the sheet is neither in plane stress nor in plane strain.
 ENDS, SLOT_ENDS, WIDTH_ENDS = (0.25, 0.25), (0.1, 0.1), (0.5, 0.1)
 INWARD = 1e-6  # relative: a written corner is still inside
-FEW = 150  # elements of the coarsest solid mesh: some seconds a design
+FEW = 150  # quadratic elements, layers that grow by 1.8 from half a thickness: some seconds a design
 
 
 def draw_corners(count: int, seed: int) -> Columns:
@@ -125,7 +125,8 @@ def compute_corners(columns: Columns, solids: int, report: Callable[[str], None]
 
 def few_elements(s: HingeSection) -> bool:
     """Whether a design (scalars) is cheap by solid elements: narrow, and neither long nor deep."""
-    return len(swept(plane_mesh(reference_shape(s), 1), float(s.width) / 2.0, 1)) <= FEW
+    layers = math.log1p(0.8 * float(s.width / s.hinge_thickness)) / math.log(1.8)
+    return len(plane_mesh(reference_shape(s), 1).cells) * max(1, round(layers)) <= FEW
 
 
 def plane_stiffness(s: HingeSection) -> float:

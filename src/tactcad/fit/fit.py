@@ -312,7 +312,7 @@ def _summary(error: Array) -> dict[str, float | None]:
 
 
 def _width_weights(s: HingeSection) -> Array:
-    """All designs alike, but slots that are next to none: they have a promise of their own (accuracy_table)."""
+    """All designs alike, but for slots that are next to none: they have a promise of their own."""
     return np.where(s.hinge_length < NEXT_TO_NONE * s.hinge_thickness, 0.5, 1.0)
 
 

@@ -90,7 +90,8 @@ class _PerNewton:
 
     gauge: Array
     fillet: Array
-    fillet_stress: Array
+    largest_stress: Array  # principal, at mid-width
+    fillet_stress: Array  # means over the width
     face_stress: Array
 
 
@@ -104,7 +105,7 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, stress, face)))
 
 
 def _by_elements(
@@ -120,24 +121,22 @@ def _by_elements(
     from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
 
-    solved: dict[tuple, tuple[elements.ElementResult, elements.ElementResult]] = {}
+    solved: dict[tuple, elements.ElementResult] = {}
     found = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
             contour = element(layout, place).extrusion.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
-            one = section.rows(i)
-            own = elements.solve(one, rung, grid, shape, mesh or SOLID_MESH)
-            # along the hinge stress follows from equilibrium: that of plane elements holds for the solid too
-            plane = own if rung == "fem-plane" else elements.solve(one, "fem-plane", grid, shape)
-            solved[key] = own, plane
+            solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
         found.append(solved[key])
-    results, planes = zip(*found)
-    E = section.youngs_modulus
-    stress, face = (E * np.array([getattr(r, name) for r in planes]) for name in ("fillet_peak", "face_peak"))
-    return np.array([r.stiffness for r in results]), _PerNewton(
-        np.array([r.gauge_strain for r in results]), np.array([r.fillet_peak for r in results]), stress, face
+    read, flat = [r.readings for r in found], [r.flat for r in found]
+    return np.array([r.stiffness for r in found]), _PerNewton(
+        np.array([float(r.gauge) for r in read]),
+        np.array([r.fillet_strain for r in read]),
+        np.array([r.fillet_stress for r in read]),
+        np.array([r.fillet_stress for r in flat]),
+        np.array([r.face_stress for r in flat]),
     )
 
 
@@ -154,7 +153,7 @@ def _estimates(
         def at(value: float, elastic: bool = elastic) -> float | None:
             return float(value) * force if elastic and np.isfinite(value) else None
 
-        stress = float(per_newton.fillet_stress[i])
+        stress = float(per_newton.largest_stress[i])
         rows.append(
             ElementEstimate(
                 number=place.number,

@@ -3,8 +3,9 @@ the nominal ones.
 
 The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by
 one, added as squares. Of a dimension that was not measured it is the tolerance, as in the design's
-[tolerance]; of one that was measured with no uncertainty given it is nought. The model's own error is not in
-them.
+[tolerance]; of one that was measured with no uncertainty given it is nought. What no sheet asks for
+(fillets, the lot's modulus, the cut's layer, the clamp) has its tolerance too. The model's own error is not
+in them.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.present import present
+from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
@@ -82,16 +84,29 @@ def _half_widths(
 
     For each dimension it is half of what moving it by its own half-width, both ways, changes.
     """
+    tolerance = layout.design.tolerance
+    unmeasured = {
+        "fillet_radius": np.minimum(tolerance.fillet_radius, section.straight_length / 2),
+        "youngs_modulus": tolerance.youngs_modulus * section.youngs_modulus,
+    }
+
+    def at(moved: HingeSection) -> Array:
+        rows = estimate_sections(layout, moved, rung, force)
+        return np.array(
+            [[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float
+        )  # None: NaN
+
     squares = np.zeros((len(INTERVALS), len(layout.elements)))
-    for dimension, half in halves.items():
-        ends = []
-        for sign in (-1.0, 1.0):
-            moved = section.with_(**{dimension: getattr(section, dimension) + sign * half})
-            rows = estimate_sections(layout, moved, rung, force)
-            ends.append(
-                np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
-            )  # None: NaN
-        squares += ((ends[1] - ends[0]) / 2) ** 2
+    for dimension, half in (halves | unmeasured).items():
+        low, high = (
+            at(section.with_(**{dimension: getattr(section, dimension) + sign * half}))
+            for sign in (-1.0, 1.0)
+        )
+        squares += ((high - low) / 2) ** 2
+    made = at(section)
+    squares += (at(without_layer(section, tolerance.recast_layer)) - made) ** 2
+    K = made[INTERVALS.index("stiffness")]
+    squares[INTERVALS.index("stiffness")] += (K - in_clamp(section, K, tolerance.clamp_compliance)) ** 2
     return np.sqrt(squares)
 
 

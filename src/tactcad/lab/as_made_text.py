@@ -9,6 +9,7 @@ from typing import Any
 from tactcad.design.present import present
 from tactcad.design.tree import Design
 
+from . import material_text
 from .as_made import AsMade
 from .inspection_sheet import Reading
 
@@ -40,6 +41,7 @@ def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
         f"{rows[0].made.force:g} N on each pad; from and to: 95 %, of the dimensions alone",
         *("  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells),
     ]
+    lines += material_text.lines(design, [row.made.stiffness for row in rows])
     readings = [r for row in rows for r in row.readings]
     outside, undecided = ([r for r in readings if r.verdict == v] for v in ("outside", "undecided"))
     lines += [f"outside its tolerance: {_said(r)}" for r in outside]
@@ -112,6 +114,7 @@ def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any
         ],
         "readings": [_record(r) for r in readings],
         **{v: sum(r.verdict == v for r in readings) for v in ("inside", "outside", "undecided", "blank")},
+        **material_text.record(design),
     }
 
 

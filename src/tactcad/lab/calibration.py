@@ -215,10 +215,9 @@ def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> 
     first, left_out = first_in_contact(x, all_.force[here], all_.run[here])
     kept = here[steps(x) >= first]
     if left_out > 1:
-        notes.append(
-            f"no contact before {first * 1e3:g} um: the force of {len(here) - len(kept)} readings lies above "
-            "the line of the others; they are left out"
-        )
+        above = len(here) - len(kept)
+        what = f"the force of {above} readings lies above the line of the others; they are left out"
+        notes.append(f"no contact before {first * 1e3:g} um: {what}")
     if not left_out:
         notes.append(
             "three displacements only: the first is kept, and a gap before contact would bias the slope"

@@ -1,4 +1,5 @@
-"""The rungs of the model ladder, each registered once: all that asks which rungs there are reads it here.
+"""The rungs of the model ladder, each registered once, in the order of their work: all that asks which rungs
+there are reads it here.
 
 A new closed form is a file with its compliance and an entry in `REGISTER`; `tactcad fit --shipped-samples`
 then measures its errors (data/ladder.json, data/accuracy.json).
@@ -25,7 +26,8 @@ class Rung:
     fitted           what its constants were fitted on, and which groups therefore bound it: plane elements,
                      and also the width on solid ones; empty where nothing is fitted
     constant_moment  whether the leaf's moment is taken as the same along the slot
-    meshes           densities of the finer mesh that can be chosen; (None,) where there is no choice
+    meshes           halves of the elements' order that can be chosen, rising; (None,) where there is no
+                     choice
     """
 
     name: str

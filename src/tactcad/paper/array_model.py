@@ -10,8 +10,8 @@ from typing import TypeVar
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.design.tree import Design
-from tactcad.lab import pads
+from tactcad.design.tree import Design, Tolerance
+from tactcad.lab import material_text, pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
@@ -23,23 +23,12 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Tolerance:
-    """Half-widths, taken as two standard deviations; mm, tilt in degrees."""
-
-    hinge_thickness: float
-    hinge_length: float
-    load_arm: float
-    sheet_thickness: float
-    arm_height: float
-    pad_height: float
-    tilt: float
-
-
-@dataclass(frozen=True)
 class Rig:
-    """Calibration and grasping; N, N/mm, mm. load_point: half-width of the roller's place."""
+    """Calibration and grasping; N, N/mm, mm. load_point: half-width of the roller's place;
+    load_cell_accuracy: relative."""
 
     load_cell_stiffness: float
+    load_cell_accuracy: float
     load_cell_resolution: float
     micrometer_resolution: float
     load_point: float
@@ -67,6 +56,7 @@ class ArrayModel:
     readout: ReadOut
     power: Power
     tolerance: Tolerance
+    stiffness_factor: float  # of the material's own modulus over the design's
     rig: Rig
 
     def rows(self, number: np.ndarray) -> np.ndarray:
@@ -105,9 +95,11 @@ def from_design(design: Design) -> ArrayModel:
             readout.on_time,
             readout.period,
         ),
-        _pick(Tolerance, design.tolerance),
+        design.tolerance,
+        material_text.stiffness_factor(design) or 1.0,
         Rig(
             calibration.load_cell_stiffness,
+            calibration.load_cell_accuracy,
             calibration.load_cell_resolution,
             calibration.micrometer_resolution,
             calibration.load_point,

@@ -37,7 +37,7 @@ class Explanation:
 
 
 @dataclass(frozen=True)
-class Reading:
+class AccountReading:
     """What the reference element would have shown if one account of Table 2 were true; least and largest
     over the samples.
 
@@ -71,7 +71,7 @@ class ReferenceElement:
     softest_k_v: tuple[
         float, float
     ]  # V/mm: largest printed signal over largest printed deflection, and Table 1's
-    readings: tuple[Reading, ...]  # by account of Table 2
+    readings: tuple[AccountReading, ...]  # by account of Table 2
     gain: float  # V per strain, from the other elements
     scatter: float  # of ln K_v about it
     explanations: tuple[Explanation, ...]
@@ -142,7 +142,7 @@ def _reading(
     k_v: float,
     deflection: tuple[float, float],
     signal: tuple[float, float],
-) -> Reading:
+) -> AccountReading:
     """factor: the reference element's true deflection over the printed one, which is what R is off by."""
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()
@@ -155,7 +155,7 @@ def _reading(
     shown = (float(true.min() / factor * 1e3), float(true.max() / factor * 1e3))
     volts = (float(true.min() * k_v), float(true.max() * k_v))
     overlap = lambda a, b: bool(a[0] <= b[1] and b[0] <= a[1])  # noqa: E731
-    return Reading(
+    return AccountReading(
         name,
         float(K_r),
         float(load),

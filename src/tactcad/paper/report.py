@@ -60,7 +60,7 @@ Cell = str | float | Marked  # numbers of numpy too
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """Columns are (name, unit); cells are text, numbers, or Marked numbers that the text points at."""
 
     title: str
@@ -71,10 +71,10 @@ class Table:
 
 def tabulated(
     title: str, items: Iterable[T], *columns: tuple[str, str, Callable[[T], Cell]], note: str = ""
-) -> Table:
+) -> ReportTable:
     """A row for each item; a column is its name, its unit, and what an item's cell holds."""
     rows = tuple(tuple(cell(item) for _, _, cell in columns) for item in items)
-    return Table(title, tuple((name, unit) for name, unit, _ in columns), rows, note)
+    return ReportTable(title, tuple((name, unit) for name, unit, _ in columns), rows, note)
 
 
 @dataclass(frozen=True)
@@ -87,23 +87,23 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Section:
+class ReportSection:
     key: str
     title: str
     question: str
     findings: tuple[str, ...]
-    tables: tuple[Table, ...] = ()
+    tables: tuple[ReportTable, ...] = ()
     figures: tuple[Figure, ...] = ()
     values: object = None  # the study's dataclass, for JSON
     headline: tuple[str, ...] = ()  # the findings that stand at the top of the report too
 
 
 @dataclass(frozen=True)
-class Report:
+class ValidationReport:
     title: str
     subtitle: str
     summary: tuple[str, ...]
-    sections: tuple[Section, ...]
+    sections: tuple[ReportSection, ...]
     colophon: str
 
 
@@ -147,7 +147,7 @@ def listed(items: Iterable[object]) -> str:
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1] if words else "none"
 
 
-def to_json(report: Report) -> str:
+def to_json(report: ValidationReport) -> str:
     """Findings, tables' numbers and every study's values; figures by name. NaN and infinities become text."""
     data = {
         "schema": SCHEMA,
@@ -167,7 +167,7 @@ def to_json(report: Report) -> str:
     return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def to_text(report: Report) -> str:
+def to_text(report: ValidationReport) -> str:
     """The findings for a terminal."""
     lines = [report.title, ""]
     for i, s in enumerate(report.sections, 1):
@@ -186,7 +186,7 @@ def standalone(figure: Figure) -> str:
     )
 
 
-def to_html(report: Report) -> str:
+def to_html(report: ValidationReport) -> str:
     """One page with everything inside: style, pictures, tables."""
     e = html.escape
     contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
@@ -203,7 +203,7 @@ def to_html(report: Report) -> str:
     return f"{head}{top}<main>{body}</main>\n<footer>{e(report.colophon)}</footer></body></html>\n"
 
 
-def _section(number: int, s: Section) -> str:
+def _section(number: int, s: ReportSection) -> str:
     e = html.escape
     return (
         f'\n<section id="{s.key}"><h2>{number}. {e(s.title)}</h2>'
@@ -221,7 +221,7 @@ def _list(items: tuple[str, ...]) -> str:
     return "<ul class=findings>" + "".join(f"<li>{html.escape(i)}</li>" for i in items) + "</ul>"
 
 
-def _table(t: Table) -> str:
+def _table(t: ReportTable) -> str:
     e = html.escape
     text = [any(_wordy(row[i]) for row in t.rows) for i in range(len(t.columns))]
     head = "".join(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import ladder
+from tactcad.mechanics.as_built import in_clamp, without_layer
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
@@ -150,31 +151,40 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
 
 
 def spread(
-    s: HingeSection, array: ArrayModel, rng: np.random.Generator, contact: float, draws: int = DRAWS
-) -> HingeSection:
-    """Sections [draw, element] with every toleranced dimension drawn: half-widths are two standard
-    deviations.
+    s: HingeSection,
+    array: ArrayModel,
+    rng: np.random.Generator,
+    rung: str,
+    contact: float = 0.0,
+    draws: int = DRAWS,
+) -> np.ndarray:
+    """Stiffness [draw, element] with everything that [tolerance] holds drawn: half-widths are two standard
+    deviations. NaN where a draw is out of the rung's range.
 
-    contact: half-width (mm) over which the load's place on the pad is uniform. Sheet thickness is one draw
-    for all elements of an array, the rest are drawn for each.
+    contact: half-width (mm) over which the load's place on the pad is uniform. What one sheet and one cut
+    share is one draw for all elements of an array, the rest is drawn for each. Layer and clamp only soften.
     """
     tol = array.tolerance
-    shape = (draws, *s.shape)
-    each = lambda half: half / 2 * rng.standard_normal(shape)  # noqa: E731
-    return _one_each(s, draws).with_(
+    shape, shared = (draws, *s.shape), (draws, 1)
+    each = lambda half, shape=shape: half / 2 * rng.standard_normal(shape)  # noqa: E731
+    length = s.hinge_length + each(tol.hinge_length)
+    cut = _one_each(s, draws).with_(
         hinge_thickness=s.hinge_thickness + each(tol.hinge_thickness),
-        hinge_length=s.hinge_length + each(tol.hinge_length),
+        hinge_length=length,
+        fillet_radius=np.clip(s.fillet_radius + each(tol.fillet_radius), 0.0, length / 2),
         arm_height=s.arm_height + each(tol.arm_height),
         load_arm=s.load_arm + each(tol.load_arm) + contact * rng.uniform(-1, 1, shape),
-        width=s.width + tol.sheet_thickness / 2 * rng.standard_normal((draws, 1)),
+        width=s.width + each(tol.sheet_thickness, shared),
+        youngs_modulus=s.youngs_modulus * (1 + each(tol.youngs_modulus, shared)),
     )
+    left = without_layer(cut, np.abs(each(tol.recast_layer, shared)))
+    return in_clamp(left, ladder.evaluate(left, rung).stiffness, np.abs(each(tol.clamp_compliance)))
 
 
 def _band(
     s: HingeSection, array: ArrayModel, rng: np.random.Generator, rung: str, contact: float
 ) -> np.ndarray:
-    K = ladder.evaluate(spread(s, array, rng, contact), rung).stiffness
-    return np.nanquantile(K, BAND, axis=0)
+    return np.nanquantile(spread(s, array, rng, rung, contact), BAND, axis=0)
 
 
 def _one_each(s: HingeSection, draws: int) -> HingeSection:

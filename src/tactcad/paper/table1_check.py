@@ -16,7 +16,7 @@ from tactcad.paper.published import Column, Published
 
 
 @dataclass(frozen=True)
-class Product:
+class ColumnProduct:
     """A printed value against the same from other columns; relative difference, and what rounding alone
     allows.
     """
@@ -50,9 +50,9 @@ class SeriesSpring:
 @dataclass(frozen=True)
 class Table1Check:
     element: np.ndarray
-    force: Product  # N
-    signal: Product  # V
-    ratio: Product  # V/N
+    force: ColumnProduct  # N
+    signal: ColumnProduct  # V
+    ratio: ColumnProduct  # V/N
     series: SeriesSpring
 
 
@@ -73,8 +73,8 @@ def check(data: Published) -> Table1Check:
     return Table1Check(t.element, force, signal, ratio, _series(data))
 
 
-def _product(printed: Column, computed: np.ndarray, rounding: np.ndarray) -> Product:
-    return Product(
+def _product(printed: Column, computed: np.ndarray, rounding: np.ndarray) -> ColumnProduct:
+    return ColumnProduct(
         printed.value,
         computed,
         computed / printed.value - 1,

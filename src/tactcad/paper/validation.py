@@ -30,13 +30,13 @@ from tactcad.paper.pages import (
     table2_page,
 )
 from tactcad.paper.published import Published
-from tactcad.paper.report import Report, sig
+from tactcad.paper.report import ValidationReport, sig
 
 SEED = 20260101  # of every Monte Carlo draw: the same report from the same data
 LEAST_COMMON = 4  # elements of Table 1 that a design must have for the fits to say anything
 
 
-def validate(data: Published, array: ArrayModel) -> Report:
+def validate(data: Published, array: ArrayModel) -> ValidationReport:
     """All nine sections. Raises InputError when the design has too few of Table 1's elements."""
     common = residuals.matched(data, array)[0]
     if len(common) < LEAST_COMMON or data.reference not in common:
@@ -74,7 +74,7 @@ def validate(data: Published, array: ArrayModel) -> Report:
     summary = tuple(
         h for key in ("table2", "reference", "stiffness", "table1", "inversion") for h in by_key[key].headline
     )
-    return Report(
+    return ValidationReport(
         "Held against the paper: a spring-based tactile array",
         "Tables 1 and 2 of “Spring-based tactile array for assistive robotic surgical applications”, "
         f"the lumped pair, and the beam model of the design {array.name}.",

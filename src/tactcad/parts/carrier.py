@@ -16,7 +16,7 @@ from .description import Extrusion, Feature, Hole, Part
 from .fasteners import carrier_screw
 from .layout import Layout
 from .library.screws import METRIC, counterbore_diameter
-from .materials import plate_material
+from .plate import plate
 from .screw_holes import tapped_through
 
 
@@ -58,14 +58,10 @@ def carrier(layout: Layout) -> Part:
             features.append(
                 tapped_through("hold_down", thread, (sx * layout.hold_down_x, y, t), (0, 0, -1), t)
             )
-    return Part(
-        part_no=f"{d.name}-carrier",
-        name="Carrier",
-        process="milled",
-        material=plate_material(d),
-        body=Extrusion(rectangle(-length / 2, -width / 2, length / 2, width / 2), t),
-        features=tuple(features),
-        colour="#8d99a6",
-        finish="Ra 1.6, clear anodised after machining",
-        notes=("break edges 0.2",),
+    return plate(
+        d,
+        "carrier",
+        "Carrier",
+        Extrusion(rectangle(-length / 2, -width / 2, length / 2, width / 2), t),
+        features,
     )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
+from tactcad.design.materials import family
+
 from .layout import Layout
 
 
@@ -24,14 +26,15 @@ class Supply:
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:
     """Gauge, wiring and bonding supplies of the array. No maker's data was read: none is verified."""
-    g = layout.design.gauge
+    g, material = layout.design.gauge, layout.design.material
     n = len(layout.elements)
     spare_gauges = max(1, ceil(n / 5))  # chosen: one in five is lost in bonding or soldering
     ohm = f"{g.resistance:g} ohm"
     return (
         Supply(
             "STRAIN-GAUGE",
-            f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for aluminium",
+            f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, "
+            f"for {family(material.density) or material.alloy}",
             n,
             "pcs",
             f"strain gauge {ohm}, grid {g.grid_length:g} mm, carrier trimmed to "

@@ -12,13 +12,12 @@ stop land                                      +-------------------------+ rear_
 from __future__ import annotations
 
 from tactcad.contour import Contour, Corner, circle, rounded_polygon
-from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
 
-ALUMINIUM = "#c3c8ce"
+BARE_METAL = "#c3c8ce"
 
 
 def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
@@ -39,12 +38,13 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         process="wire-cut",
         material=sheet_material(design),
         body=Extrusion(outline(layout, place.arm, e, gap), design.sheet.thickness, mounting_holes(layout)),
-        colour=ALUMINIUM,
+        colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
         notes=(
             "wire-cut in at least three passes, both hinge faces skimmed",
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
+            *material_notes(design),
         ),
         characteristics=(
             Characteristic(
@@ -148,7 +148,14 @@ def dowel_hole_diameter(design: Design) -> float:
 
 
 def sheet_material(design: Design) -> Material:
-    return Material(design.material.alloy, present(design.material.density))
+    return Material(design.material.alloy, design.material.density)
+
+
+def material_notes(design: Design) -> tuple[str, ...]:
+    """What its material asks of the part: by its data, and by what the design has otherwise than its name
+    says."""
+    magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
+    return (*magnetic, *(f"designed with other data than its material's: {d}" for d in design.differences))
 
 
 def shortest(value: float) -> str:

@@ -19,7 +19,7 @@ from .fasteners import Clamping, clamping
 from .layout import Layout
 from .library.dowels import dowel_diameter
 from .library.screws import METRIC, counterbore_diameter
-from .materials import plate_material
+from .plate import plate
 from .screw_holes import tapped_blind, tapped_through
 
 PLATE_COLOUR = "#7c8794"
@@ -62,16 +62,14 @@ def end_plate(layout: Layout, head: bool) -> Part:
             )
         )
     kind = "head" if head else "tapped"
-    return Part(
-        part_no=f"{d.name}-end-plate-{kind}",
-        name=f"End plate, {kind}",
-        process="milled",
-        material=plate_material(d),
-        body=Extrusion(outer, depth),
-        features=tuple(features),
+    return plate(
+        d,
+        f"end-plate-{kind}",
+        f"End plate, {kind}",
+        Extrusion(outer, depth),
+        features,
         colour=PLATE_COLOUR,
         finish="Ra 1.6, clear anodised after machining; dowel holes masked",
-        notes=("break edges 0.2",),
     )
 
 

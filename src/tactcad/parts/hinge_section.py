@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tactcad.design.materials import ALLOYS, Alloy
-from tactcad.design.present import present
+from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
@@ -44,8 +43,8 @@ def shared_parameters(design: Design) -> dict[str, float]:
     """What all elements of a design have in common, by the names of `HingeSection`'s fields; mm, MPa."""
     return {
         "body_height": design.element.body_height,
-        "poisson": present(design.material.poisson),
-        "youngs_modulus": present(design.material.youngs_modulus),
+        "poisson": design.material.poisson,
+        "youngs_modulus": design.material.youngs_modulus,
         "width": design.sheet.thickness,
         "two_sided": design.element.sides == "two",
         "pad_height": design.element.pad_height,
@@ -54,15 +53,9 @@ def shared_parameters(design: Design) -> dict[str, float]:
 
 
 def design_alloy(design: Design) -> Alloy:
-    """The design's alloy with the values that the design file gives."""
-    m, known = design.material, ALLOYS[design.material.alloy]
+    """The design's material with the values that the design file gives."""
+    own = vars(design.material)
+    row = ALLOYS.get(design.material.alloy)
     return Alloy(
-        m.alloy,
-        present(m.youngs_modulus),
-        present(m.poisson),
-        present(m.density),
-        present(m.yield_strength),
-        present(m.fatigue_strength),
-        known.source,
-        known.tensile_strength,
+        own["alloy"], **{k: own[k] for k in (*PROPERTIES, *OPTIONAL)}, source=row.source if row else ""
     )

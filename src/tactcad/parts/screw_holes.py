@@ -9,6 +9,11 @@ from .library.screws import DRILL_REACH, METRIC, TAP_REACH, blind_thread, counte
 DEEPEST_THREAD = 2.5
 
 
+def corners(x: float, y: float) -> tuple[tuple[float, float], ...]:
+    """The corners of a rectangle 2 x by 2 y around the middle, as screws stand in a plate."""
+    return tuple((sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1))
+
+
 def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, under_head: float) -> Hole:
     """Clearance hole through a plate, counterbored from `at` until `under_head` is left under the head."""
     deep = round(thickness - under_head, 9)

@@ -8,7 +8,6 @@ from math import floor, sqrt
 
 import numpy as np
 
-from tactcad.design.present import present
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload
@@ -65,7 +64,7 @@ def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -
     return _limit(
         tuple(parameters.items()),
         place.arm,
-        present(design.material.yield_strength) / design.rating.deflection_factor,
+        design.material.yield_strength / design.rating.deflection_factor,
         design.rating.overload_force,
         design.stop.tolerance,
         layout.stop_give if give is None else give,

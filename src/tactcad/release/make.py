@@ -44,12 +44,34 @@ def release(
     progress: Progress,
     draft: bool = False,
 ) -> Released:
-    """Write `<design>-<revision>.zip` to the folder `out`, or, as a draft,
+    """Write a design's release, `<design>-<revision>.zip`, or as a draft
     `<design>-<revision>-PRELIMINARY.zip`.
 
-    Raises CheckFailure, with nothing written and an older zip as it was, where a check fails or the golden
-    file does not hold just this revision (a draft goes on and says so in its README), or where what was
-    written does not read back; InputError where `out` cannot be written.
+    Parameters
+    ----------
+    design, design_file
+        The design, and the file that it was read from.
+    out
+        The folder to write to.
+    shop_file
+        The limits that parts are checked against.
+    progress
+        Is told what is done, and why nothing is.
+    draft
+        Goes on whatever the checks say; the README says what they do.
+
+    Returns
+    -------
+    Released
+        The zip, its files, and what differs from the one that stood there before.
+
+    Raises
+    ------
+    CheckFailure
+        With nothing written and an older zip as it was, where a check fails, the golden file does not hold
+        just this revision, or what was written does not read back.
+    InputError
+        Where `out` cannot be written.
     """
     revision = design.design.revision
     target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"

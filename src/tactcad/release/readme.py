@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from tactcad import __version__
+from tactcad.design.materials import family
 from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
 from tactcad.export import inspection
@@ -225,7 +226,8 @@ def _files(paths: Sequence[str]) -> list[str]:
 
 
 def _questions(contents: ReleaseContents) -> list[str]:
-    aluminium = contents.design.material.alloy
+    material = contents.design.material
+    supply = f"Whether your machine has an anti-electrolysis supply: {material.alloy} pits without it."
     return _listed(
         [
             "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that "
@@ -234,7 +236,7 @@ def _questions(contents: ReleaseContents) -> list[str]:
             "The order of cuts, and how the hinge is kept from bending when the slug drops (tab, adhesive, "
             "order).",
             "How the holes of the elements are made: wire-cut from a start hole (as drawn), or reamed.",
-            f"Whether your machine has an anti-electrolysis supply: {aluminium} pits without it.",
+            *([supply] if family(material.density) == "aluminium" else []),
             "Price and delivery for the quantities above, and for twice the elements.",
         ]
     )

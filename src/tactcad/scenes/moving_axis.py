@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor
 
-from tactcad.design.present import present
 from tactcad.parts import rigs
 from tactcad.parts.fasteners import carrier_screw
 from tactcad.parts.finding import Finding
@@ -110,7 +109,7 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     _place_carried(b, rig, "RL1", 0.0, without_gaps(d))
     heavy = sum(p.part.mass for p in b.placements) + rigs.pin(rig).mass + cap_screw(*PIN_SCREW).mass
     over = max(layout.ledge_of(p.hinge) - p.hinge.h for p in layout.elements)
-    land = over * (d.stop.land_length + over) * d.sheet.thickness * present(d.material.density) * 1e-6
+    land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
     light = heavy - land * len(layout.elements)
     grams = 1.0 / ballast_thickness(rig, 1.0)  # of a millimetre of disc
     stack = rig.grasping.weights * rigs.disc_weight(rig).extrusion.thickness

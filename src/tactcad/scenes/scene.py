@@ -14,7 +14,7 @@ Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local 
 
 def rotation(rows: Iterable[Iterable[float]]) -> Rotation:
     """Three rows of three numbers as a Rotation."""
-    x, y, z = (vector(map(float, row)) for row in rows)
+    x, y, z = map(vector, rows)
     return (x, y, z)
 
 

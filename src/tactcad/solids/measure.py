@@ -10,7 +10,14 @@ from OCP.TopoDS import TopoDS_Shape
 
 
 def measure(shape: TopoDS_Shape) -> dict:
-    """Volume (mm3), surface area (mm2), centre of mass and bounding box (mm): box is (least, largest)."""
+    """What the kernel measures on a shape.
+
+    Returns
+    -------
+    dict
+        `volume` (mm3), `area` of the surface (mm2), `centre` of mass (mm), and `box` as (least, largest)
+        corner (mm).
+    """
     solid, surface = GProp_GProps(), GProp_GProps()
     BRepGProp.VolumeProperties_s(shape, solid)
     BRepGProp.SurfaceProperties_s(shape, surface)

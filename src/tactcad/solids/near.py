@@ -30,8 +30,24 @@ class Faces:
 
 
 def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) -> TopoDS_Compound | None:
-    """The faces, placed, whose boxes come within `reach` mm of a box (2, 3) of the scene; None where none
-    does."""
+    """The faces of a placed shape that come near a box.
+
+    Parameters
+    ----------
+    faces
+        In the shape's own frame.
+    place
+        Where the shape stands.
+    box : ndarray, shape (2, 3)
+        Least and largest corner in the scene, mm.
+    reach
+        How near a face's own box has to come, mm.
+
+    Returns
+    -------
+    TopoDS_Compound or None
+        The faces at their place; None where none comes near.
+    """
     low, high = np.moveaxis(boxed(faces.boxes, np.array(place.rotation), np.array(place.origin)), -2, 0)
     near = np.flatnonzero(np.all((low <= box[1] + reach) & (high >= box[0] - reach), axis=1))
     if not len(near):
@@ -53,9 +69,23 @@ def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[fl
 
 
 def boxed(boxes: ArrayLike, rotation: np.ndarray, origin: np.ndarray) -> np.ndarray:
-    """Least and largest corner (..., 2, 3) of boxes (mm) turned and moved.
+    """Boxes around turned and moved boxes.
 
     The middle moves along; each half extent becomes the sum of what the turned edges reach along an axis.
+
+    Parameters
+    ----------
+    boxes : ndarray, shape (..., 2, 3)
+        Least and largest corners, mm.
+    rotation : ndarray, shape (3, 3)
+        Scene direction = rotation x local direction.
+    origin : ndarray, shape (3,)
+        mm.
+
+    Returns
+    -------
+    ndarray, shape (..., 2, 3)
+        Least and largest corners in the scene, mm.
     """
     ends = np.asarray(boxes)
     middle, half = ends.mean(axis=-2), (ends[..., 1, :] - ends[..., 0, :]) / 2

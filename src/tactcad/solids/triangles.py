@@ -15,10 +15,28 @@ from .occt import as_face
 
 
 def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) in mm and triangles (m, 3) of a shape, facing outwards.
+    """A triangle mesh of a shape, facing outwards.
 
-    linear is the largest chord error (mm), angular the largest turn between facets (radians), which usually
-    governs. Vertices that faces share are merged: they are the kernel's own edge points.
+    Parameters
+    ----------
+    shape
+        Any shape of the kernel.
+    linear
+        Largest chord error, mm.
+    angular
+        Largest turn between facets, radians, which usually governs.
+
+    Returns
+    -------
+    points : ndarray, shape (n, 3)
+        Vertices, mm; those that faces share are merged: they are the kernel's own edge points.
+    faces : ndarray, shape (m, 3)
+        Indices of each triangle's vertices.
+
+    Raises
+    ------
+    ValueError
+        Where the kernel cannot mesh a face.
     """
     BRepTools.Clean_s(shape)
     BRepMesh_IncrementalMesh(shape, linear, False, angular, False)

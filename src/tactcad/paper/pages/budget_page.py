@@ -6,13 +6,13 @@ import numpy as np
 
 from tactcad.paper import plots as d
 from tactcad.paper.budget import Budget
-from tactcad.paper.report import Figure, Section, Table, listed, percent, sig, tabulated
+from tactcad.paper.report import Figure, ReportSection, ReportTable, listed, percent, sig, tabulated
 
 MATTERS = 0.05
 
 
-def page(b: Budget) -> Section:
-    return Section(
+def page(b: Budget) -> ReportSection:
+    return ReportSection(
         "budget",
         "Uncertainty budget",
         "Every effect with its size for this array, carried to K_obj of one pair: K_r = "
@@ -44,7 +44,7 @@ def findings(b: Budget) -> tuple[str, ...]:
     )
 
 
-def _table(b: Budget) -> Table:
+def _table(b: Budget) -> ReportTable:
     def part(v: float) -> str:
         return "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"
 

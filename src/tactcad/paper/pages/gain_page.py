@@ -11,8 +11,8 @@ from tactcad.paper.report import (
     Cell,
     Figure,
     Marked,
-    Section,
-    Table,
+    ReportSection,
+    ReportTable,
     exact,
     interval,
     listed,
@@ -23,8 +23,8 @@ from tactcad.paper.report import (
 )
 
 
-def page(g: GainFit, array: ArrayModel) -> Section:
-    return Section(
+def page(g: GainFit, array: ArrayModel) -> ReportSection:
+    return ReportSection(
         "gain",
         "Signal sensitivity K_v by one gain",
         "All elements share one read-out. Does one gain explain their K_v, and which gain is it?",
@@ -81,7 +81,7 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _heating(g: GainFit, array: ArrayModel) -> Table:
+def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
     switched = f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s"
     return tabulated(
         "Self-heating of the grid",
@@ -98,7 +98,7 @@ def _heating(g: GainFit, array: ArrayModel) -> Table:
     )
 
 
-def _by_element(g: GainFit) -> Table:
+def _by_element(g: GainFit) -> ReportTable:
     def fitted(i: int) -> Cell:
         return Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i]
 
@@ -122,9 +122,9 @@ def _by_element(g: GainFit) -> Table:
     )
 
 
-def _lengths(g: GainFit) -> Table:
+def _lengths(g: GainFit) -> ReportTable:
     pick = np.unique(np.linspace(0, len(g.lengths) - 1, 7).round().astype(int))
-    return Table(
+    return ReportTable(
         "The gain that another hinge length would need",
         (("slot length", "mm"), *((f"{g.lengths[i]:.2f}", "") for i in pick)),
         (

@@ -7,13 +7,22 @@ import numpy as np
 from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import Figure6, Figure7, Simulated
-from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent, tabulated
+from tactcad.paper.report import (
+    Figure,
+    ReportSection,
+    ReportTable,
+    interval,
+    percent,
+    sig,
+    signed_percent,
+    tabulated,
+)
 
 VISIBLE = 0.05  # drift of R over the load that a reader sees in Figure 6
 
 
-def page(six: Figure6, seven: Figure7, array: ArrayModel) -> Section:
-    return Section(
+def page(six: Figure6, seven: Figure7, array: ArrayModel) -> ReportSection:
+    return ReportSection(
         "figures",
         "Figures 6 and 7 redrawn",
         "R against the grasping force, simulated with all elements in parallel on one sample; and R "
@@ -64,7 +73,7 @@ def _miss(six: Figure6, s: Simulated) -> float:
     return float((np.log(six.measured / s.true) ** 2).mean() ** 0.5)
 
 
-def _table6(six: Figure6) -> Table:
+def _table6(six: Figure6) -> ReportTable:
     least, most = six.load[0], six.load[-1]
 
     def off(s: Simulated, i: int) -> str:
@@ -87,7 +96,7 @@ def _table6(six: Figure6) -> Table:
     )
 
 
-def _table7(seven: Figure7) -> Table:
+def _table7(seven: Figure7) -> ReportTable:
     return tabulated(
         "Straight lines through Figure 7's points",
         range(len(seven.measuring)),

@@ -7,11 +7,20 @@ import numpy as np
 from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.hinge import LENGTHS, RADII, STRAIN_ACCURACY, HingeFit, face_factor
-from tactcad.paper.report import Figure, Section, Table, interval, percent, sig, signed_percent, tabulated
+from tactcad.paper.report import (
+    Figure,
+    ReportSection,
+    ReportTable,
+    interval,
+    percent,
+    sig,
+    signed_percent,
+    tabulated,
+)
 
 
-def page(h: HingeFit, array: ArrayModel) -> Section:
-    return Section(
+def page(h: HingeFit, array: ArrayModel) -> ReportSection:
+    return ReportSection(
         "hinge",
         "Which hinge fits Table 1 and the two strains",
         "The paper gives the hinge's thickness, not its length, fillet radius or notch form. What do "
@@ -96,7 +105,7 @@ def _valley(h: HingeFit) -> tuple[float, float, float]:
     return float(RADII[ok][0]), float(RADII[ok][-1]), float(scatter[ok].max() / scatter[ok].min() - 1)
 
 
-def _forms(h: HingeFit) -> Table:
+def _forms(h: HingeFit) -> ReportTable:
     own = h.own
     return tabulated(
         f"Best hinge by notch form, thickness fixed, {len(h.element)} elements",
@@ -116,7 +125,7 @@ def _forms(h: HingeFit) -> Table:
     )
 
 
-def _strains(h: HingeFit, array: ArrayModel) -> Table:
+def _strains(h: HingeFit, array: ArrayModel) -> ReportTable:
     s = h.strains
     section = array.section.rows([0])
     rows = []
@@ -125,7 +134,7 @@ def _strains(h: HingeFit, array: ArrayModel) -> Table:
             float(face_factor(section.with_(two_sided=two)).item()) * nominal * 100 for two in (False, True)
         ]
         rows.append((arm, printed * 100, nominal * 100, f"{printed / nominal:.4f}", *forms))
-    return Table(
+    return ReportTable(
         "The paper's two strains at 2 N",
         (
             ("arm a", "mm"),
@@ -141,8 +150,8 @@ def _strains(h: HingeFit, array: ArrayModel) -> Table:
     )
 
 
-def _left_out(h: HingeFit) -> Table:
-    return Table(
+def _left_out(h: HingeFit) -> ReportTable:
+    return ReportTable(
         "Fitted length without one element",
         (("left out", ""), *((f"no. {n}", "") for n in h.leave_out)),
         (("l, mm", *(f"{v:.2f}" for v in h.leave_out.values())),),

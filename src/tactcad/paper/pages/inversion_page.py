@@ -6,15 +6,15 @@ import numpy as np
 
 from tactcad.paper import plots as d
 from tactcad.paper.inversion import Inversion, Inverted
-from tactcad.paper.report import Figure, Marked, Section, Table, interval, percent, sig
+from tactcad.paper.report import Figure, Marked, ReportSection, ReportTable, interval, percent, sig
 
 WELL = 5.0  # |condition number| below which a pair is called well conditioned
 FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called right
 
 
-def page(v: Inversion) -> Section:
+def page(v: Inversion) -> ReportSection:
     found = findings(v)
-    return Section(
+    return ReportSection(
         "inversion",
         "Inversion: object stiffness from R",
         "What would a user of this array have read off as K_obj, by equation (3), from Table 2's R?",
@@ -127,7 +127,7 @@ def _typical(error: np.ndarray, where: np.ndarray) -> str:
     return f"a factor {np.exp(middle):.2f}" if np.isfinite(middle) else "without bound"
 
 
-def _table(v: Inversion, w: Inverted) -> Table:
+def _table(v: Inversion, w: Inverted) -> ReportTable:
     rows = []
     for i, k in enumerate(v.measuring):
         cells = []
@@ -144,7 +144,7 @@ def _table(v: Inversion, w: Inverted) -> Table:
             cells.append(text if _right(value, x) else Marked(text))
         rows.append((f"{k:g}", *cells))
         rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
-    return Table(
+    return ReportTable(
         f"K_obj by equation (3) with K_r = {sig(w.reference)} N/mm, 95 % intervals by Fieller",
         (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
         tuple(rows),

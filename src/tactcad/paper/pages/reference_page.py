@@ -10,8 +10,8 @@ from tactcad.paper.report import (
     Cell,
     Figure,
     Marked,
-    Section,
-    Table,
+    ReportSection,
+    ReportTable,
     interval,
     listed,
     percent,
@@ -20,8 +20,8 @@ from tactcad.paper.report import (
 )
 
 
-def page(e: ReferenceElement) -> Section:
-    return Section(
+def page(e: ReferenceElement) -> ReportSection:
+    return ReportSection(
         "reference",
         f"The reference element, no. {e.element}",
         "Its printed signals and deflections do not match its printed K_v. What could explain its "
@@ -142,14 +142,14 @@ def _size(x: Explanation) -> str:
     return f"{x.size:+.2f} mm".replace("-", "−") if x.unit == "mm" else f"factor {sig(x.size)}"
 
 
-def _ranges(e: ReferenceElement) -> Table:
+def _ranges(e: ReferenceElement) -> ReportTable:
     rows = (
         ("printed signal, V", *e.signal),
         ("printed deflection, µm", *e.deflection),
         ("K_v that they imply, V/mm", *e.implied_k_v),
         (f"deflection by Table 1's K_v of {e.printed_k_v:g} V/mm, µm", *e.deflection_from_signal),
     )
-    return Table(
+    return ReportTable(
         "Printed ranges of the reference element",
         (("", ""), ("least", ""), ("largest", "")),
         rows,
@@ -158,7 +158,7 @@ def _ranges(e: ReferenceElement) -> Table:
     )
 
 
-def _accounts(e: ReferenceElement) -> Table:
+def _accounts(e: ReferenceElement) -> ReportTable:
     def pick(text: str, agrees: bool) -> Cell:
         return text if agrees else Marked(text)
 
@@ -176,7 +176,7 @@ def _accounts(e: ReferenceElement) -> Table:
     )
 
 
-def _explanations(e: ReferenceElement) -> Table:
+def _explanations(e: ReferenceElement) -> ReportTable:
     def mark(v: float) -> Cell:
         text = f"{np.expm1(v) * 100:+.0f} %".replace("-", "−")
         return Marked(text) if abs(v) > 2 * e.scatter else text

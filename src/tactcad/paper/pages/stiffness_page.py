@@ -10,8 +10,8 @@ from tactcad.paper.report import (
     Cell,
     Figure,
     Marked,
-    Section,
-    Table,
+    ReportSection,
+    ReportTable,
     exact,
     interval,
     listed,
@@ -25,9 +25,9 @@ from tactcad.paper.residuals import WIRE_TOLERANCE, Residuals
 SMALL_FACTOR = 0.05  # a common factor within this is called none
 
 
-def page(r: Residuals, array: ArrayModel) -> Section:
+def page(r: Residuals, array: ArrayModel) -> ReportSection:
     found = findings(r, array)
-    return Section(
+    return ReportSection(
         "stiffness",
         "Table 1: stiffness, predicted and calibrated",
         "Does the beam model explain the measured stiffnesses, and what would have to be different "
@@ -126,7 +126,7 @@ def _equal_arms(r: Residuals) -> list[str]:
     ]
 
 
-def _rungs(r: Residuals) -> Table:
+def _rungs(r: Residuals) -> ReportTable:
     rows = tuple(
         (
             int(n),
@@ -147,7 +147,7 @@ def _rungs(r: Residuals) -> Table:
         *((f"{name}", "N/mm") for name in r.predicted),
         (f"measured over {r.rung}", "−1"),
     )
-    return Table(
+    return ReportTable(
         "Stiffness by every rung of the model ladder",
         columns,
         (*rows, mean, scatter),
@@ -157,7 +157,7 @@ def _rungs(r: Residuals) -> Table:
     )
 
 
-def _explained(r: Residuals, array: ArrayModel) -> Table:
+def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
     def change(text: str, beyond: bool) -> Cell:
         text = text.replace("-", "−")
         return Marked(text) if beyond else text

@@ -6,13 +6,23 @@ import numpy as np
 
 from tactcad.paper import plots as d
 from tactcad.paper.published import Published
-from tactcad.paper.report import Figure, Marked, Section, Table, exact, interval, listed, sig, signed_percent
-from tactcad.paper.table1_check import Product, Table1Check
+from tactcad.paper.report import (
+    Figure,
+    Marked,
+    ReportSection,
+    ReportTable,
+    exact,
+    interval,
+    listed,
+    sig,
+    signed_percent,
+)
+from tactcad.paper.table1_check import ColumnProduct, Table1Check
 
 
-def page(c: Table1Check, data: Published) -> Section:
+def page(c: Table1Check, data: Published) -> ReportSection:
     found = findings(c, data)
-    return Section(
+    return ReportSection(
         "table1",
         "Table 1 against itself",
         "Do the columns of Table 1 agree with each other, and with the load cell that stood in series?",
@@ -92,7 +102,7 @@ def _over(c: Table1Check, data: Published) -> int | None:
     return int(c.element[i]) if force[i] > data.figure["load_cell_range"] else None
 
 
-def _product(name: str, against: str, p: Product, element: np.ndarray, reason: str) -> str:
+def _product(name: str, against: str, p: ColumnProduct, element: np.ndarray, reason: str) -> str:
     beyond = p.beyond_rounding
     if not beyond.any():
         return f"{name} agrees with {against} within rounding for all {len(element)} elements."
@@ -105,8 +115,8 @@ def _product(name: str, against: str, p: Product, element: np.ndarray, reason: s
     )
 
 
-def _products(c: Table1Check) -> Table:
-    def cells(p: Product, i: int) -> tuple:
+def _products(c: Table1Check) -> ReportTable:
+    def cells(p: ColumnProduct, i: int) -> tuple:
         shown = f"{signed_percent(p.difference[i]).removesuffix(' %')} ± {sig(p.rounding[i] * 100, 2)}"
         return (exact(p.printed[i]), p.computed[i], Marked(shown) if p.beyond_rounding[i] else shown)
 
@@ -117,7 +127,7 @@ def _products(c: Table1Check) -> Table:
     def head(name: str, unit: str) -> tuple:
         return ((f"{name} printed", unit), ("from columns", unit), ("difference", "% ± rounding"))
 
-    return Table(
+    return ReportTable(
         "Products and ratios of Table 1's own columns",
         (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")),
         rows,
@@ -127,7 +137,7 @@ def _products(c: Table1Check) -> Table:
     )
 
 
-def _series(c: Table1Check, data: Published) -> Table:
+def _series(c: Table1Check, data: Published) -> ReportTable:
     s = c.series
     rows = tuple(
         (
@@ -140,7 +150,7 @@ def _series(c: Table1Check, data: Published) -> Table:
         )
         for i, n in enumerate(c.element)
     )
-    return Table(
+    return ReportTable(
         "The spring in series",
         (
             ("element", ""),

@@ -13,10 +13,10 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..materials import plate_material
-from ..screw_holes import sunk
+from ..plate import plate
+from ..screw_holes import corners, sunk
 from .carrier_screws import carrier_pattern, under_carrier_screw
-from .frame import COLOUR, PLATE, PLATE_SCREW, STAGE, STAGE_HOLE
+from .frame import PLATE, PLATE_SCREW, STAGE, STAGE_HOLE
 from .stand_layout import StandLayout
 
 
@@ -25,23 +25,19 @@ def array_mount(rig: StandLayout) -> Part:
     thread, _, under = PLATE_SCREW
     x = max(rig.array.carrier_size[0] / 2, STAGE / 2)
     features: list[Feature] = [
-        sunk("stage", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, PLATE), (0, 0, -1), PLATE, under)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("stage", thread, (px, py, PLATE), (0, 0, -1), PLATE, under)
+        for px, py in corners(STAGE_HOLE, STAGE_HOLE)
     ]
     mount = rig.design.clamp.mount_thread
     features += [
         sunk("carrier", mount, (px, py, 0.0), (0, 0, 1), PLATE, under_carrier_screw(rig.design))
         for px, py in carrier_pattern(rig.array)
     ]
-    return Part(
-        part_no=f"{rig.design.name}-array-mount",
-        name="Array mount",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-x, -STAGE / 2, x, STAGE / 2), PLATE),
-        features=tuple(features),
-        colour=COLOUR,
+    return plate(
+        rig.design,
+        "array-mount",
+        "Array mount",
+        Extrusion(rectangle(-x, -STAGE / 2, x, STAGE / 2), PLATE),
+        features,
         finish="Ra 1.6, faces parallel within 0.01",
-        notes=("break edges 0.2",),
     )

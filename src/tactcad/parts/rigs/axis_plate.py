@@ -10,7 +10,7 @@ r"""Plate on the vertical stage's moving half: takes the gauge plate outside the
 from __future__ import annotations
 
 from ..description import Part
-from ..screw_holes import sunk, tapped
+from ..screw_holes import corners, sunk, tapped
 from .frame import PLATE, PLATE_SCREW, STAGE_HOLE
 from .gauge_plate import GAUGE_SCREW_X, GAUGE_SCREW_Z, upright_plate
 from .stand_layout import StandLayout
@@ -20,13 +20,11 @@ def axis_plate(rig: StandLayout) -> Part:
     """On the vertical stage; takes the gauge plate outside the gauge's width. Front face at local z = 0."""
     thread, _, under = PLATE_SCREW
     features = [
-        sunk("stage", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, 0.0), (0, 0, 1), PLATE, under)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("stage", thread, (px, py, 0.0), (0, 0, 1), PLATE, under)
+        for px, py in corners(STAGE_HOLE, STAGE_HOLE)
     ]
     features += [
-        tapped("gauge_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        tapped("gauge_plate", thread, (px, py, 0.0), (0, 0, 1), PLATE)
+        for px, py in corners(GAUGE_SCREW_X, GAUGE_SCREW_Z)
     ]
     return upright_plate(rig, "axis-plate", "Axis plate", features)

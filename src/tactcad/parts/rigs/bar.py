@@ -12,7 +12,7 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..materials import plate_material
+from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
 from .frame import BAR, BAR_FRONT, BAR_HEIGHT, BAR_WIDTH, CARRIAGE_ON_BAR
 from .guide_layout import GuideLayout
@@ -32,14 +32,12 @@ def bar(rig: GuideLayout) -> Part:
     for sx in (-1, 1):
         features.append(tapped_blind("foot", "M4", (sx * BAR_SCREW_X, 0.0, BAR / 2), (0, 1, 0)))
         features.append(tapped_blind("platform", "M4", (sx * BAR_SCREW_X, BAR_HEIGHT, BAR / 2), (0, -1, 0)))
-    return Part(
-        part_no=f"{rig.design.name}-bar",
-        name="Bar",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-BAR_WIDTH / 2, 0, BAR_WIDTH / 2, BAR_HEIGHT), BAR),
-        features=tuple(features),
+    return plate(
+        rig.design,
+        "bar",
+        "Bar",
+        Extrusion(rectangle(-BAR_WIDTH / 2, 0, BAR_WIDTH / 2, BAR_HEIGHT), BAR),
+        features,
         colour="#7c8794",
         finish="Ra 1.6, back face and ends square within 0.02",
-        notes=("break edges 0.2",),
     )

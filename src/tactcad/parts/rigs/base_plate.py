@@ -15,8 +15,8 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
-from ..materials import plate_material
-from ..screw_holes import sunk, tapped_blind
+from ..plate import plate
+from ..screw_holes import corners, sunk, tapped_blind
 from .frame import BASE, POST, POST_Y, STAGE_HOLE
 from .post import POST_SCREWS
 from .stand_layout import StandLayout
@@ -32,18 +32,15 @@ def base_plate(rig: StandLayout, stages: bool) -> Part:
     ]
     if stages:
         features += [
-            tapped_blind("stage", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1))
-            for sx in (-1, 1)
-            for sy in (-1, 1)
+            tapped_blind("stage", "M4", (px, py, t), (0, 0, -1)) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
         ]
     kind = "stages" if stages else "cart"
-    return Part(
-        part_no=f"{rig.design.name}-base-{kind}",
-        name=f"Base plate, for {kind}",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-x, rig.base_front, x, rig.base_back), t),
-        features=tuple(features),
+    return plate(
+        rig.design,
+        f"base-{kind}",
+        f"Base plate, for {kind}",
+        Extrusion(rectangle(-x, rig.base_front, x, rig.base_back), t),
+        features,
         colour="#6f7a86",
         finish="upper face ground or fly-cut, Ra 0.8, flat within 0.02",
         notes=("break edges 0.5",),

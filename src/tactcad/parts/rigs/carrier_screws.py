@@ -5,6 +5,7 @@ from __future__ import annotations
 from tactcad.design.tree import Design
 
 from ..layout import Layout
+from ..screw_holes import corners
 
 # Screws into the carrier's threads end this far inside its far face, where the end plates lie.
 SHORT_OF_CARRIER = 0.3
@@ -19,4 +20,4 @@ def under_carrier_screw(design: Design) -> float:
 def carrier_pattern(layout: Layout) -> tuple[tuple[float, float], ...]:
     """(x, y) of the carrier's threads for an axis."""
     x, y = layout.mount_x, layout.design.clamp.mount_pitch_y / 2
-    return tuple((sx * x, sy * y) for sx in (-1, 1) for sy in (-1, 1))
+    return corners(x, y)

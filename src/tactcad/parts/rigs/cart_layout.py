@@ -10,7 +10,8 @@ from functools import cached_property
 from math import cos, hypot, pi, sqrt
 
 from tactcad.design.present import present
-from tactcad.design.tree import Cart, Design, Holder, Sample
+from tactcad.design.rigs import Cart, Holder, Sample
+from tactcad.design.tree import Design
 from tactcad.parts.library import orings
 
 from ..library.bearings import BEARINGS, Bearing

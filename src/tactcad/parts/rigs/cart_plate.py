@@ -18,10 +18,9 @@ from tactcad.design.present import present
 
 from ..description import Characteristic, Extrusion, Hole, Part
 from ..library.screws import METRIC
-from ..materials import plate_material
-from ..screw_holes import tapped
+from ..plate import plate
+from ..screw_holes import corners, tapped
 from .cart_layout import CartLayout
-from .frame import COLOUR
 
 
 def cart_plate(rig: CartLayout) -> Part:
@@ -48,20 +47,13 @@ def cart_plate(rig: CartLayout) -> Part:
     )
     h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
     engaged = length - under - rig.holder_body
-    holder = tuple(
-        tapped("holder", "M3", (sx * h, sy * h, t), (0, 0, -1), t, engaged)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
-    )
-    return Part(
-        part_no=f"{rig.design.name}-cart-plate",
-        name="Cart plate",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-x, -y, x, y), t),
-        features=axles + holder,
-        colour=COLOUR,
-        finish="Ra 1.6, clear anodised after machining",
+    holder = tuple(tapped("holder", "M3", (px, py, t), (0, 0, -1), t, engaged) for px, py in corners(h, h))
+    return plate(
+        rig.design,
+        "cart-plate",
+        "Cart plate",
+        Extrusion(rectangle(-x, -y, x, y), t),
+        axles + holder,
         notes=("break edges 0.2", "axle threads of one side in one setting"),
         characteristics=(
             Characteristic(

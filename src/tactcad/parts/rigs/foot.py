@@ -13,11 +13,11 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
-from ..materials import plate_material
+from ..plate import plate
 from ..screw_holes import sunk
 from .bar import BAR_MIDDLE, BAR_SCREW_X
 from .carrier_screws import carrier_pattern, under_carrier_screw
-from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, COLOUR, FOOT
+from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT
 from .guide_layout import GuideLayout
 
 FOOT_UNDER_HEAD = 3.6  # of the bar's screws, heads sunk by 0.4
@@ -36,14 +36,10 @@ def foot(rig: GuideLayout) -> Part:
         sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, 0.0), (0, 0, 1), FOOT, FOOT_UNDER_HEAD)
         for sx in (-1, 1)
     ]
-    return Part(
-        part_no=f"{rig.design.name}-foot",
-        name="Foot of the bar",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR + BEHIND_BAR)), FOOT),
-        features=tuple(features),
-        colour=COLOUR,
-        finish="Ra 1.6, clear anodised after machining",
-        notes=("break edges 0.2",),
+    return plate(
+        rig.design,
+        "foot",
+        "Foot of the bar",
+        Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR + BEHIND_BAR)), FOOT),
+        features,
     )

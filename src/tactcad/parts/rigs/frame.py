@@ -30,7 +30,6 @@ CARRIAGE_LENGTH = 28.9
 # Front of the post: force gauge, its two plates and the stage stand before it.
 POST_Y = GAUGE_SIZE[1] / 2 + 2 * PLATE + 2 * STAGE_PLATE
 PIN = 8.0  # of the weight platform, diameter
-COLOUR = "#8d99a6"  # plates of the rigs
 STANDARD_GRAVITY = 9.80665  # m/s2, by definition (CGPM 1901)
 
 

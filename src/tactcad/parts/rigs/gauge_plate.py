@@ -14,10 +14,10 @@ from collections.abc import Sequence
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..materials import plate_material
-from ..screw_holes import sunk
+from ..plate import plate
+from ..screw_holes import corners, sunk
 from .force_gauge import GAUGE_THREADS
-from .frame import COLOUR, PLATE, PLATE_SCREW
+from .frame import PLATE, PLATE_SCREW
 from .stand_layout import StandLayout
 
 GAUGE_SCREW_X, GAUGE_SCREW_Z = 40.0, 20.0  # gauge plate on axis plate: outside the gauge's width
@@ -27,23 +27,12 @@ def gauge_plate(rig: StandLayout) -> Part:
     """Holds the force gauge by two screws from behind. Front face at local z = 0."""
     thread, _, under = PLATE_SCREW
     features = [
-        sunk("axis_plate", thread, (sx * GAUGE_SCREW_X, sy * GAUGE_SCREW_Z, 0.0), (0, 0, 1), PLATE, under)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("axis_plate", thread, (px, py, 0.0), (0, 0, 1), PLATE, under)
+        for px, py in corners(GAUGE_SCREW_X, GAUGE_SCREW_Z)
     ]
     features += [sunk("gauge", thread, (0.0, y, PLATE), (0, 0, -1), PLATE, under) for y in GAUGE_THREADS]
     return upright_plate(rig, "gauge-plate", "Gauge plate", features)
 
 
 def upright_plate(rig: StandLayout, number: str, name: str, features: Sequence[Feature]) -> Part:
-    return Part(
-        part_no=f"{rig.design.name}-{number}",
-        name=name,
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-46.0, -35.0, 46.0, 35.0), PLATE),
-        features=tuple(features),
-        colour=COLOUR,
-        finish="Ra 1.6, clear anodised after machining",
-        notes=("break edges 0.2",),
-    )
+    return plate(rig.design, number, name, Extrusion(rectangle(-46.0, -35.0, 46.0, 35.0), PLATE), features)

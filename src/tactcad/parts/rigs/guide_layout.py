@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import floor
 
-from tactcad.design.tree import Design, Grasping
+from tactcad.design.rigs import Grasping
+from tactcad.design.tree import Design
 
 from ..layout import Layout
 from .cart_layout import CartLayout, cart_layout

@@ -20,9 +20,9 @@ from tactcad.parts.description import Feature
 from ..description import Extrusion, Hole, Part, Pocket
 from ..library import orings
 from ..library.screws import METRIC
-from ..materials import plate_material
+from ..plate import plate
+from ..screw_holes import corners
 from .cart_layout import CartLayout
-from .frame import COLOUR
 
 
 def holder_body(rig: CartLayout) -> Part:
@@ -54,18 +54,14 @@ def holder_body(rig: CartLayout) -> Part:
         ),
     ]
     features += [
-        Hole("screw", (sx * h, sy * h, t), (0, 0, -1), METRIC["M3"].clearance, t, True)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        Hole("screw", (px, py, t), (0, 0, -1), METRIC["M3"].clearance, t, True) for px, py in corners(h, h)
     ]
-    return Part(
-        part_no=f"{rig.design.name}-holder-body",
-        name="Sample holder, body",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-s, -s, s, s), t),
-        features=tuple(features),
-        colour=COLOUR,
+    return plate(
+        rig.design,
+        "holder-body",
+        "Sample holder, body",
+        Extrusion(rectangle(-s, -s, s, s), t),
+        features,
         finish="Ra 1.6; groove floor and face around it Ra 0.8, not anodised",
         notes=("break edges 0.2, the groove's 0.1",),
     )

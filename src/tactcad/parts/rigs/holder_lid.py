@@ -15,8 +15,8 @@ from tactcad.contour import rectangle
 from tactcad.design.present import present
 
 from ..description import Extrusion, Hole, Part
-from ..materials import plate_material
-from ..screw_holes import sunk
+from ..plate import plate
+from ..screw_holes import corners, sunk
 from .cart_layout import CartLayout
 
 
@@ -28,16 +28,13 @@ def holder_lid(rig: CartLayout) -> Part:
         for x, y in rig.suction_holes
     ]
     under = present(rig.holder_fixing)[1]
-    screws = [
-        sunk("screw", "M3", (sx * h, sy * h, t), (0, 0, -1), t, under) for sx in (-1, 1) for sy in (-1, 1)
-    ]
-    return Part(
-        part_no=f"{rig.design.name}-holder-lid",
-        name="Sample holder, lid",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-s, -s, s, s), t),
-        features=tuple(holes + screws),
+    screws = [sunk("screw", "M3", (px, py, t), (0, 0, -1), t, under) for px, py in corners(h, h)]
+    return plate(
+        rig.design,
+        "holder-lid",
+        "Sample holder, lid",
+        Extrusion(rectangle(-s, -s, s, s), t),
+        holes + screws,
         colour="#aab2ba",
         finish="Ra 0.8 both faces, flat within 0.02",
         notes=("suction holes burr-free, not countersunk: rubber would be drawn in",),

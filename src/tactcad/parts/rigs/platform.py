@@ -12,10 +12,10 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..materials import plate_material
+from ..plate import plate
 from ..screw_holes import sunk
 from .bar import BAR_MIDDLE, BAR_SCREW_X
-from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, COLOUR, PLATFORM
+from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, PLATFORM
 from .guide_layout import GuideLayout
 
 PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
@@ -30,16 +30,10 @@ def platform(rig: GuideLayout) -> Part:
         for sx in (-1, 1)
     ]
     features.append(sunk("pin", "M4", (0.0, 0.0, 0.0), (0, 0, 1), PLATFORM, PLATFORM_UNDER_HEAD))
-    return Part(
-        part_no=f"{rig.design.name}-platform",
-        name="Weight platform",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(
-            rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM
-        ),
-        features=tuple(features),
-        colour=COLOUR,
-        finish="Ra 1.6, clear anodised after machining",
-        notes=("break edges 0.2",),
+    return plate(
+        rig.design,
+        "platform",
+        "Weight platform",
+        Extrusion(rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM),
+        features,
     )

@@ -14,12 +14,12 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
-from ..materials import plate_material
-from ..screw_holes import tapped, tapped_blind
+from ..plate import plate
+from ..screw_holes import corners, tapped, tapped_blind
 from .frame import BASE, POST, STAGE_HOLE
 from .stand_layout import StandLayout
 
-POST_SCREWS = tuple((sx * 20.0, sy * 5.0) for sx in (-1, 1) for sy in (-1, 1))  # from the post's middle
+POST_SCREWS = corners(20.0, 5.0)  # from the post's middle
 BASE_SCREW = 16.0  # M5 through the base plate into the post, head sunk
 BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 0.5
 
@@ -34,13 +34,12 @@ def post(rig: StandLayout) -> Part:
     features += [
         tapped_blind("base", "M5", (px, 0.0, t / 2 + py), (0, 1, 0), BASE_THREAD) for px, py in POST_SCREWS
     ]
-    return Part(
-        part_no=f"{rig.design.name}-post",
-        name="Post",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-w / 2, 0, w / 2, rig.post_height), t),
-        features=tuple(features),
+    return plate(
+        rig.design,
+        "post",
+        "Post",
+        Extrusion(rectangle(-w / 2, 0, w / 2, rig.post_height), t),
+        features,
         colour="#6f7a86",
         finish="Ra 1.6, front face square to the foot within 0.02/100",
         notes=("break edges 0.5",),

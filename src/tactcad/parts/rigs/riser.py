@@ -13,9 +13,9 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
-from ..materials import plate_material
+from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
-from .frame import COLOUR, POST, RISER_PITCH, STAGE_HOLE
+from .frame import POST, RISER_PITCH, STAGE_HOLE
 from .guide_layout import GuideLayout
 from .rail import rail_holes
 
@@ -40,14 +40,11 @@ def riser(rig: GuideLayout) -> Part:
         for sy in (-1, 1)
     ]
     features += [tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length)]
-    return Part(
-        part_no=f"{rig.design.name}-riser",
-        name="Riser",
-        process="milled",
-        material=plate_material(rig.design),
-        body=Extrusion(rectangle(-POST[0] / 2, -half, POST[0] / 2, half), depth),
-        features=tuple(features),
-        colour=COLOUR,
+    return plate(
+        rig.design,
+        "riser",
+        "Riser",
+        Extrusion(rectangle(-POST[0] / 2, -half, POST[0] / 2, half), depth),
+        features,
         finish="rail face Ra 0.8, parallel to the back within 0.01",
-        notes=("break edges 0.2",),
     )

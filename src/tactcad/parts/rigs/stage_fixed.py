@@ -12,7 +12,7 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Part, Purchase
 from ..materials import ALUMINIUM
-from ..screw_holes import sunk
+from ..screw_holes import corners, sunk
 from .frame import PLATE_SCREW, STAGE, STAGE_HOLE, STAGE_PLATE
 
 
@@ -22,9 +22,7 @@ def stage_fixed(travel: float) -> Part:
     half, t = STAGE / 2, STAGE_PLATE
     thread, _, under = PLATE_SCREW
     holes = tuple(
-        sunk("mount", thread, (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t, under)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        sunk("mount", thread, (px, py, t), (0, 0, -1), t, under) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
     )
     return Part(
         part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-FIXED",

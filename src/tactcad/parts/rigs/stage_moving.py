@@ -11,7 +11,7 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Part, Purchase
 from ..materials import ALUMINIUM
-from ..screw_holes import tapped
+from ..screw_holes import corners, tapped
 from .frame import STAGE, STAGE_HOLE, STAGE_PLATE
 
 
@@ -19,9 +19,7 @@ def stage_moving(travel: float) -> Part:
     """Moving half: slideway at z = 0, threads from the face at the top."""
     half, t = STAGE / 2, STAGE_PLATE
     threads = tuple(
-        tapped("mount", "M4", (sx * STAGE_HOLE, sy * STAGE_HOLE, t), (0, 0, -1), t)
-        for sx in (-1, 1)
-        for sy in (-1, 1)
+        tapped("mount", "M4", (px, py, t), (0, 0, -1), t) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
     )
     return Part(
         part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-MOVING",

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import dist
 
-from .contour import Contour
-from .intersect import self_intersections
-from .nearest import meeting_points
-from .necks import direction
-from .rounded import ROUNDING_MM
-from .segment import Arc, Line, Point, Segment
+from tactcad.contour.contour import Contour
+from tactcad.contour.intersect import self_intersections
+from tactcad.contour.nearest import meeting_points
+from tactcad.contour.necks import direction
+from tactcad.contour.rounded import ROUNDING_MM
+from tactcad.contour.segment import Arc, Line, Point, Segment
 
 
 @dataclass(frozen=True)
@@ -23,11 +23,27 @@ class _Moved:
 
 
 def offset(contour: Contour, by: float) -> Contour:
-    """Every point of the contour moved by `by` mm along its normal: outwards, or inwards where negative.
+    """The parallel curve: every point moved along its normal.
 
     Corners that open are rounded about their old place (the path of a wire's centre); corners that close are
-    cut where the moved pieces meet, and a fillet smaller than the move vanishes there. Raises ValueError
-    where the move closes a slot, eats a web or a piece other than a fillet.
+    cut where the moved pieces meet, and a fillet smaller than the move vanishes there.
+
+    Parameters
+    ----------
+    contour
+        A simple closed contour, mm.
+    by
+        How far, mm: outwards, or inwards where negative.
+
+    Returns
+    -------
+    Contour
+        It runs in the same direction.
+
+    Raises
+    ------
+    ValueError
+        Where the move closes a slot, eats a web or a piece other than a fillet.
     """
     to_the_right = by if contour.ccw else -by
     moved = [m for m in (_moved(s, to_the_right) for s in contour) if m]

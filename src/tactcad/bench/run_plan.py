@@ -13,7 +13,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Plan:
+class RunPlan:
     """mode; seed of everything random; a scratch folder; `say` hears what is being measured.
 
     smoke: does everything run? Its figures mean nothing. short: four minutes on two quiet cores. full: for

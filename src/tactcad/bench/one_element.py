@@ -9,9 +9,10 @@ from tactcad.contour import Arc, Contour
 from tactcad.parts.description import Part
 from tactcad.scenes import make_scene
 
-from . import arrays, freecad, tables
-from .plan import Plan
+from . import arrays, freecad
+from .bench_tables import table
 from .process import Run, child, last_line, measured, python
+from .run_plan import RunPlan
 from .timing import of_samples
 
 TITLE = "One element: tactcad, the bare kernel, FreeCAD"
@@ -21,7 +22,7 @@ BARE = Path(__file__).with_name("peers") / "kernel_element.py"
 Program = tuple[str, list[str], dict[str, str] | None]
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     part = next(p.part for p in make_scene(arrays.published(), "array").placements if p.designator == "E1")
     repeats = plan.of(1, 5, 20)
     runs: dict[str, list[dict]] = {}
@@ -48,7 +49,7 @@ def measure(plan: Plan) -> dict:
     )
     missing = [] if freecad.version() else ["FreeCAD (freecadcmd) is not installed: not compared."]
     return {
-        "tables": {"element": tables.table(TITLE, columns, rows, note)},
+        "tables": {"element": table(TITLE, columns, rows, note)},
         "findings": findings(rows),
         "missing": missing,
     }

@@ -16,9 +16,10 @@ from tactcad.parts.description import Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
-from . import arrays, tables
+from . import arrays
+from .bench_tables import table
 from .pairs import known_pairs
-from .plan import Plan
+from .run_plan import RunPlan
 
 if TYPE_CHECKING:
     from manifold3d import Manifold
@@ -32,7 +33,7 @@ T = TypeVar("T")
 Placed = tuple[Placement, Placement]
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     known = [(pair.placements, pair.verdict) for pair in known_pairs(plan.of(1, 2, 20), plan.seed)]
     own = near(make_scene(arrays.published(), "array"))[:: plan.of(30, 3, 1)]
     angular = plan.of(ANGULAR[:1], ANGULAR[:3], ANGULAR)
@@ -55,8 +56,8 @@ def measure(plan: Plan) -> dict:
     )
     return {
         "tables": {
-            "interference": tables.table(TITLE, columns, rows, note),
-            "situations": tables.table(
+            "interference": table(TITLE, columns, rows, note),
+            "situations": table(
                 "Each situation once, against every near pair by the kernel",
                 others,
                 situations,
@@ -139,7 +140,7 @@ def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
 
 
 def _compared(
-    plan: Plan, name: str, pairs: Sequence[tuple[Placed, str | None]], angular: tuple[float, ...]
+    plan: RunPlan, name: str, pairs: Sequence[tuple[Placed, str | None]], angular: tuple[float, ...]
 ) -> list[dict]:
     """A row by the kernel and one by each tolerance; on every pair all of them in turn."""
     ways: list[float | None] = [None, *angular]  # None: the kernel
@@ -189,7 +190,7 @@ class _Forgetful(dict):
         return False
 
 
-def _situations(plan: Plan) -> list[dict]:
+def _situations(plan: RunPlan) -> list[dict]:
     from tactcad.checks.interference import check_interference
     from tactcad.solids.build import build
 

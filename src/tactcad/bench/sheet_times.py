@@ -5,16 +5,17 @@ from __future__ import annotations
 import shutil
 from typing import Any
 
-from . import arrays, tables
-from .plan import Plan
+from . import arrays
+from .bench_tables import table
 from .process import Run, command, cost, measured
+from .run_plan import RunPlan
 
 TITLE = "Drawing sheets"
 QUESTION = "What do dimensioned sheets of every part add to an export?"
 ONE_CORE = ("taskset", "-c", "0")
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     design = plan.folder / "sheets.toml"
     design.write_text(arrays.text(plan.of(2, 10, 10)), "utf-8")
     scenes = plan.of(("--scene", "array"), ("--scene", "array"), ())
@@ -53,7 +54,7 @@ def measure(plan: Plan) -> dict:
     )
     missing = [] if pinned else ["taskset is not installed: one core was not measured."]
     return {
-        "tables": {"sheets": tables.table(TITLE, columns, rows, note)},
+        "tables": {"sheets": table(TITLE, columns, rows, note)},
         "findings": findings(rows),
         "missing": missing,
     }

@@ -8,15 +8,16 @@ from typing import Any
 from tactcad.parts.detail import DETAILS
 from tactcad.scenes import scene_names
 
-from . import arrays, tables
-from .plan import Plan
+from . import arrays
+from .bench_tables import table
 from .process import Run, child, command, cost, in_turns, last_line, measured
+from .run_plan import RunPlan
 
 TITLE = "Detail levels of each scene"
 QUESTION = "What do holes, pockets and threads cost where an envelope would do?"
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     scenes = scene_names(arrays.published())[: plan.of(1, None, None)]
     commands = {
         f"{scene}, {detail}": child(
@@ -45,7 +46,7 @@ def measure(plan: Plan) -> dict:
         "the kernel alone takes "
         f"{floor / 1e6:.0f} MB. Whole export: `tactcad export --scene`, empty cache (full runs only)."
     )
-    return {"tables": {"detail": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
+    return {"tables": {"detail": table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
 def _row(name: str, runs: list[Run], floor: int) -> dict:
@@ -61,7 +62,7 @@ def _row(name: str, runs: list[Run], floor: int) -> dict:
     return row | {"above": row["peak_bytes"] - floor, "bytes": told[0]["bytes"]}
 
 
-def _exported(scene: str, detail: str, plan: Plan) -> dict:
+def _exported(scene: str, detail: str, plan: RunPlan) -> dict:
     """The whole command, cold and again, with a cache of its own."""
     folder = plan.folder / f"{scene}-{detail}"
     design = plan.folder / "design.toml"

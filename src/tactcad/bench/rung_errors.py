@@ -13,9 +13,10 @@ from tactcad.mechanics import ladder
 from tactcad.mechanics.register import BY_NAME
 from tactcad.paper.report import sig
 
-from . import tables, truth
+from . import truth
+from .bench_tables import table
 from .front import told
-from .plan import Plan
+from .run_plan import RunPlan
 from .timing import interleaved
 
 TITLE = "Rungs of the model ladder"
@@ -23,7 +24,7 @@ QUESTION = "How wrong is each rung against converged finite elements, and what d
 GOAL_MILLION = 0.3  # s for a million designs by a closed form on one core
 
 
-def measure(plan: Plan) -> dict:
+def measure(plan: RunPlan) -> dict:
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     held_out, fine = fit_samples.shipped()["held out"], truth.of_run(plan)
     rows = [_closed_form(rung, held_out, fine) for rung in ladder.CLOSED_FORMS]
@@ -47,7 +48,7 @@ def measure(plan: Plan) -> dict:
         "estimate), within 1e-4 on the held-out ones; no error of finite elements smaller than that estimate "
         "is claimed."
     )
-    return {"tables": {"rungs": tables.table(TITLE, columns, rows, note)}, "findings": findings(rows)}
+    return {"tables": {"rungs": table(TITLE, columns, rows, note)}, "findings": findings(rows)}
 
 
 def errors(stiffness: np.ndarray, exact: np.ndarray, label: str, own: np.ndarray | float = 0.0) -> dict:
@@ -68,7 +69,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
     return row | errors(K, np.concatenate([c["plane_stiffness"] * c["width"] for c in samples]), "plane")
 
 
-def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
+def _elements(rung: str, fine: Columns, plan: RunPlan, count: int) -> dict:
     from tactcad.fem.one_element import stiffness
 
     found = np.full(len(fine["width"]), np.nan)
@@ -82,7 +83,7 @@ def _elements(rung: str, fine: Columns, plan: Plan, count: int) -> dict:
     )
 
 
-def _times(plan: Plan) -> dict[str, dict]:
+def _times(plan: RunPlan) -> dict[str, dict]:
     """Seconds per element: closed forms among many, element rungs one after the other."""
     from tactcad.fem.one_element import stiffness
 

@@ -15,25 +15,25 @@ from typing import Any
 from tactcad.design.messages import CheckFailure
 
 from .machine import machine, peers, versions
-from .plan import Plan
+from .run_plan import RunPlan
 
 SCHEMA = "tactcad-bench-1"
 # Name -> module, and whether it needs the CAD kernel.
 BENCHMARKS = {
-    "rungs": ("rungs", False),
+    "rungs": ("rung_errors", False),
     "meshes": ("meshes", False),
     "tessellation": ("tessellation", True),
-    "interference": ("interference", True),
-    "detail": ("detail", True),
+    "interference": ("verdicts", True),
+    "detail": ("detail_levels", True),
     "step": ("prototypes", True),
     "scaling": ("scaling", True),
-    "element": ("element", True),
+    "element": ("one_element", True),
     "export": ("export_times", True),
-    "sheets": ("sheets", True),
+    "sheets": ("sheet_times", True),
 }
 
 
-def run(plan: Plan, names: Sequence[str], say: Callable[[int, int, str], None]) -> dict:
+def run(plan: RunPlan, names: Sequence[str], say: Callable[[int, int, str], None]) -> dict:
     """Measure. A benchmark that fails is recorded with its reason under "failed", and the others go on."""
     started = time.perf_counter()
     result: dict[str, Any] = {
@@ -54,7 +54,7 @@ def run(plan: Plan, names: Sequence[str], say: Callable[[int, int, str], None]) 
     return result | {"seconds": round(time.perf_counter() - started, 1)}
 
 
-def _one(name: str, plan: Plan) -> dict:
+def _one(name: str, plan: RunPlan) -> dict:
     module_name, needs_kernel = BENCHMARKS[name]
     module = importlib.import_module(f".{module_name}", __package__)
     entry = {"title": module.TITLE, "question": module.QUESTION, "tables": {}, "findings": [], "missing": []}

@@ -1,0 +1,40 @@
+"""What a design's material has otherwise than its name says, and what stiffness its name would give."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from tactcad.design.tree import Design
+
+
+def stiffness_factor(design: Design) -> float | None:
+    """Stiffness with the table's Young's modulus over that with the design's: their ratio, since both models
+    and elements are linear; None where the design has the table's."""
+    return next((d.table / d.value for d in design.differences if d.name == "youngs_modulus"), None)
+
+
+def lines(design: Design, stiffness: Sequence[float]) -> list[str]:
+    """A line a property that differs, with its source; that of Young's modulus with both stiffnesses
+    (N/mm)."""
+    found = [f"material: {d}" + (f" ({d.origin})" if d.origin else "") for d in design.differences]
+    factor = stiffness_factor(design)
+    if factor is not None:
+        most, least = max(stiffness), min(stiffness)
+        found.append(
+            f"with {design.material.alloy}'s own modulus every K is {factor - 1:+.1%}: {most * factor:.4g} "
+            f"instead of {most:.4g} N/mm"
+            + (f", {least * factor:.4g} instead of {least:.4g}" if least != most else "")
+        )
+    return found
+
+
+def record(design: Design) -> dict[str, Any]:
+    """The same for JSON: `material_differences`, and `stiffness_factor` to the table's modulus where it
+    differs."""
+    differences = [
+        {"property": d.name, "value": d.value, "table": d.table, "relative": d.relative, "origin": d.origin}
+        for d in design.differences
+    ]
+    factor = stiffness_factor(design)
+    return {"material_differences": differences} | ({"stiffness_factor": factor} if factor else {})

@@ -1,0 +1,70 @@
+"""What an element as built differs by from its drawing, and what each of that does to its stiffness.
+
+All are half-widths of `[tolerance]`, taken as two standard deviations, by the names of its fields. Two only
+soften: a layer of the cut that carries nothing, and a clamp that turns. They count both ways in a root of
+squares.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import ladder
+from .derivative import elasticity
+from .section import Array, HingeSection
+
+if TYPE_CHECKING:
+    from tactcad.design.tree import Tolerance
+
+# By field of [tolerance]: the section's parameter.
+DIMENSIONS = {
+    "hinge_thickness": "hinge_thickness",
+    "hinge_length": "hinge_length",
+    "fillet_radius": "fillet_radius",
+    "load_arm": "load_arm",
+    "arm_height": "arm_height",
+    "sheet_thickness": "width",
+}
+# What a layer (mm) off every cut face takes from the section that is left: faces come nearer, the slot grows.
+CUT_FACES = {
+    "hinge_thickness": -2.0,
+    "hinge_length": 2.0,
+    "fillet_radius": 1.0,
+    "arm_height": -2.0,
+    "body_height": -2.0,
+    "body_length": -1.0,
+}
+COMMON = ("sheet_thickness", "youngs_modulus", "recast_layer")  # one sheet, one cut: alike in all elements
+
+
+def without_layer(s: HingeSection, layer: Array | float) -> HingeSection:
+    """The section that carries load where `layer` mm of every face that the wire cut carry none."""
+    return s.with_(**{name: getattr(s, name) + by * layer for name, by in CUT_FACES.items()})
+
+
+def in_clamp(s: HingeSection, stiffness: Array, turn: Array | float) -> Array:
+    """Tip stiffness (N/mm) in a clamp that turns by `turn` rad/(N mm) under the moment at its edge."""
+    lever = s.load_arm + s.hinge_length / 2.0 + s.body_length
+    return stiffness / (1.0 + stiffness * turn * lever * lever)
+
+
+def half_widths(s: HingeSection, tolerance: Tolerance, rung: str = ladder.DEFAULT_RUNG) -> dict[str, Array]:
+    """Relative half-width of every design's tip stiffness, by field of [tolerance], to first order.
+
+    Raises CheckFailure where a design is out of the rung's range.
+    """
+    names = dict.fromkeys((*DIMENSIONS.values(), *CUT_FACES))
+    per_mm = {name: elasticity(s, name, rung) / getattr(s, name) for name in names}
+    found = {field: getattr(tolerance, field) * per_mm[name] for field, name in DIMENSIONS.items()}
+    found["youngs_modulus"] = np.full(s.shape, tolerance.youngs_modulus)  # K goes with it
+    found["recast_layer"] = tolerance.recast_layer * sum(by * per_mm[name] for name, by in CUT_FACES.items())
+    K = ladder.stiffness(s, rung)
+    found["clamp_compliance"] = np.log(in_clamp(s, K, tolerance.clamp_compliance) / K)
+    return {field: np.broadcast_to(np.abs(half), s.shape) for field, half in found.items()}
+
+
+def together(shares: dict[str, Array]) -> Array:
+    """Root of the sum of squares."""
+    return np.sqrt(sum(share * share for share in shares.values()))

@@ -1,0 +1,39 @@
+"""What is milled from plate: end plates, carrier and the rigs' plates differ in contour and features only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tactcad.design.tree import Design
+
+from .description import Characteristic, Extrusion, Feature, Part
+from .materials import plate_material
+
+RIG_COLOUR = "#8d99a6"
+ANODISED = "Ra 1.6, clear anodised after machining"
+
+
+def plate(
+    design: Design,
+    number: str,
+    name: str,
+    body: Extrusion,
+    features: Iterable[Feature],
+    finish: str = ANODISED,
+    colour: str = RIG_COLOUR,
+    notes: tuple[str, ...] = ("break edges 0.2",),
+    characteristics: tuple[Characteristic, ...] = (),
+) -> Part:
+    """A plate of the design's plate alloy; its part number is the design's name and `number`."""
+    return Part(
+        part_no=f"{design.name}-{number}",
+        name=name,
+        process="milled",
+        material=plate_material(design),
+        body=body,
+        features=tuple(features),
+        colour=colour,
+        finish=finish,
+        notes=notes,
+        characteristics=characteristics,
+    )
