@@ -30,10 +30,12 @@ MARGIN, MARGIN_OF_FEW, FEW = 1.4, 2.5, 60
 # Under l/t = 0.5 the hinge is next to none and its two roots are one; from 2 they are apart. A leaf much
 # longer than wide curls over all of its width.
 NARROW = 0.7
+DEEP = 4.0  # fillets over hinge thickness: where they reach through arm or body, few were solved
 ZONES: tuple[dict[str, list[float | None]], ...] = (
     {"b/l": [NARROW, None], "l/t": [0.0, NEXT_TO_NONE]},
     {"b/l": [NARROW, None], "l/t": [NEXT_TO_NONE, 2.0]},
-    {"b/l": [NARROW, None], "l/t": [2.0, None]},
+    {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [0.0, DEEP]},
+    {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [DEEP, None]},
     {"b/l": [0.0, NARROW]},
 )
 TIMED = 10_000  # designs in the table that closed forms are timed on
