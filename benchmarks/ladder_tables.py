@@ -14,7 +14,7 @@ from pathlib import Path
 
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.accuracy import CANDIDATES, accuracy_data, zone_name
-from tactcad.mechanics.constants import ladder_data
+from tactcad.mechanics.constants import ladder_data, strain_data
 from tactcad.mechanics.register import REGISTER
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
@@ -56,6 +56,19 @@ def strain_errors() -> str:
     return "\n".join(lines)
 
 
+def strain_zones() -> str:
+    """Worst error of strain and stress by rung solid that was found, and what is stated, by zone of the
+    range."""
+    zones = strain_data()["zones"]
+    names = list(zones[0]["worst"])
+    lines = ["| zone | designs | " + " | ".join(names) + " |", "|---|---|" + "---|" * len(names)]
+    for zone in zones:
+        pairs = [(zone["worst"][n], zone["stated"][n]) for n in names]
+        cells = ["-" if worst is None else f"{worst:.1%} -> {stated:.1%}" for worst, stated in pairs]
+        lines.append(f"| {zone_name(zone)} | {zone['designs']} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 def beyond() -> str:
     """Error over the whole range in which a rung answers, mostly in its corners, on designs that the fit has
     not seen."""
@@ -87,7 +100,7 @@ def papers_strains_by_elements() -> str:
 
     def by_elements(s: HingeSection, rung: str) -> tuple[float, float]:
         found = solve(s, rung, GRID)
-        return found.gauge_strain * PAPER_FORCE, found.fillet_peak * PAPER_FORCE
+        return float(found.readings.gauge) * PAPER_FORCE, found.readings.fillet_strain * PAPER_FORCE
 
     return _strain_table(ladder.FINITE_ELEMENTS, by_elements)
 
@@ -134,6 +147,7 @@ TABLES = {
     "beyond": beyond,
     "range": fitted_range,
     "strain errors": strain_errors,
+    "strain zones": strain_zones,
     "paper's strains": papers_strains,
     "paper's strains by elements": papers_strains_by_elements,
 }

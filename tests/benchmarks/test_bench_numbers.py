@@ -49,18 +49,18 @@ def dominated(point, points) -> bool:
     return any(all(a <= b for a, b in zip(q, point)) and q != point for q in points)
 
 
-@pytest.mark.parametrize("seed", range(40))
-def test_the_front_is_what_nothing_dominates(seed):
+def test_the_front_is_what_nothing_dominates():
     """Brute force over every pair; few distinct values, so that ties and equal points occur."""
-    points = [tuple(map(float, p)) for p in np.random.default_rng(seed).integers(1, 6, (seed % 14, 2))]
-    front = efficient(points)
-    assert sorted(front) == [i for i, p in enumerate(points) if not dominated(p, points)]
-    assert [points[i][0] for i in front] == sorted(points[i][0] for i in front)
-    instead = dominators(points)
-    assert set(instead) == set(range(len(points))) - set(front)
-    for i, j in instead.items():
-        as_quick = [p[1] for p in points if p[0] <= points[i][0]]
-        assert points[j][0] <= points[i][0] and points[j][1] == min(as_quick)
+    for seed in range(40):
+        points = [tuple(map(float, p)) for p in np.random.default_rng(seed).integers(1, 6, (seed % 14, 2))]
+        front = efficient(points)
+        assert sorted(front) == [i for i, p in enumerate(points) if not dominated(p, points)], seed
+        assert [points[i][0] for i in front] == sorted(points[i][0] for i in front), seed
+        instead = dominators(points)
+        assert set(instead) == set(range(len(points))) - set(front), seed
+        for i, j in instead.items():
+            as_quick = [p[1] for p in points if p[0] <= points[i][0]]
+            assert points[j][0] <= points[i][0] and points[j][1] == min(as_quick), seed
 
 
 def test_the_sentence_names_front_and_dominated():

@@ -119,8 +119,8 @@ def test_stiffness_goes_with_size_and_strain_does_not(two, factor):
     large, little = (elements.solve(x, "fem-plane", 0.5 * k) for x, k in ((s, 1.0), (small, factor)))
     assert little.stiffness == pytest.approx(factor * large.stiffness, rel=1e-8)
     # strain per newton goes with 1/size^2: at a force that goes with size^2 it stays
-    assert little.gauge_strain * factor**2 == pytest.approx(large.gauge_strain, rel=1e-6)
-    assert little.fillet_peak * factor**2 == pytest.approx(large.fillet_peak, rel=1e-6)
+    assert little.readings.gauge * factor**2 == pytest.approx(large.readings.gauge, rel=1e-6)
+    assert little.readings.fillet_strain * factor**2 == pytest.approx(large.readings.fillet_strain, rel=1e-6)
 
 
 def test_jaw_sized_solid_is_the_large_one_over_25():

@@ -48,7 +48,7 @@ def keeps_its_promise(s, wanted, mesh):
     assert error <= answer.expected_error <= wanted, (answer.model, error)
 
 
-@pytest.mark.parametrize("i", range(6))
+@pytest.mark.parametrize("i", [0, 5])  # the other end of the row; sixty more by night
 def test_one_per_cent_is_kept_on_fresh_designs(i):
     print("seed", SEED)
     keeps_its_promise(small(SEED, 6).rows(i), 0.01, 2)
@@ -62,10 +62,10 @@ def small(seed, count):
     return s.rows(np.flatnonzero(fits)[np.linspace(0, fits.sum() - 1, count).astype(int)])
 
 
-@pytest.mark.parametrize("i", range(2))
-def test_a_tenth_of_a_per_cent_is_kept_by_elements(i):
+def test_a_tenth_of_a_per_cent_is_kept_by_elements():
+    """Twenty more by night."""
     print("seed", SEED)
-    s = small(SEED + 10, 2).rows(i)
+    s = small(SEED + 10, 2).rows(1)
     assert choose(s, 1e-3).candidate.rung == "fem-solid"
     keeps_its_promise(s, 1e-3, 3)
 
@@ -96,11 +96,11 @@ def test_mesh_of_a_tenth_of_a_per_cent_is_measured_by_refinement():
     "draw", [fit_samples.draw_box, accuracy_samples.draw_range], ids=["box", "whole range"]
 )
 def test_one_per_cent_is_a_closed_form_nearly_everywhere_and_a_tenth_never(draw):
-    s = fit_samples.section(draw(2000, SEED + 1000))
+    s = fit_samples.section(draw(600, SEED + 1000))
     inside = validity.reasons(s, "solid") == ""
     one = [c for c, known in zip(choose_each(s, 0.01), inside) if known]
     closed = sum(not isinstance(c, str) and c.candidate.rung in ladder.CLOSED_FORMS for c in one)
-    assert closed >= 0.95 * len(one) > 1000
+    assert closed >= 0.95 * len(one) > 300
     tenth = [c for c, known in zip(choose_each(s, 0.001), inside) if known]
     assert all(not isinstance(c, str) and c.candidate.rung == "fem-solid" for c in tenth)
 

@@ -154,7 +154,7 @@ def simulated_sensitivity(rng) -> Sensitivity:
     )
 
 
-@pytest.mark.parametrize("x", [3.85, 60.0])
+@pytest.mark.parametrize("x", [3.85, pytest.param(60.0, marks=pytest.mark.nightly)])
 def test_stated_intervals_hold_the_truth_as_often_as_they_say(x):
     """Calibration and grasp both simulated, 300 times: 95 % within binomial bounds of probability 1e-4."""
     rng = np.random.default_rng(11)
@@ -282,9 +282,19 @@ def test_without_noise_the_coupled_readings_give_the_truth_at_their_coupling(of_
     assert combine(slopes.coupled(of_limit * share), 0.95)[0].estimate == pytest.approx(4.0, rel=1e-4)
 
 
-@pytest.mark.parametrize("x", [1.5, 4.0, 12.0])
-@pytest.mark.parametrize("kind", ["half-space", "even, 5 %", "separate"])
-def test_intervals_hold_whatever_the_coupling_up_to_its_limit(x, kind):
+# each object and each coupling once in every run, all pairs of them by night
+EVERY_RUN = {("half-space", 4.0), ("even, 5 %", 12.0), ("separate", 1.5)}
+KINDS_AND_OBJECTS = [(k, x) for k in ("half-space", "even, 5 %", "separate") for x in (1.5, 4.0, 12.0)]
+
+
+@pytest.mark.parametrize(
+    "kind, x",
+    [
+        pytest.param(*both, marks=() if both in EVERY_RUN else pytest.mark.nightly)
+        for both in KINDS_AND_OBJECTS
+    ],
+)
+def test_intervals_hold_whatever_the_coupling_up_to_its_limit(kind, x):
     """Fifty grasps each: the truth lies within every pair's interval and the combined one, 93 % of the time
     at least; without the limit, coupling takes nearly all of them away from it."""
     limit = half_space()

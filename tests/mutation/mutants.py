@@ -118,7 +118,7 @@ for _name, _function in list(globals().items()):
 def findings() -> Iterator[Mutant]:
     for path in [
         *sorted((SOURCE / "tactcad" / "checks").glob("*.py")),
-        SOURCE / "tactcad" / "export" / "golden.py",
+        SOURCE / "tactcad" / "export" / "golden_file.py",
     ]:
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for name in sorted(names_of_findings(module, ast.parse(path.read_text(encoding="utf-8")))):

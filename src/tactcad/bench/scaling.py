@@ -113,7 +113,7 @@ def _row(what: str, n: int, seconds: float, median: float, peak_bytes: float | N
 
 
 def _exponents(rows: list[dict]) -> list[dict]:
-    found = []
+    exponents = []
     for what in dict.fromkeys(row["what"] for row in rows):
         group = [row for row in rows if row["what"] == what]
         sizes = [row["elements"] for row in group]
@@ -122,7 +122,7 @@ def _exponents(rows: list[dict]) -> list[dict]:
         p = fit(sizes, [row["seconds"] for row in group])
         above = p.low > 1.0 or p.last > 1.0 + NOISE
         finite = np.isfinite(p.low)
-        found.append(
+        exponents.append(
             {
                 "what": what,
                 "from": sizes[0],
@@ -135,7 +135,7 @@ def _exponents(rows: list[dict]) -> list[dict]:
                 "why": EXPLAINED.get(what, "not explained") if above else "",
             }
         )
-    return found
+    return exponents
 
 
 def findings(exponents: list[dict]) -> list[str]:

@@ -32,10 +32,10 @@ LEAST_FACE = LEAST_EDGE**2  # mm2
 
 def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
     """Findings on the part's shape in its own frame."""
-    found: list[Finding] = []
+    findings: list[Finding] = []
 
     def fail(check: str, value: float, limit: float, message: str) -> None:
-        found.append(Finding(check, "fail", part.part_no, (), value, limit, message))
+        findings.append(Finding(check, "fail", part.part_no, (), value, limit, message))
 
     solids, shells = subshapes(shape, TopAbs_SOLID), subshapes(shape, TopAbs_SHELL)
     if len(solids) != 1 or len(shells) != 1:
@@ -45,12 +45,12 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
             1,
             f"{len(solids)} solids with {len(shells)} shells instead of one of each",
         )
-        return found
+        return findings
     if not BRepCheck_Analyzer(shape).IsValid():
         fail("brep-valid", 0, 1, "the kernel calls the solid invalid")
     if not BRep_Tool.IsClosed_s(shells[0]):
         fail("shell-closed", 0, 1, "the solid's shell is open")
-    found += [*_tiny(part, shape, TopAbs_EDGE), *_tiny(part, shape, TopAbs_FACE)]
+    findings += [*_tiny(part, shape, TopAbs_EDGE), *_tiny(part, shape, TopAbs_FACE)]
     if _meets_itself(shape):
         fail("self-intersection", 1, 0, "faces or edges of the solid pass through each other")
     volume = measure(shape)["volume"]
@@ -61,7 +61,7 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
             part.volume,
             f"the solid has {volume:.9g} mm3, its description {part.volume:.9g} mm3",
         )
-    return found
+    return findings
 
 
 def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:

@@ -15,7 +15,7 @@ def check_calibration(design: Design) -> list[Finding]:
 
     An element whose strength the estimator cannot tell is flagged by the strength check.
     """
-    found = []
+    findings = []
     travel = present(design.calibration).travel
     for load in calibration_loads(design):
         if load.refused or load.deflection <= load.rated_deflection:
@@ -26,7 +26,7 @@ def check_calibration(design: Design) -> list[Finding]:
             f"{travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated "
             f"for {load.rated_deflection:.4g}: calibrate it to {load.travel_at_rated:.4g} mm of travel"
         )
-        found.append(
+        findings.append(
             Finding(
                 "calibration",
                 severity,
@@ -37,4 +37,4 @@ def check_calibration(design: Design) -> list[Finding]:
                 message,
             )
         )
-    return found
+    return findings

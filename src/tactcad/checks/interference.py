@@ -55,7 +55,7 @@ def check_interference(
     faces: dict[str, Faces] = {}
     changing = {part.part_no: zones(part) for part in scene.parts}
     known = {} if known is None else known
-    found = []
+    findings = []
     met: set[frozenset[str]] = set()
     for i, j in near_pairs(boxes):
         first, second = scene.placements[i], scene.placements[j]
@@ -65,12 +65,12 @@ def check_interference(
         pair = frozenset((first.designator, second.designator))
         if known[key].overlap > OVERLAP_MM3 or known[key].distance < TOUCH_MM:
             met.add(pair)
-        found += _verdict(first, second, known[key], meant.get(pair))
+        findings += _verdict(first, second, known[key], meant.get(pair))
     for contact in scene.contacts:
         if frozenset((contact.first, contact.second)) not in met:
             message = f"declared to be in {contact.kind} contact with {contact.second}, but they are apart"
-            found.append(Finding("contact", "fail", contact.first, (), 0, 0, message))
-    return found
+            findings.append(Finding("contact", "fail", contact.first, (), 0, 0, message))
+    return findings
 
 
 def near_pairs(boxes: np.ndarray) -> Iterator[tuple[int, int]]:

@@ -48,17 +48,19 @@ def chord_bound(area: float) -> float:
 
 def check_triangles(part_no: str, mesh: trimesh.Trimesh) -> list[Finding]:
     """Every edge is used by exactly two triangles, in opposite directions; nothing is inside out."""
-    found = []
+    findings = []
     uses = np.unique(mesh.edges_sorted, axis=0, return_counts=True)
     bad = uses[0][uses[1] != 2]
     if len(bad):
         where = tuple(float(v) for v in mesh.vertices[bad[0]].mean(axis=0))
         message = f"{len(bad)} edges are not shared by exactly two triangles"
-        found.append(Finding("mesh-watertight", "fail", part_no, where, len(bad), 0, message))
+        findings.append(Finding("mesh-watertight", "fail", part_no, where, len(bad), 0, message))
     elif not mesh.is_winding_consistent:
-        found.append(
+        findings.append(
             Finding("mesh-winding", "fail", part_no, (), 0, 1, "neighbouring triangles face opposite ways")
         )
     elif mesh.volume <= 0:
-        found.append(Finding("mesh-winding", "fail", part_no, (), mesh.volume, 0, "the mesh is inside out"))
-    return found
+        findings.append(
+            Finding("mesh-winding", "fail", part_no, (), mesh.volume, 0, "the mesh is inside out")
+        )
+    return findings

@@ -55,7 +55,7 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
     placed = {p.designator: placed_box(p, boxes[p.part.part_no]) for p in scene.placements}
     meant = {frozenset((c.first, c.second)): c.kind for c in scene.contacts}
     known: dict[tuple, tuple[float, str] | None] = {}
-    found = []
+    findings = []
     for motion in scene.motions:
         for pair in _moving_pairs(scene, motion):
             span = _span(placed[pair.first.designator], placed[pair.second.designator], pair)
@@ -75,8 +75,8 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
                 known[key] = _slides(pair, full) if kind else _meets(pair, span, full, envelope)
             hit = known[key]
             if hit:
-                found.append(_finding(motion, pair, *hit))
-    return found
+                findings.append(_finding(motion, pair, *hit))
+    return findings
 
 
 def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Pair]:

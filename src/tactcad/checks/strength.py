@@ -40,9 +40,9 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
         "tolerance included"
     )
     stress = design.material.yield_strength / design.rating.deflection_factor
-    found = []
+    findings = []
     if state.deflection > state.rated_deflection * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -55,7 +55,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.stress > stress * (1 + ROUNDING):
-        found.append(
+        findings.append(
             Finding(
                 "overload",
                 "fail",
@@ -68,7 +68,7 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
             )
         )
     if state.rated_force < design.rating.force:
-        found.append(
+        findings.append(
             Finding(
                 "rated-force",
                 "flag",
@@ -80,4 +80,4 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 f"the fillet would have less than its safety of {design.rating.yield_factor:g} against yield",
             )
         )
-    return found
+    return findings

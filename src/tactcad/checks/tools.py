@@ -37,7 +37,7 @@ def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Findin
     """Findings on every screw and nut that a step of the scene puts in; shapes by part number."""
     placed = {p.designator: p for p in scene.placements}
     known = cache(lambda number: (Faces(shapes[number]), bounding_box(shapes[number])))
-    found: list[Finding] = []
+    findings: list[Finding] = []
     standing: list[str] = []
     for step in scene.steps:
         standing += step.designators
@@ -45,8 +45,8 @@ def check_tools(scene: Scene, shapes: Mapping[str, TopoDS_Shape]) -> list[Findin
             tool = _tool(fastener)
             if tool is not None:
                 others = [placed[name] for name in _in_the_way(step, standing) if name != fastener.designator]
-                found += _reached(fastener, tool, others, known)
-    return found
+                findings += _reached(fastener, tool, others, known)
+    return findings
 
 
 def _in_the_way(step: Step, standing: list[str]) -> list[str]:

@@ -259,9 +259,23 @@ def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, sh
         )
     if (worst := _worst(rows)) is not None:
         lines.append(stated(worst))
+    if model in ("solid", "fem-solid"):
+        lines.append(_errors(rows))
     if shares:
         lines += _spread(design.tolerance, shares)
     return "\n".join(lines)
+
+
+def _errors(rows: list[dict]) -> str:
+    """What is stated of strain and stress against refined solid elements, worst element."""
+
+    def worst(field: str) -> str:
+        known = [row[field] for row in rows if row[field] is not None]
+        return f"{max(known):.1%}" if len(known) == len(rows) else "not known"
+
+    shares = {"gauge": "gauge_strain_error", "fillet": "peak_strain_error", "stress": "stress_error"}
+    told = ", ".join(f"{name} {worst(field)}" for name, field in shares.items())
+    return f"error against refined elements, at most: strain {told} (at mid-width; docs/mechanics.md)"
 
 
 def _shown(row: dict) -> dict:

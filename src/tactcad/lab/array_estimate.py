@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import ladder, strain, strength
+from tactcad.mechanics import ladder, strain, strain_errors, strength
 from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
 from tactcad.mechanics.section import Array, HingeSection
+from tactcad.mechanics.strain_errors import StrainErrors
 from tactcad.parts.element import element
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import ElementPlace, Layout
@@ -31,7 +32,10 @@ class ElementEstimate:
     deflection: float | None  # mm
     gauge_strain: float | None  # mean under the gauge's grid
     peak_strain: float | None  # at the slot-side fillet
-    stress: float | None  # MPa, there
+    stress: float | None  # MPa, the largest principal one there at mid-width
+    gauge_strain_error: float | None  # relative, the largest that is stated; None where none was measured
+    peak_strain_error: float | None
+    stress_error: float | None
     elastic: bool
     yield_factor_fillet: float
     yield_factor_face: float
@@ -56,7 +60,8 @@ def estimate(
     if rung not in ladder.FINITE_ELEMENTS:
         return estimate_sections(layout, section, rung, force)
     K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)
-    return _estimates(layout, section, K, per_newton, force)
+    errors = strain_errors.stated(section, design.gauge.grid_length, rung)
+    return _estimates(layout, section, K, per_newton, errors, force)
 
 
 def estimate_sections(
@@ -64,10 +69,9 @@ def estimate_sections(
 ) -> list[ElementEstimate]:
     """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the
     elements) instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
-    K = np.asarray(ladder.stiffness(section, rung))
-    return _estimates(
-        layout, section, K, _closed_form_strains(section, rung, layout.design.gauge.grid_length), force
-    )
+    K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
+    errors = strain_errors.stated(section, grid, rung)
+    return _estimates(layout, section, K, _closed_form_strains(section, rung, grid), errors, force)
 
 
 def choose_rung(layout: Layout, accuracy: float) -> Choice:
@@ -105,7 +109,8 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs know no fillet
         stress = face = peak * s.youngs_modulus
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, stress, face)))
+    largest = strain.largest_stress(s, 1.0) if rung == "solid" else stress
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, largest, stress, face)))
 
 
 def _by_elements(
@@ -122,16 +127,16 @@ def _by_elements(
     from tactcad.fem.shape import cut_element
 
     solved: dict[tuple, elements.ElementResult] = {}
-    found = []
+    solutions = []
     for i, place in enumerate(places):
         key = (place.arm, place.hinge, place.body_length)
         if key not in solved:
             contour = element(layout, place).extrusion.outer
             shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
             solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
-        found.append(solved[key])
-    read, flat = [r.readings for r in found], [r.flat for r in found]
-    return np.array([r.stiffness for r in found]), _PerNewton(
+        solutions.append(solved[key])
+    read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
+    return np.array([r.stiffness for r in solutions]), _PerNewton(
         np.array([float(r.gauge) for r in read]),
         np.array([r.fillet_strain for r in read]),
         np.array([r.fillet_stress for r in read]),
@@ -141,7 +146,12 @@ def _by_elements(
 
 
 def _estimates(
-    layout: Layout, section: HingeSection, K: Array, per_newton: _PerNewton, force: float
+    layout: Layout,
+    section: HingeSection,
+    K: Array,
+    per_newton: _PerNewton,
+    errors: StrainErrors,
+    force: float,
 ) -> list[ElementEstimate]:
     alloy, rating = design_alloy(layout.design), layout.design.rating
     rows = []
@@ -166,6 +176,9 @@ def _estimates(
                 gauge_strain=at(per_newton.gauge[i]),
                 peak_strain=at(per_newton.fillet[i]),
                 stress=at(stress),
+                gauge_strain_error=_known(errors.gauge[i]),
+                peak_strain_error=_known(errors.fillet_strain[i]),
+                stress_error=_known(errors.fillet_stress[i]),
                 elastic=elastic,
                 yield_factor_fillet=yield_force / force,
                 yield_factor_face=face_yield / force,
@@ -177,6 +190,10 @@ def _estimates(
             )
         )
     return rows
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 @dataclass(frozen=True)

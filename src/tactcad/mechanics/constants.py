@@ -19,6 +19,12 @@ def ladder_data() -> dict:
     return json.loads((Path(__file__).parent / "data" / "ladder.json").read_text("utf-8"))
 
 
+@lru_cache(maxsize=1)
+def strain_data() -> dict:
+    """data/strain.json as written by the fit."""
+    return json.loads((Path(__file__).parent / "data" / "strain.json").read_text("utf-8"))
+
+
 def by_sides(
     group: str, two_sided: NDArray[np.bool_] | np.bool_, data: dict | None = None
 ) -> dict[str, Array | float]:

@@ -7,12 +7,14 @@ stiffness goes up; strain per deflection nearly stays.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
 from . import ladder, plane, validity
-from .constants import by_sides
+from .constants import by_sides, strain_data
 from .register import BY_NAME
 from .section import Array, HingeSection
 
@@ -64,6 +66,52 @@ def stress_beyond_the_fit(s: HingeSection, force) -> Array:
     """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound
     a stop."""
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
+
+
+def largest_stress(s: HingeSection, force) -> Array:
+    """Largest principal stress at mid-width, MPa: more than the width's mean, since the sheet's sides carry
+    less.
+
+    Raises CheckFailure out of rung solid's range.
+    """
+    ladder.require_range(s, "solid")
+    return stress_beyond_the_fit(s, force) * mid_width_share(s)
+
+
+def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
+    """Largest principal stress at mid-width over the width's mean as the closed form has it, at the fillet:
+    1 + nu^2 P.
+
+    It takes up what that form errs by.
+
+    P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each held within what was sampled; `data`
+    are its constants by notch form, by default the shipped ones.
+    """
+    share = np.ones(s.shape)
+    for side, k in (data or strain_data()["mid-width share"]).items():
+        own = np.broadcast_to(s.two_sided == (side == "two"), s.shape)
+        if own.any():
+            rows = s.rows(np.flatnonzero(own.ravel()))
+            share[own] += np.broadcast_to(rows.poisson, rows.shape) ** 2 * (
+                share_terms(rows, k) @ np.array(k["coefficients"])
+            )
+    return share
+
+
+def share_features(s: HingeSection) -> Array:
+    """l/b, t/b, nu and ln(r/t) of every design, a row each."""
+    l, t, b = s.hinge_length, s.hinge_thickness, s.width
+    # a slot without fillets is out of every range, yet bounded
+    columns = l / b, t / b, s.poisson, np.log(np.maximum(s.fillet_radius / t, np.finfo(float).tiny))
+    return np.stack([np.broadcast_to(c, s.shape).ravel() for c in columns], axis=1)
+
+
+def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
+    """1, the features between -1 and 1 over what was sampled, and their products."""
+    low, high = np.array(k["low"]), np.array(k["high"])
+    z = np.clip(2.0 * (share_features(s) - low) / (high - low) - 1.0, -1.0, 1.0)
+    first, second = np.triu_indices(z.shape[1])
+    return np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
 
 
 def face_stress(s: HingeSection, force) -> Array:

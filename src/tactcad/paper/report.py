@@ -9,6 +9,7 @@ import json
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from importlib.resources import files
 from math import isinf, isnan
 from typing import TypeVar
 
@@ -18,35 +19,6 @@ from tactcad.lab.plain import plain
 
 SCHEMA = "tactcad-validation-1"
 T = TypeVar("T")
-
-STYLE = """
-:root{color-scheme:light}
-body{font:16px/1.5 "DejaVu Sans","Helvetica Neue",Arial,sans-serif;color:#1b1f24;background:#fff;margin:0}
-main,header,footer{max-width:1120px;margin:0 auto;padding:0 28px}
-header{padding-top:30px}
-h1{font-size:27px;line-height:1.25;margin:0 0 6px}
-h2{font-size:21px;margin:46px 0 4px;padding-top:14px;border-top:2px solid #0072B2}
-h3{font-size:16px;margin:24px 0 4px}
-p.lead,p.note,figcaption{color:#4a525b}
-p.note,figcaption{font-size:14px;margin:4px 0 0}
-ul.findings{background:#f1f6fa;border-left:5px solid #0072B2;padding:12px 18px 12px 34px;margin:12px 0}
-ul.findings li{margin:5px 0}
-nav ol{columns:2;font-size:15px;padding-left:22px}
-nav a{color:#0b5c8f}
-figure{margin:18px 0}
-figure svg{width:100%;height:auto;display:block}
-div.scroll{overflow-x:auto}
-table{border-collapse:collapse;font-size:14px;margin:6px 0 2px;font-variant-numeric:tabular-nums}
-th,td{padding:4px 10px;border-bottom:1px solid #d9dee3;text-align:right;vertical-align:top}
-th{border-bottom:2px solid #6a737d;font-weight:600;text-align:right}
-th small{display:block;font-weight:400;color:#4a525b}
-td{white-space:nowrap}
-td.text,th.text{text-align:left}
-td.text{white-space:normal}
-td.mark{background:#fdf0e2}
-footer{padding:30px 28px 50px;color:#4a525b;font-size:14px}
-@media print{h2{break-after:avoid}figure,table{break-inside:avoid}}
-"""
 
 
 @dataclass(frozen=True)
@@ -189,12 +161,13 @@ def standalone(figure: Figure) -> str:
 def to_html(report: ValidationReport) -> str:
     """One page with everything inside: style, pictures, tables."""
     e = html.escape
+    style = (files("tactcad.paper") / "data" / "report.css").read_text("utf-8")
     contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
     body = "".join(_section(i, s) for i, s in enumerate(report.sections, 1))
     head = (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{e(report.title)}</title>\n'
         '<meta name="viewport" content="width=device-width,initial-scale=1">\n'
-        f"<style>{STYLE}</style></head>\n<body>"
+        f"<style>\n{style}</style></head>\n<body>"
     )
     top = (
         f"<header><h1>{e(report.title)}</h1><p class=lead>{e(report.subtitle)}</p><h3>What stands "

@@ -54,7 +54,7 @@ def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurem
     """Every element by number: its place, its part number, and what to measure on it: its part's
     characteristics, then what only the estimator needs."""
     known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
-    found = []
+    measured = []
     for place in layout.elements:
         part_no = element_number(layout.design, place)
         if part_no not in known:
@@ -62,8 +62,8 @@ def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurem
             named = {c.name for c in own}
             rest = [c for c in _estimators(layout, place) if c.name not in named]
             known[part_no] = tuple(_measurement(c) for c in (*own, *rest))
-        found.append((place, part_no, known[part_no]))
-    return found
+        measured.append((place, part_no, known[part_no]))
+    return measured
 
 
 def _estimators(layout: Layout, place: ElementPlace) -> tuple[Characteristic, ...]:

@@ -39,7 +39,7 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
     far = np.abs(g.residual) > 2 * g.scatter
     inside = g.fitted_low <= g.design_gain <= g.fitted_high
     change = g.scatter_at_length.max() / g.scatter_at_length.min() - 1
-    found = [
+    sentences = [
         f"One gain of {sig(g.fitted_gain)} V per unit of strain (95 % "
         f"{interval(g.fitted_low, g.fitted_high)}) leaves a scatter of {percent(g.scatter)} in K_v. "
         f"Excitation {array.readout.excitation:g} V × amplifier {array.readout.gain:g} × gauge factor "
@@ -59,26 +59,26 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
         ),
     ]
     if g.signal.limited.any():
-        found.append(
+        sentences.append(
             "At the paper's largest deflections the read-out of "
             f"{listed(f'no. {n}' for n in g.element[g.signal.limited])} reaches a supply's or the "
             "converter's limit."
         )
-    found.append(
+    sentences.append(
         f"The quarter bridge is non-linear by up to {percent(np.abs(g.signal.nonlinearity).max())} at the "
         f"paper's largest deflections (strains up to {percent(g.signal.strain.max())}); two standard "
         "deviations of the averaged reading are "
         f"{interval(g.signal.resolution.min() * 1e3, g.signal.resolution.max() * 1e3, 2)} mN, "
         "with the noise that the design assumes."
     )
-    found.append(
+    sentences.append(
         f"With power on all the time a grid stays {sig(g.always_on.rise, 2)} K warmer than its leaf at "
         f"{sig(g.always_on.power_density, 2)} kW/m² and reads up to "
         f"{sig(g.drift_always_on.max() * 1e3, 2)} mN too much; powered only while reading, "
         f"{sig(g.switched.rise, 2)} K and {sig(g.drift_switched.max() * 1e3, 2)} mN remain at the end of "
         f"a reading, with {percent(g.switched.power / g.always_on.power)} of the heat."
     )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _heating(g: GainFit, array: ArrayModel) -> ReportTable:

@@ -38,7 +38,7 @@ def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]
     better = _miss(six, six.as_supported) < _miss(six, six.as_printed)
     uneven = float((six.with_pad_heights.deviation / six.with_pad_heights.true[:, None]).max())
     noise = float((six.as_supported.deviation / six.as_supported.true[:, None]).max())
-    found = [
+    sentences = [
         f"For the {six.object_stiffness:g} N/mm sample the simulation with K_r = "
         f"{sig(six.as_supported.reference_stiffness)} N/mm is {percent(_miss(six, six.as_supported))} "
         f"(rms) from Table 2's R; with the printed {six.as_printed.reference_stiffness:g} it is "
@@ -55,7 +55,7 @@ def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]
         f"{sig(six.as_printed.reference_deflection[-1])} µm with the printed stiffness (section 7 holds "
         "both against the printed range).",
     ]
-    found.append(
+    sentences.append(
         f"The paper's six straight lines of R over K_m/K_obj leave {sig(seven.line_rms)} (rms of R) with "
         f"{seven.line_parameters} parameters; equation (2) leaves {sig(seven.model_rms)} with "
         f"{seven.model_parameters}, and bends: R levels off at K_r/K_m. "
@@ -66,7 +66,7 @@ def findings(six: Figure6, seven: Figure7, array: ArrayModel) -> tuple[str, ...]
             f"stiffness alone does not carry all of Table 2."
         )
     )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _miss(six: Figure6, s: Simulated) -> float:

@@ -35,7 +35,7 @@ def page(h: HingeFit, array: ArrayModel) -> ReportSection:
 def findings(h: HingeFit) -> tuple[str, ...]:
     own = h.own
     inside = own.design_low <= h.design_length <= own.design_high
-    found = [
+    sentences = [
         f"At the design's fillet radius {h.design_radius:g} mm, t as the paper gives it, the {own.name} "
         f"hinge that fits best is {own.design_length:.2f} mm long, 95 % interval {own.design_low:.2f} to "
         f"{own.design_high:.2f} mm. The design's {h.design_length:g} mm lies "
@@ -57,14 +57,14 @@ def findings(h: HingeFit) -> tuple[str, ...]:
     moved = max(h.leave_out, key=lambda n: abs(h.leave_out[n] - own.design_length))
     change = h.leave_out[moved] / own.design_length - 1
     within = own.design_low <= h.leave_out[moved] <= own.design_high
-    found.append(
+    sentences.append(
         f"No single element decides the length: without no. {moved} it moves most, by "
         f"{signed_percent(change)}, {'inside' if within else 'to outside'} the interval."
         if within
         else f"One element decides the length: without no. {moved} it moves by {signed_percent(change)}, "
         f"out of the interval."
     )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _load_point(h: HingeFit) -> str:

@@ -13,16 +13,16 @@ FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called r
 
 
 def page(v: Inversion) -> ReportSection:
-    found = findings(v)
+    sentences = findings(v)
     return ReportSection(
         "inversion",
         "Inversion: object stiffness from R",
         "What would a user of this array have read off as K_obj, by equation (3), from Table 2's R?",
-        found,
+        sentences,
         (_table(v, v.supported), _table(v, v.printed)),
         (_plot(v),),
         v,
-        (found[0], found[-1]),
+        (sentences[0], sentences[-1]),
     )
 
 
@@ -34,7 +34,7 @@ def findings(v: Inversion) -> tuple[str, ...]:
     well = np.abs(v.supported.condition) < WELL
     lost = ~v.supported.physical()
     rows_lost = [f"{k:g}" for k, bad in zip(v.measuring, lost) if bad.any()]
-    found = [
+    sentences = [
         f"With the printed K_r = {v.printed.reference:g} N/mm {printed.sum()} of {n} readings "
         f"give a K_obj within a factor {FACTOR:g} of the sample's, with K_r = "
         f"{sig(v.supported.reference)} N/mm {supported.sum()}; the median is "
@@ -50,8 +50,8 @@ def findings(v: Inversion) -> tuple[str, ...]:
         + f", and is bounded for {(v.supported.bounded & (v.supported.low > 0)).sum()}.",
     ]
     if well.any() and (~well).any():
-        found.append(_by_condition(v, well))
-    return tuple(found)
+        sentences.append(_by_condition(v, well))
+    return tuple(sentences)
 
 
 def _without_its_own(v: Inversion) -> str:

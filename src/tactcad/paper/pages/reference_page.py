@@ -106,7 +106,7 @@ def _explained(e: ReferenceElement) -> list[str]:
     telling = [x for x in e.explanations if abs(x.miss_per_deflection) > 2 * e.scatter]
     open_ = [x for x in e.explanations if x not in telling]
     ratio = e.stiffness / e.nominal_stiffness
-    found = [
+    sentences = [
         f"No. {e.element}'s K is {sig(ratio)} times the beam model's {sig(e.nominal_stiffness)} N/mm. By "
         "K_v, "
         + listed(f"{x.name} ({_size(x)}) predicts {sig(x.signal_per_deflection)}" for x in e.explanations)
@@ -120,7 +120,7 @@ def _explained(e: ReferenceElement) -> list[str]:
         )
     ]
     best, possible = e.best, [x for x in e.explanations if x.possible]
-    found.append(
+    sentences.append(
         f"Least off in K_v is {best.name}"
         + (
             f", and it is {best.limit}."
@@ -135,7 +135,7 @@ def _explained(e: ReferenceElement) -> list[str]:
             else " None is possible within the geometry."
         )
     )
-    return found
+    return sentences
 
 
 def _size(x: Explanation) -> str:

@@ -26,17 +26,17 @@ SMALL_FACTOR = 0.05  # a common factor within this is called none
 
 
 def page(r: Residuals, array: ArrayModel) -> ReportSection:
-    found = findings(r, array)
+    sentences = findings(r, array)
     return ReportSection(
         "stiffness",
         "Table 1: stiffness, predicted and calibrated",
         "Does the beam model explain the measured stiffnesses, and what would have to be different "
         "where it does not?",
-        found,
+        sentences,
         (_rungs(r), _explained(r, array)),
         (_bands(r), _needed(r)),
         r,
-        (found[0], found[2]),
+        (sentences[0], sentences[2]),
     )
 
 
@@ -51,7 +51,7 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
         else f"all of them together are {signed_percent(np.expm1(r.mean))} off"
     )
     others = f"; {percent(r.scatter_of_others)} without no. {e[worst]}" if len(e) > 2 else ""
-    found = [
+    sentences = [
         f"With the hinge of the design {array.name}, {common}, but single elements scatter by "
         f"{percent(r.scatter)} (standard deviation of ln K{others}), "
         "whichever rung is used: the model's own error is far below that.",
@@ -60,7 +60,7 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
         + ".",
     ]
     if out_cut.any():
-        found.append(
+        sentences.append(
             f"{out_cut.sum()} of {len(e)} elements (nos. {listed(e[out_cut])}) lie outside the 95 % band "
             "that cutting and clamping tolerances leave. With the contact anywhere on the pad, "
             + (
@@ -71,11 +71,11 @@ def findings(r: Residuals, array: ArrayModel) -> tuple[str, ...]:
             )
         )
     else:
-        found.append(
+        sentences.append(
             f"All {len(e)} elements lie inside the 95 % band that cutting and clamping tolerances leave."
         )
-    found += _equal_arms(r)
-    return tuple(found)
+    sentences += _equal_arms(r)
+    return tuple(sentences)
 
 
 def _edge(r: Residuals) -> str:

@@ -21,16 +21,16 @@ from tactcad.paper.table1_check import ColumnProduct, Table1Check
 
 
 def page(c: Table1Check, data: Published) -> ReportSection:
-    found = findings(c, data)
+    sentences = findings(c, data)
     return ReportSection(
         "table1",
         "Table 1 against itself",
         "Do the columns of Table 1 agree with each other, and with the load cell that stood in series?",
-        found,
+        sentences,
         (_products(c), _series(c, data)),
         (_plot(c, data),),
         c,
-        (found[3],),
+        (sentences[3],),
     )
 
 
@@ -40,7 +40,7 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
     )
     s = c.series
     agrees = s.line_low <= cell <= s.line_high
-    found = [
+    sentences = [
         _product(
             "K × deflection",
             "the printed force",
@@ -80,7 +80,7 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
     ]
     early = s.nearest_step < travel
     if early.any():
-        found.append(
+        sentences.append(
             f"Nos. {listed(c.element[early])} come nearest to a travel of "
             f"{listed(sorted({f'{v:g}' for v in s.nearest_step[early]}))} µm, a whole number of {step:g} "
             f"µm steps below {travel:g}: they may have been stopped early"
@@ -91,7 +91,7 @@ def findings(c: Table1Check, data: Published) -> tuple[str, ...]:
                 else "."
             )
         )
-    return tuple(found)
+    return tuple(sentences)
 
 
 def _over(c: Table1Check, data: Published) -> int | None:

@@ -25,13 +25,13 @@ from .table2_findings import USABLE, Witness, findings, other_witnesses, support
 
 def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> ReportSection:
     who = witnesses(s, r, e)
-    found = findings(s, data, who)
+    sentences = findings(s, data, who)
     return ReportSection(
         "table2",
         "Table 2: which reference stiffness do the measured ratios support?",
         "Equation (2) predicts R from three stiffnesses. Measured R is far from it. Which stiffness, or "
         "what else, would mend that?",
-        found,
+        sentences,
         (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)),
         (_ratio_plot(s), _forest(s, who)),
         {"study": s, "witnesses": who},

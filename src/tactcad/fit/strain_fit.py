@@ -1,0 +1,100 @@
+"""How much stress at mid-width passes the width's mean, and what the closed forms for strain and stress err
+by.
+
+`python -m tactcad.fit.strain_fit src/tactcad/mechanics/data/strain.json` fits and measures again on the
+shipped samples.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from tactcad.mechanics import strain, strain_errors, validity
+from tactcad.mechanics.section import HingeSection
+
+from .fit_samples import Columns, section, shipped_table
+from .strain_samples import GRIDS, SEED
+
+SAMPLES = "strain-samples.csv"
+Array = np.ndarray
+
+# A hinge that is hardly wider than long curls over its whole width; one shorter than thick is two roots and
+# no leaf.
+NARROW, SHORT = 1.5, 1.0
+ZONES: tuple[dict[str, list[float | None]], ...] = (
+    {"b/l": [0.0, NARROW]},
+    {"b/l": [NARROW, None], "l/t": [0.0, SHORT]},
+    {"b/l": [NARROW, None], "l/t": [SHORT, None]},
+)
+MARGIN = 2.0  # of what is stated over the worst that was found: zones of few designs
+RIDGE = 1e-3  # of the mean square: keeps what few samples do not determine small
+
+
+def fit(columns: Columns) -> dict:
+    """The contents of data/strain.json from samples as strain_samples.compute gives them."""
+    solved = np.isfinite(columns["solid_fillet_stress"])
+    rows = {name: values[solved] for name, values in columns.items()}
+    s = section(rows)
+    inside = validity.reasons(s, "solid") == ""
+    share = {}
+    for side, flag in strain_errors.SIDES.items():
+        own = np.flatnonzero(inside & (s.two_sided == flag))
+        measured = (rows["solid_fillet_stress"] / strain.stress_beyond_the_fit(s, 1.0))[own]
+        share[side] = _fitted(s.rows(own), measured)
+    errors = _errors(rows, s, share)
+    zones = []
+    for side, flag in strain_errors.SIDES.items():
+        for bounds in ZONES:
+            own = inside & strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
+            zones.append({"sides": side, "bounds": bounds} | _measured(errors, own))
+    return {"seed": SEED, "designs": int(solved.sum()), "mid-width share": share, "zones": zones}
+
+
+def _fitted(s: HingeSection, measured: Array) -> dict[str, list[float]]:
+    """Range of the features and coefficients of `strain.mid_width_share`, by least squares of the relative
+    error."""
+    features = strain.share_features(s)
+    k = {"low": features.min(axis=0).tolist(), "high": features.max(axis=0).tolist()}
+    terms = strain.share_terms(s, k) * (s.poisson**2 / measured)[:, None]
+    wanted = (measured - 1.0) / measured
+    normal = terms.T @ terms + RIDGE * np.mean(terms**2) * len(terms) * np.eye(terms.shape[1])
+    found = k | {"coefficients": np.linalg.solve(normal, terms.T @ wanted).tolist()}
+    return {name: [float(f"{value:.6g}") for value in values] for name, values in found.items()}
+
+
+def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array]]:
+    """Relative errors of rung solid's closed forms against solid elements, one array a grid length."""
+    slot = np.where(s.two_sided, s.straight_length + s.fillet_radius, s.hinge_length)
+    gauges: dict[str, list[Array]] = {"gauge": [], "long gauge": []}
+    for grid in GRIDS:
+        known = np.flatnonzero(np.isfinite(rows[f"solid_gauge_{grid:g}"]))
+        error = np.full(s.shape, math.nan)
+        lengths = grid * slot[known] * (1.0 - 1e-9)
+        found = strain.gauge(s.rows(known), 1.0, lengths, "solid")
+        error[known] = found / rows[f"solid_gauge_{grid:g}"][known] - 1.0
+        gauges["gauge" if grid <= strain_errors.LONG_GRID else "long gauge"].append(error)
+    stress = strain.peak_stress(s, 1.0) * strain.mid_width_share(s, share)
+    return gauges | {
+        "fillet strain": [strain.peak(s, 1.0, "solid") / rows["solid_fillet_strain"] - 1.0],
+        "fillet stress": [stress / rows["solid_fillet_stress"] - 1.0],
+    }
+
+
+def _measured(errors: dict[str, list[Array]], own: Array) -> dict:
+    """Worst error of each quantity in a zone and what is stated for it, None where none was read."""
+    worst: dict[str, float | None] = {}
+    for name, arrays in errors.items():
+        e = np.abs(np.concatenate([a[own] for a in arrays]))
+        worst[name] = float(f"{np.nanmax(e):.3g}") if np.isfinite(e).any() else None
+    stated = {n: None if e is None else math.ceil(1000.0 * MARGIN * e) / 1000.0 for n, e in worst.items()}
+    return {"designs": int(own.sum()), "worst": worst, "stated": stated}
+
+
+if __name__ == "__main__":
+    document = json.dumps(fit(shipped_table(SAMPLES)), indent=1) + "\n"
+    Path(sys.argv[1]).write_text(document, "utf-8")

@@ -1,0 +1,62 @@
+"""What the closed forms for strain and stress of rung solid err by at a design, against solid elements.
+
+`data/strain.json`, written by `tactcad.fit.strain_fit`, divides the range into zones, as data/accuracy.json
+does for K.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import validity
+from .constants import strain_data
+from .section import Array, HingeSection
+
+SIDES = {"two": True, "one": False}
+# Slot lengths on the flat face (two-sided: lengths of flat part and one fillet) above which a grid is a long
+# one, and above which none was measured.
+LONG_GRID, LONGEST_GRID = 2.0, 5.0
+# Of fem-solid: twice what meshes 2 and 3 differ by at a notch of r/t = 1/6 (tests/fit/test_strain_errors.py).
+OF_ELEMENTS = 0.005
+
+
+@dataclass(frozen=True)
+class StrainErrors:
+    """Largest relative errors that are stated: of the mean under a grid of the gauge, of the peak strain and
+    of the largest principal stress at the fillet, all at mid-width. NaN where nothing was measured."""
+
+    gauge: Array
+    fillet_strain: Array
+    fillet_stress: Array
+
+
+def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
+    """Of rungs solid and fem-solid at every design, for a gauge's grid of that length (mm); NaN of the
+    others."""
+    if rung != "solid":
+        error = np.full(s.shape, OF_ELEMENTS if rung == "fem-solid" else np.nan)
+        return StrainErrors(error, error, error)
+    short, long, strain, stress = (
+        _stated(s, name) for name in ("gauge", "long gauge", "fillet strain", "fillet stress")
+    )
+    grid = grid_length / np.broadcast_to(s.hinge_length, s.shape)
+    gauge = np.where(grid <= LONG_GRID, short, np.where(grid <= LONGEST_GRID, long, np.nan))
+    return StrainErrors(gauge, strain, stress)
+
+
+def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarray:
+    """Which designs have every group that bounds a zone between its ends (None: no end)."""
+    groups, inside = validity.groups(s), np.ones(s.shape, dtype=bool)
+    for name, (low, high) in bounds.items():
+        inside &= (groups[name] >= (low or 0.0)) & (groups[name] < (np.inf if high is None else high))
+    return inside
+
+
+def _stated(s: HingeSection, name: str) -> Array:
+    found = np.full(s.shape, np.nan)
+    for zone in strain_data()["zones"]:
+        inside = in_zone(zone["bounds"], s) & (s.two_sided == SIDES[zone["sides"]])
+        found[inside] = np.nan if zone["stated"][name] is None else zone["stated"][name]
+    return np.where(validity.reasons(s, "solid") == "", found, np.nan)

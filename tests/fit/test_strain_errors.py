@@ -1,0 +1,110 @@
+"""Strain and stress at mid-width: what is stated of the closed forms holds, and the shipped data are the
+fit's.
+
+The seed of the fresh designs may be given in the environment (STRAIN_SEED); it is printed.
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+import pytest
+
+from tactcad.fem import one_element
+from tactcad.fit import strain_fit, strain_samples
+from tactcad.fit.fit_samples import section, shipped_table
+from tactcad.mechanics import strain, strain_errors
+from tactcad.mechanics.constants import strain_data
+from tactcad.mechanics.section import REFERENCE
+
+SEED = int(os.environ.get("STRAIN_SEED", "161803"))
+CORNER = REFERENCE.with_(
+    hinge_thickness=0.4,
+    hinge_length=1.5,
+    fillet_radius=0.1,
+    load_arm=3.0,
+    arm_height=3.0,
+    body_height=3.0,
+    body_length=2.0,
+    poisson=0.4,
+    width=1.5,
+    two_sided=False,
+)
+NOTCH = REFERENCE.with_(
+    hinge_thickness=0.3,
+    hinge_length=0.11,
+    fillet_radius=0.05,
+    load_arm=4.0,
+    arm_height=3.0,
+    body_height=3.0,
+    body_length=1.2,
+    poisson=0.42,
+    width=2.0,
+    two_sided=False,
+)
+
+
+def errors(s, grid):
+    """Relative errors of the closed forms for one design against fem-solid, and what is stated."""
+    read = one_element.solve(s, "fem-solid", grid).readings
+    stated = strain_errors.stated(s, grid, "solid")
+    return (
+        (float(strain.gauge(s, 1.0, grid)) / float(read.gauge) - 1.0, float(stated.gauge)),
+        (float(strain.peak(s, 1.0)) / read.fillet_strain - 1.0, float(stated.fillet_strain)),
+        (float(strain.largest_stress(s, 1.0)) / read.fillet_stress - 1.0, float(stated.fillet_stress)),
+    )
+
+
+def test_what_is_stated_holds_where_width_and_length_are_equal():
+    for error, stated in errors(CORNER, 0.75):
+        assert abs(error) <= stated
+
+
+def test_stress_at_mid_width_passes_the_widths_mean():
+    """12 to 13 % at this corner, by elements of order up to 7: the mean alone made Goodman's factor that
+    much unsafe."""
+    share = float(strain.largest_stress(CORNER, 1.0) / strain.peak_stress(CORNER, 1.0))
+    assert share == pytest.approx(1.125, abs=0.03)
+
+
+def test_a_sheet_without_poissons_effect_carries_the_mean_everywhere():
+    assert float(strain.mid_width_share(CORNER.with_(poisson=0.0))) == 1.0
+
+
+def test_elements_fillet_strain_is_within_what_is_stated_of_it():
+    """At a fillet of a sixth of the thickness, where quadratic elements were several per cent low."""
+    coarse, fine = (one_element.solve(NOTCH, "fem-solid", 0.1, mesh=mesh).readings for mesh in (2, 3))
+    for name in ("gauge", "fillet_strain", "fillet_stress"):
+        moved = float(getattr(coarse, name)) / float(getattr(fine, name)) - 1.0
+        assert abs(moved) < strain_errors.OF_ELEMENTS
+
+
+def test_shipped_data_are_the_fits():
+    again, shipped = strain_fit.fit(shipped_table(strain_fit.SAMPLES)), strain_data()
+    assert again["designs"] == shipped["designs"] and len(again["zones"]) == len(shipped["zones"])
+    s = section(strain_samples.draw(100, SEED))
+    np.testing.assert_allclose(
+        strain.mid_width_share(s, again["mid-width share"]), strain.mid_width_share(s), rtol=1e-4
+    )
+    for a, b in zip(again["zones"], shipped["zones"]):
+        for name, stated in b["stated"].items():
+            assert a["stated"][name] == (stated if stated is None else pytest.approx(stated, abs=2e-3))
+
+
+def test_stated_errors_are_at_most_three_times_the_worst_that_was_found():
+    for zone in strain_data()["zones"]:
+        for name, worst in zone["worst"].items():
+            assert worst is None or worst < zone["stated"][name] <= 3.0 * worst
+
+
+@pytest.mark.nightly
+def test_what_is_stated_holds_on_designs_drawn_anew():
+    print("seed", SEED + 1)
+    s = section(strain_samples.draw(200, SEED + 1))
+    small = (s.width < 12.0 * s.hinge_thickness) & (s.hinge_length < 8.0 * s.hinge_thickness)
+    for i in np.flatnonzero(small)[:20]:
+        one = s.rows(int(i))
+        for grid in strain_samples.grid_lengths(one)[:3]:
+            for error, stated in errors(one, float(grid) * (1.0 - 1e-9)):
+                assert abs(error) <= stated, (i, grid)
