@@ -95,7 +95,7 @@ def papers_strains() -> str:
 
 def papers_strains_by_elements() -> str:
     """The same by finite elements."""
-    from tactcad.fem.one_element import solve
+    from tactcad.fem.fem_ladder import solve
 
     def by_elements(s: HingeSection, rung: str) -> tuple[float, float]:
         found = solve(s, rung, GRID)

@@ -11,7 +11,7 @@ import pytest
 from hinges import scaled
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import one_element as elements
+from tactcad.fem import fem_ladder as elements
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mapped_mesh import plane_mesh

@@ -14,7 +14,7 @@ from exact_ladder import ORDER
 
 from tactcad.cli.fit import RANGE_FILE
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import one_element as elements
+from tactcad.fem import fem_ladder as elements
 from tactcad.fem.convergence import converged_solid
 from tactcad.fem.shape import reference_shape
 from tactcad.fit import accuracy_samples, fit_samples

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem.one_element import stiffness as by_elements
+from tactcad.fem.fem_ladder import stiffness as by_elements
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.section import REFERENCE

@@ -70,7 +70,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
 
 
 def _elements(rung: str, fine: Columns, plan: RunPlan, count: int) -> dict:
-    from tactcad.fem.one_element import stiffness
+    from tactcad.fem.fem_ladder import stiffness
 
     found = np.full(len(fine["width"]), np.nan)
     for i, one in enumerate(truth.sections(fine)[:count]):
@@ -85,7 +85,7 @@ def _elements(rung: str, fine: Columns, plan: RunPlan, count: int) -> dict:
 
 def _times(plan: RunPlan) -> dict[str, dict]:
     """Seconds per element: closed forms among many, element rungs one after the other."""
-    from tactcad.fem.one_element import stiffness
+    from tactcad.fem.fem_ladder import stiffness
 
     many = section(draw_box(plan.of(1_000, 20_000, 200_000), plan.seed))
     count = many.shape[0]

@@ -34,7 +34,7 @@ Shapes = Mapping[str, TopoDS_Shape]
 
 
 @dataclass(frozen=True)
-class _Pair:
+class _Meeting:
     first: Placement
     second: Placement
     start: Vector  # second's offset as first sees it, in scene directions
@@ -79,7 +79,7 @@ def check_motions(scene: Scene, full: Shapes, envelope: Shapes) -> list[Finding]
     return findings
 
 
-def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Pair]:
+def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Meeting]:
     """Pairs of different groups that are not at rest, as placed, over the whole motion."""
     group = {d: name for name, members in scene.groups for d in members}
     still = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -93,10 +93,10 @@ def _moving_pairs(scene: Scene, motion: Motion) -> Iterator[_Pair]:
             start = vector(q - p for p, q in zip(a0, b0))
             end = vector(q - p for p, q in zip(a1, b1))
             if any(start) or any(end):
-                yield _Pair(a, b, start, end)
+                yield _Meeting(a, b, start, end)
 
 
-def _span(a: np.ndarray, b: np.ndarray, pair: _Pair) -> tuple[float, float] | None:
+def _span(a: np.ndarray, b: np.ndarray, pair: _Meeting) -> tuple[float, float] | None:
     """The stretch of the way, within 0 to 1, in which the boxes meet; None where they never do."""
     low, high = 0.0, 1.0
     for axis in range(3):
@@ -113,7 +113,7 @@ def _span(a: np.ndarray, b: np.ndarray, pair: _Pair) -> tuple[float, float] | No
 
 
 def _meets(
-    pair: _Pair, span: tuple[float, float], full: Shapes, envelope: Shapes
+    pair: _Meeting, span: tuple[float, float], full: Shapes, envelope: Shapes
 ) -> tuple[float, str] | None:
     """Where on the way the pair meets without being meant to; None where it is shown not to."""
     t, end = span
@@ -129,7 +129,7 @@ def _meets(
     return t, f"run closer than {pair.way / MOST_STEPS:.2g} mm: not shown to stay apart"
 
 
-def _slides(pair: _Pair, full: Shapes) -> tuple[float, str] | None:
+def _slides(pair: _Meeting, full: Shapes) -> tuple[float, str] | None:
     """Parts that are meant to touch somewhere: they may slide on each other, and may not cut into each
     other."""
     for n in range(SLIDING):
@@ -140,11 +140,11 @@ def _slides(pair: _Pair, full: Shapes) -> tuple[float, str] | None:
     return None
 
 
-def _distance(pair: _Pair, t: float, shapes: Shapes) -> float:
+def _distance(pair: _Meeting, t: float, shapes: Shapes) -> float:
     return BRepExtrema_DistShapeShape(*_shapes(pair, t, shapes)).Value()
 
 
-def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS_Shape]:
+def _shapes(pair: _Meeting, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS_Shape]:
     a, b = pair.first, pair.second
     moved = vector(o + d for o, d in zip(b.origin, pair.offset(t)))
     return (
@@ -153,7 +153,7 @@ def _shapes(pair: _Pair, t: float, shapes: Shapes) -> tuple[TopoDS_Shape, TopoDS
     )
 
 
-def _finding(motion: Motion, pair: _Pair, t: float, what: str) -> Finding:
+def _finding(motion: Motion, pair: _Meeting, t: float, what: str) -> Finding:
     a, b = pair.first, pair.second
     message = (
         f"{a.designator} ({a.part.part_no}) and {b.designator} ({b.part.part_no}) {what} at {100 * t:.0f} % "

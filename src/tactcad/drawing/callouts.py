@@ -13,7 +13,7 @@ from .contours import contours, in_part
 from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
-from .measures import Difference, Offset, Radius, Slope, Span, Width, halfway, level, size
+from .measures import MeasureDifference, Offset, Radius, Slope, Span, Width, halfway, level, size
 from .sheet_plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
 
@@ -99,7 +99,7 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
         if min(abs(a - b) for a, b in zip(contour.segments[i].start, contour.segments[i].end)) > ALIKE:
             sketch.convention(Slope(offset.start, offset.end))
         if offset is not offsets[0]:
-            sketch.convention(Difference(offset, offsets[0]))
+            sketch.convention(MeasureDifference(offset, offsets[0]))
     half = len(sides) // 2
     return Dimension(f"{part.features[k].name} across flats", (Width(offsets[0], offsets[half]),))
 

@@ -118,7 +118,7 @@ class Distance:
 
 
 @dataclass(frozen=True)
-class Difference:
+class MeasureDifference:
     """Of two measures: 0 where they are drawn as equal."""
 
     a: Measure
@@ -184,7 +184,7 @@ class Width:
         return abs(self.a.of(values)) + abs(self.b.of(values))
 
 
-Measure = Span | Offset | Width | Radius | Slope | Distance | Difference | CrossProduct
+Measure = Span | Offset | Width | Radius | Slope | Distance | MeasureDifference | CrossProduct
 
 
 def _xy(point: Spot) -> tuple[Variable, Variable]:
@@ -242,7 +242,7 @@ def conventions(owner: Owner, contour: Contour) -> list[Measure]:
                 if abs(s.start[k] - s.end[k]) < 1e-9:
                     rows.append(Span(level(start.place(k)), level(end.place(k))))
         else:
-            rows.append(Difference(Distance(start, centre), Distance(end, centre)))
+            rows.append(MeasureDifference(Distance(start, centre), Distance(end, centre)))
     return rows + [row for i in range(count) if (row := _tangent(owner, contour, i))]
 
 

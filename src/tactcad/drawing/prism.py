@@ -21,7 +21,7 @@ from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outl
 from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
-from .measures import Difference, Level, Span, conventions, halfway, level, size
+from .measures import Level, MeasureDifference, Span, conventions, halfway, level, size
 from .running import depth_running, face_running, filled, running_along
 from .section_view import section_of, section_view
 from .sheet_plan import Datum, Dimension, Linear, SheetPlan, Side, View, opposite, seen
@@ -166,7 +166,7 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
     for row in rows:
         places = [level(r.owner.place(k)) for r in row]
         for a, b, c in zip(places, places[1:], places[2:]):
-            sketch.convention(Difference(Span(a, b), Span(b, c)))
+            sketch.convention(MeasureDifference(Span(a, b), Span(b, c)))
         beside = [level(r.owner.place(1 - k)) for r in row]
         for a in beside[:-1]:
             sketch.convention(Span(beside[-1], a))

@@ -116,7 +116,7 @@ def _by_elements(
     mesh: int | None,
 ) -> tuple[Array, _PerNewton]:
     """Finite elements on each distinct contour, cut at clamp edge and load line."""
-    from tactcad.fem import one_element as elements
+    from tactcad.fem import fem_ladder as elements
     from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
 

@@ -85,7 +85,7 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()
     from tactcad.fem.convergence import SOLID_MESH
-    from tactcad.fem.one_element import stiffness
+    from tactcad.fem.fem_ladder import stiffness
 
     values, reasons = [], []
     for i in range(section.hinge_thickness.size):
