@@ -70,8 +70,9 @@ def strain_zones() -> str:
 
 
 def beyond() -> str:
-    """Error beyond the box, inside the range in which a rung answers."""
-    report = ladder_data()["report"]["relative_error"]["fitted, beyond the box"]
+    """Error over the whole range in which a rung answers, mostly in its corners, on designs that the fit has
+    not seen."""
+    report = ladder_data()["report"]["relative_error"]["held out, corners"]
     lines = ["| rung | two-sided: rms | max | one-sided: rms | max |", "|---|---|---|---|---|"]
     for rung in (rung for rung in REGISTER if rung.fitted):
         row = [report[side][f"{rung.name}, against {rung.against} elements"] for side in ("two", "one")]
@@ -85,7 +86,7 @@ def fitted_range() -> str:
     sampled = ladder_data()["range"]
     lines = ["| group | from | to |", "|---|---|---|"]
     lines += [f"| {name} | {low:g} | {high:g} |" for name, (low, high) in sampled["groups"].items()]
-    return "\n".join([*lines, f"| Lb/t | {sampled['least_body_length']:g} | - |"])
+    return "\n".join([*lines, *(f"| {name} | {least:g} | - |" for name, least in sampled["least"].items())])
 
 
 def papers_strains() -> str:

@@ -31,7 +31,7 @@ def test_one_per_cent_takes_a_closed_form_and_says_what_it_promises(capsys):
     assert 0 < chosen["expected_time_s"] < 0.1
     assert chosen["reference"] == accuracy_data()["reference"] and "solid elements" in chosen["reference"]
     assert chosen["elements"] == named["elements"]
-    assert not {"expected_error", "reference"} & set(named)
+    assert (named["expected_error"], named["reference"]) == (chosen["expected_error"], chosen["reference"])
 
 
 @pytest.mark.parametrize("text", ["1%", "1 %", " 1% ", "0.01", "1e-2"])
@@ -78,12 +78,31 @@ def test_a_tenth_of_a_per_cent_is_solved_by_solid_elements(capsys, tmp_path):
 
 def test_report_names_rung_error_and_time(capsys):
     assert main(["estimate", "--accuracy", "5%"]) == 0
-    last = capsys.readouterr().out.splitlines()[-1]
-    assert (
-        last.startswith("chosen for 5 %: solid, K within 0.")
-        and "about" in last
-        and "docs/accuracy.md" in last
-    )
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1].startswith("chosen for 5 %: solid, in about")
+    assert sum(line.startswith("K within 0.") and "docs/accuracy.md" in line for line in lines) == 1
+
+
+@pytest.mark.parametrize("model", [None, "plane", "short"])
+def test_every_stiffness_carries_its_expected_error(model, capsys, tmp_path):
+    """In text, in JSON (of every element, and the worst) and in a table: what the measured errors promise."""
+    args = ["--model", model] if model else []
+    promised = {zone["promised"][model or "solid"] for zone in accuracy_data()["zones"]}
+    found = document(capsys, *args)
+    errors = [row["expected_error"] for row in found["elements"]]
+    assert set(errors) <= promised and found["expected_error"] == max(errors)
+    assert main(["estimate", *args]) == 0
+    assert f"K within {100 * max(errors):.2g} % of solid elements" in capsys.readouterr().out
+    status, (inside, outside) = batch(tmp_path, [ROW, ROW.replace("0.33", "0.1")], *args)
+    assert status == 0 and float(inside["expected_error"]) in promised and outside["expected_error"] == ""
+
+
+def test_a_size_carries_its_expected_error(capsys):
+    args = ["size", "--stiffness", "10", "--load-arm", "6"]
+    assert main([*args, "--json"]) == 0
+    error = json.loads(capsys.readouterr().out)["expected_error"]
+    assert error in {zone["promised"]["solid"] for zone in accuracy_data()["zones"]}
+    assert main(args) == 0 and f"K within {100 * error:.2g} % of" in capsys.readouterr().out
 
 
 def batch(tmp_path, rows, *args):

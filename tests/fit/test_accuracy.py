@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from exact_ladder import ORDER
 
-from tactcad.cli.fit import RANGE_FILE
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import fem_ladder as elements
 from tactcad.fem.convergence import converged_solid
@@ -83,7 +82,7 @@ def test_many_accuracies_are_kept_on_many_fresh_designs(wanted, mesh, count):
 def test_mesh_of_a_tenth_of_a_per_cent_is_measured_by_refinement():
     """On its own sample fem-solid moves less than promised when refined, and by the rate that it extrapolates
     with."""
-    columns = fit_samples.shipped_table(RANGE_FILE)
+    columns = fit_samples.shipped_table("range")
     s = fit_samples.section(columns)
     for coarse, fine, mesh in (("solid_mesh_2", "solid_mesh_3", 2), ("solid_mesh_3", "solid_mesh_4", 3)):
         moved = np.abs(columns[coarse] / columns[fine] - 1.0)
@@ -109,9 +108,7 @@ def test_one_per_cent_is_a_closed_form_nearly_everywhere_and_a_tenth_never(draw)
 def test_the_least_work_that_is_good_enough_is_taken():
     """Over accuracies, against a plain search of the file."""
     s = REFERENCE
-    (zone,) = (
-        z for z in accuracy_data()["zones"] if z["sides"] == "two" and z["bounds"].get("l/t") == [2.0, None]
-    )
+    zone = accuracy_data()["zones"][int(accuracy.zones(s))]
     for wanted in np.geomspace(3e-4, 0.9, 40):
         choice = choose(s, wanted)
         first = next(c.name for c in CANDIDATES if zone["promised"][c.name] <= wanted)
@@ -215,7 +212,7 @@ def test_a_refusal_names_the_design():
 def test_the_shipped_table_is_that_of_the_shipped_samples():
     from datetime import date
 
-    samples = fit_samples.shipped() | {"range": fit_samples.shipped_table(RANGE_FILE)}
+    samples = fit_samples.shipped()
     again, shipped = accuracy_table(samples, ladder_data(), date(2026, 11, 21)), accuracy_data()
     assert again["reference"] == shipped["reference"] and again["samples"] == shipped["samples"]
     for a, b in zip(again["zones"], shipped["zones"], strict=True):
@@ -229,7 +226,7 @@ def test_the_shipped_table_is_that_of_the_shipped_samples():
 
 
 def test_designs_over_the_range_are_drawn_again_from_their_seed():
-    shipped = fit_samples.shipped_table(RANGE_FILE)
+    shipped = fit_samples.shipped_table("range")
     refined = accuracy_samples.draw_refined()
     whole = accuracy_samples.draw_range(len(shipped["poisson"]) - len(refined["poisson"]))
     again = fit_samples.joined([whole, refined])
@@ -239,19 +236,17 @@ def test_designs_over_the_range_are_drawn_again_from_their_seed():
 
 @pytest.mark.parametrize("row", [2, 3])
 def test_results_over_the_range_are_computed_again(row):
-    shipped = fit_samples.shipped_table(RANGE_FILE)
+    shipped = fit_samples.shipped_table("range")
     found = accuracy_samples.results(fit_samples.section(shipped).rows(row), ())
     assert found["plane_stiffness"] == pytest.approx(shipped["plane_stiffness"][row], rel=2e-5)
 
 
 def test_every_zone_was_measured_by_enough_designs_of_every_kind():
+    """Counted are designs with solid elements; where they are few the promise is further from the worst."""
     for zone in accuracy_data()["zones"]:
-        narrow = "l/t" not in zone["bounds"]
-        assert zone["designs"]["solid"] >= (3 if narrow else 60) and zone["designs"]["plane"] >= (
-            2 if narrow else 19
-        )
+        count, worst, promised = (zone[name]["solid"] for name in ("designs", "worst", "promised"))
+        assert count >= 7 and promised >= (1.39 if count >= 60 else 2.4) * worst
         assert zone["designs"]["fem-solid, mesh 2"] >= 36 and zone["designs"]["fem-solid, mesh 3"] >= 24
-        assert zone["promised"]["solid"] > zone["worst"]["solid"] * 1.4
 
 
 def test_elements_take_the_mesh_that_is_named():

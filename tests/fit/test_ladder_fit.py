@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactcad.cli.main import main
-from tactcad.fit import fit_samples
+from tactcad.fit import corner_samples, fit_samples
 from tactcad.mechanics import plane, solid
 from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import HingeSection
@@ -39,7 +39,7 @@ def test_command_gives_the_shipped_constants_again(tmp_path, capsys):
     )
     for group, f in (
         ("root", plane.compliance),
-        ("width", lambda s, k: solid.width_factor(s, plane.compliance(s), k)),
+        ("width", lambda s, k: solid.width_factor(s, plane.parts(s), k)),
     ):
         # the search's last digits may differ between machines; what it gives may not
         np.testing.assert_allclose(f(s, again[group]["two"]), f(s, data[group]["two"]), rtol=2e-5)
@@ -83,6 +83,24 @@ def test_solid_sample_is_computed_again(shipped):
     assert again["width_factor"] == pytest.approx(columns["width_factor"][5], rel=1e-5)
 
 
+@pytest.mark.parametrize("kind", corner_samples.DRAWS)
+def test_corners_are_drawn_again_from_their_seeds(shipped, kind):
+    for name, values in corner_samples.draw_all(kind).items():
+        np.testing.assert_array_equal(values, shipped[kind][name], err_msg=name)
+
+
+def test_a_corner_is_computed_again(shipped):
+    """By whatever mesh: its stored width factor is right to a tenth of what is claimed."""
+    columns = shipped["corners"]
+    narrow = np.isfinite(columns["width_factor"]) & (columns["hinge_length"] > columns["hinge_thickness"])
+    i = int(np.argmin(np.where(narrow, columns["width"] * columns["hinge_length"], np.inf)))
+    one = fit_samples.section(columns).rows(i)
+    plane_K = corner_samples.plane_stiffness(one)
+    assert plane_K == pytest.approx(columns["plane_stiffness"][i], rel=3e-5)
+    factor = corner_samples.solid_stiffness(one) / (plane_K * float(one.width))
+    assert factor == pytest.approx(columns["width_factor"][i], rel=3.5e-4)
+
+
 def test_range_holds_the_small_version_and_the_box():
     groups = ladder_data()["range"]["groups"]
     assert groups["l/t"][0] < 0.1 / 0.3 and groups["l/t"][1] > 1.5 / 0.15
@@ -90,13 +108,26 @@ def test_range_holds_the_small_version_and_the_box():
     assert groups["r/t"][1] > 0.25 / 0.05
 
 
-@pytest.mark.parametrize("args", [["--samples", "3"], ["--solids", "1"], ["--held-out", "1"], ["--reuse"]])
+@pytest.mark.parametrize(
+    "args", [["--samples", "3"], ["--solids", "1"], ["--held-out", "1"], ["--corners", "1"], ["--reuse"]]
+)
 def test_fit_refuses_too_little(args, tmp_path, capsys):
     assert main(["fit", "--out", str(tmp_path), *args]) == 2
 
 
 @pytest.mark.nightly
 def test_whole_command_runs_on_few_samples(tmp_path):
-    args = ["--samples", "60", "--solids", "40", "--held-out", "10", "--held-out-solids", "5"]
+    args = [
+        "--samples",
+        "60",
+        "--solids",
+        "40",
+        "--held-out",
+        "10",
+        "--held-out-solids",
+        "5",
+        "--corners",
+        "40",
+    ]
     assert main(["fit", "--out", str(tmp_path), *args]) == 0
     assert main(["fit", "--out", str(tmp_path), "--reuse"]) == 0

@@ -22,9 +22,7 @@ EXAMPLES = """\
 """
 
 # more data than constants, and some in every zone of the accuracy's envelope
-LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 5, "range": 240}
-FILES = {"fitted": "ladder-samples.csv", "held out": "ladder-heldout.csv"}
-RANGE_FILE = "ladder-range.csv"
+LEAST = {"samples": 60, "solids": 40, "held_out": 10, "held_out_solids": 5, "range": 240, "corners": 40}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -59,6 +57,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default=240,
         help="designs over the whole range, on which worst errors are measured (default 240)",
     )
+    parser.add_argument(
+        "--corners",
+        type=int,
+        default=240,
+        help="of each draw in the corners of the range so many designs at most (default 240, all)",
+    )
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--reuse", action="store_true", help="take the samples that lie in DIR")
     source.add_argument(
@@ -80,18 +84,17 @@ def run(args: argparse.Namespace) -> int:
     make_folder(out)
     results = [out / name for name in ("ladder.json", "accuracy.json")]
     if args.shipped_samples:
-        tables = fit_samples.shipped() | {"range": fit_samples.shipped_table(RANGE_FILE)}
+        tables = fit_samples.shipped()
     elif args.reuse:
-        files = FILES | {"range": RANGE_FILE}
-        missing = [str(out / name) for name in files.values() if not (out / name).is_file()]
+        missing = [str(out / name) for name in fit_samples.FILES.values() if not (out / name).is_file()]
         if missing:
             raise InputError("--reuse", f"{missing[0]} is not there")
         for path in results:
-            refuse_overwriting(path, *(out / name for name in files.values()))
-        tables = {kind: fit_samples.load(out / name) for kind, name in files.items()}
+            refuse_overwriting(path, *(out / name for name in fit_samples.FILES.values()))
+        tables = {kind: fit_samples.load(out / name) for kind, name in fit_samples.FILES.items()}
     else:
         tables = _sample(args, out)
-    result = fit(tables["fitted"], tables["held out"], _today())
+    result = fit(tables, _today())
     accuracy = accuracy_table(tables, result, _today())
     for path, document in zip(results, (result, accuracy)):
         write_whole(path, (json.dumps(document, indent=1) + "\n").encode())
@@ -109,25 +112,27 @@ def run(args: argparse.Namespace) -> int:
 def _sample(args: argparse.Namespace, out: Path) -> dict:
     from tactcad.fit import fit_samples
     from tactcad.fit.accuracy_samples import compute_range, draw_range, draw_refined, meshes_of
+    from tactcad.fit.corner_samples import DRAWS, compute_all
+
+    def reporting(kind: str) -> Callable[[str], None]:
+        return lambda line: print(f"{kind}: {line}", file=sys.stderr, flush=True)
 
     plan = {"fitted": (args.samples, args.solids), "held out": (args.held_out, args.held_out_solids)}
 
-    def said_of(kind: str) -> Callable[[str], None]:
-        return lambda line: print(f"{kind}: {line}", file=sys.stderr, flush=True)
-
     for kind, (count, solids) in plan.items():
-        report = said_of(kind)
         inside, edges = fit_samples.designs(kind, count)
         tables = [
-            fit_samples.compute(inside, solids, report),
-            fit_samples.compute(edges, solids // 5, report),
+            fit_samples.compute(inside, solids, reporting(kind)),
+            fit_samples.compute(edges, solids // 5, reporting(kind)),
         ]
-        fit_samples.write(fit_samples.joined(tables), out / FILES[kind])
-    whole = compute_range(draw_range(args.range), said_of("range"), meshes_of)
-    refined = compute_range(draw_refined(), said_of("range"), lambda i: (2, 3, 4))
-    fit_samples.write(fit_samples.joined([whole, refined]), out / RANGE_FILE)
+        fit_samples.write(fit_samples.joined(tables), out / fit_samples.FILES[kind])
+    whole = compute_range(draw_range(args.range), reporting("range"), meshes_of)
+    refined = compute_range(draw_refined(), reporting("range"), lambda i: (2, 3, 4))
+    fit_samples.write(fit_samples.joined([whole, refined]), out / fit_samples.FILES["range"])
+    for kind in DRAWS:
+        fit_samples.write(compute_all(kind, args.corners, reporting(kind)), out / fit_samples.FILES[kind])
     # read back: the fit sees the digits that the files hold
-    return {kind: fit_samples.load(out / name) for kind, name in (FILES | {"range": RANGE_FILE}).items()}
+    return {kind: fit_samples.load(out / name) for kind, name in fit_samples.FILES.items()}
 
 
 def _today() -> date:

@@ -94,6 +94,7 @@ def run(args: argparse.Namespace) -> int:
 def _answer(args: argparse.Namespace, parameter: str) -> dict:
     from tactcad.design.materials import alloy as alloy_named
     from tactcad.mechanics import ladder, strain, strength
+    from tactcad.mechanics.accuracy import expected_error_of
     from tactcad.mechanics.sizing import size
     from tactcad.parts.designs import load
     from tactcad.parts.hinge_section import design_alloy
@@ -112,6 +113,7 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
         strain.gauge(sized, force, design.gauge.grid_length, args.model),
     )
     yields_at = float(strength.yield_force(sized, alloy))
+    error = float(expected_error_of(sized, args.model))
     largest = strain.largest_stress if args.model == "solid" else strain.peak_stress
     return {
         "model": args.model,
@@ -119,6 +121,7 @@ def _answer(args: argparse.Namespace, parameter: str) -> dict:
         "value": value,
         "tolerance": tolerance,
         "stiffness": float(ladder.stiffness(sized, args.model)),
+        "expected_error": error if math.isfinite(error) else None,
         "stiffness_interval": sorted(ends),
         "section": {
             name: float(getattr(sized, name)) for name in ("load_arm", "poisson", "youngs_modulus", *LENGTHS)
@@ -164,6 +167,8 @@ def _section(args: argparse.Namespace, design: Design) -> HingeSection:
 
 
 def _report(a: dict) -> str:
+    from tactcad.mechanics.accuracy import stated
+
     low, high = a["stiffness_interval"]
     name = a["solved"].replace("_", " ")
     strained = (
@@ -177,6 +182,7 @@ def _report(a: dict) -> str:
         (
             f"{name} {a['value']:.4f} mm for {a['stiffness']:.4g} N/mm at L {s['load_arm']:g} mm "
             f"({s['sides']}-sided, rung {a['model']})",
+            *([stated(a["expected_error"])] if a["expected_error"] is not None else []),
             f"as cut: +-{a['tolerance']:g} mm leaves {low:.4g} to {high:.4g} N/mm "
             f"({low / a['stiffness'] - 1:+.1%} to {high / a['stiffness'] - 1:+.1%})",
             f"at {a['force']:g} N, {a['alloy']}: {strained}",

@@ -92,6 +92,14 @@ def compute_range(
     return columns | found
 
 
+def with_width_factor(columns: Columns) -> Columns:
+    """The same with K3D/K2D by the finest of the solid meshes that each design was solved on."""
+    stiffness = np.full(len(columns["width"]), math.nan)
+    for name in ("solid_mesh_2", "solid_mesh_3", "solid_mesh_4"):
+        stiffness = np.where(np.isfinite(columns[name]), columns[name], stiffness)
+    return columns | {"width_factor": stiffness / (columns["plane_stiffness"] * columns["width"])}
+
+
 SECONDS = {
     "fem-plane": "seconds_plane",
     "fem-solid, mesh 2": "seconds_mesh_2",

@@ -55,6 +55,13 @@ EDGE_SHARE = 0.65  # of the parameters of a design on the box's edges stand at a
 
 EDGE_PART = 3  # for so many designs inside the box one more stands on its edges
 SEEDS = {"fitted": 20261121, "held out": 31415}
+FILES = {
+    "fitted": "ladder-samples.csv",
+    "held out": "ladder-heldout.csv",
+    "range": "ladder-range.csv",
+    "corners": "ladder-corners.csv",
+    "corners held out": "ladder-corners-heldout.csv",
+}
 
 GRIDS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0)  # gauge grid lengths sampled, in slot lengths
 
@@ -218,11 +225,11 @@ def load(path: Path | Traversable) -> Columns:
         ) from None
 
 
-def shipped_table(name: str) -> Columns:
-    """A sample file that comes with the program."""
-    return load(resources.files(__package__) / "data" / name)
+def shipped_table(kind: str) -> Columns:
+    """A sample that comes with the program, by its name in FILES."""
+    return load(resources.files(__package__) / "data" / FILES[kind])
 
 
 def shipped() -> dict[str, Columns]:
-    """The samples that the shipped constants were fitted on, and those held out."""
-    return {"fitted": shipped_table("ladder-samples.csv"), "held out": shipped_table("ladder-heldout.csv")}
+    """All samples that come with the program: "held out" and "corners held out" are kept out of the fit."""
+    return {kind: shipped_table(kind) for kind in FILES}

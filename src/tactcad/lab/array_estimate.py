@@ -8,7 +8,7 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import ladder, strain, strain_errors, strength
-from tactcad.mechanics.accuracy import Choice, choose
+from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strain_errors import StrainErrors
 from tactcad.parts.element import element
@@ -80,6 +80,12 @@ def choose_rung(layout: Layout, accuracy: float) -> Choice:
     places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
     names = [f"element {p.number}" for p in places.values()]
     return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
+
+
+def expected_errors(layout: Layout, rung: str, mesh: int | None = None) -> list[float | None]:
+    """Every element's worst relative error of stiffness by the rung, None where that was not measured."""
+    errors = expected_error_of(hinge_section(layout, layout.elements), rung, mesh)
+    return [None if np.isnan(e) else float(e) for e in np.broadcast_to(errors, len(layout.elements))]
 
 
 @dataclass(frozen=True)

@@ -15,14 +15,14 @@ from tactcad.design.csv_table import Field, Table, numeric, require_columns
 from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure, InputError, one_of
 from tactcad.mechanics import ladder
-from tactcad.mechanics.accuracy import choose_each
+from tactcad.mechanics.accuracy import choose_each, expected_error_of
 from tactcad.mechanics.section import OPTIONAL, REQUIRED, HingeSection
 
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"
 MOST_BYTES = 200_000_000  # a million designs and more
-ADDED = ("stiffness", "model", "valid", "reason")
-ADDED_BY_ACCURACY = ("mesh", "expected_error")
+ADDED = ("stiffness", "model", "valid", "reason", "expected_error")
+ADDED_BY_ACCURACY = ("mesh",)
 
 
 def estimate_file(
@@ -36,7 +36,8 @@ def estimate_file(
     header, rows, section = read_table(Path(source))
     if accuracy is None:
         stiffness, reasons = estimate_rows(section, rung)
-        added = [(k, rung, why) for k, why in zip(stiffness, reasons)]
+        errors = np.broadcast_to(expected_error_of(section, rung), section.shape).ravel().tolist()
+        added = [(k, rung, why, error) for k, why, error in zip(stiffness, reasons, errors)]
         table = _table_bytes([*header, *ADDED], [row + _answer(*a) for row, a in zip(rows, added)])
     else:
         if clash := set(ADDED_BY_ACCURACY) & set(header):
@@ -46,7 +47,10 @@ def estimate_file(
             )
         answers = estimate_rows_to(section, accuracy)
         reasons = [a.reason for a in answers]
-        whole = [row + _answer(a.stiffness, a.model, a.reason) + _promise(a) for row, a in zip(rows, answers)]
+        whole = [
+            [*row, *_answer(a.stiffness, a.model, a.reason, a.expected_error), str(a.mesh or "")]
+            for row, a in zip(rows, answers)
+        ]
         table = _table_bytes([*header, *ADDED, *ADDED_BY_ACCURACY], whole)
     write_whole(target, table)
     return sum(not r for r in reasons), len(rows)
@@ -127,14 +131,16 @@ def _side(table: Table, line: int, side: str) -> str:
     return side
 
 
-def _answer(stiffness: float, model: str, reason: str) -> list[str]:
-    """The ADDED columns of a row."""
-    return ["" if reason else repr(stiffness), model, "false" if reason else "true", reason]
-
-
-def _promise(answer: Answer) -> list[str]:
-    """The ADDED_BY_ACCURACY columns of a row."""
-    return ["", ""] if answer.reason else [str(answer.mesh or ""), repr(answer.expected_error)]
+def _answer(stiffness: float, model: str, reason: str, error: float) -> list[str]:
+    """The ADDED columns of a row; no error where none was measured."""
+    number = "" if reason else repr(stiffness)
+    return [
+        number,
+        model,
+        "false" if reason else "true",
+        reason,
+        "" if reason or math.isnan(error) else repr(error),
+    ]
 
 
 def _table_bytes(header: list[str], rows: list[list[str]]) -> bytes:

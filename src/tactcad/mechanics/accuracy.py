@@ -22,7 +22,7 @@ import numpy as np
 from tactcad.design.messages import CheckFailure
 
 from . import validity
-from .register import REGISTER
+from .register import BY_NAME, REGISTER
 from .section import Array, HingeSection
 
 MEASURED_FOR = "solid"  # the rung whose range is the envelope: its sample is where errors were measured
@@ -116,6 +116,16 @@ def expected_error(s: HingeSection, candidate: Candidate) -> Array:
     """Promised worst error of a candidate at every design, NaN outside the envelope."""
     promised = _promised(zones(s), candidate)
     return np.where(validity.reasons(s, MEASURED_FOR) == "", promised, np.nan)
+
+
+def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Array:
+    """The same of a rung by its name, fem-solid by its own mesh where none is given."""
+    return expected_error(s, Candidate(rung, mesh or BY_NAME[rung].meshes[0]))
+
+
+def stated(error: float) -> str:
+    """What a reader is told of an expected error."""
+    return f"K within {100.0 * error:.2g} % of solid elements refined to their limit (docs/accuracy.md)"
 
 
 def zone_name(zone: dict) -> str:

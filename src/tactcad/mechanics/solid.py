@@ -1,38 +1,46 @@
-"""Rung solid: the plane rung times a width factor to three dimensions.
+"""Rung solid: the plane rung's parts, each less compliant by what a wide sheet may not curl.
 
-    K3D = K2D [1 + nu^2/(1 - nu^2) psi]
-    psi = (1 - wa - wb) leaf + wa/(1 + ca h/b) + wb/(1 + cb Hb/b)
-    leaf = 1 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 + c6 r/b + c7 y r/l + c8 nu x + c9 y t/l + c10 t/Hb
+    C3D = hinge (1 - nu^2/(1 + P)) + slope (1 - nu^2/(1 + cs P)) + arm + body (1 - nu^2/(1 + cb Lb/b)) + shear
+    P = (1 + a nu) (cx x + cy y + (cz + cl t/l) z + cxx x^2 + cyz y z + cxxy x^2 y + cxxz x^2 z + cxyy x y^2
+                    + cyyy y^3 + cyyz y^2 z + ch (t/h)^3 (L - l/2)/b)
 
-with x = l/b, y = t/b; wa and wb are the shares of the tip compliance that arm and body bring by
-bending. psi is 0 for a narrow strip and 1 in plane strain: near the free sides of the leaf, over a
-width that goes with l and t, it may curl; arm and body are beams of their own height.
+with x = lc/b, y = t/b, z = r/b, and hinge, slope, arm, body, shear as in `plane`. Bending is free to curl
+where the sheet is narrow against what bends (plane stress), and kept from it where it is wide (plane
+strain, 1 - nu^2). The arm, which nothing holds across at its ends, curls however wide it is, and where it
+is low takes the hinge with it (ch). As no constant but a is negative, C3D is never more than plane stress
+has and K3D/b never falls with b, whatever their values are.
 """
 
 from __future__ import annotations
 
 from . import plane
-from .beams import arm_bending, body_bending
 from .constants import by_sides
 from .section import Array, HingeSection
 
 
-def width_factor(s: HingeSection, plane_compliance: Array, k: plane.Constants | None = None) -> Array:
-    """K3D/K2D; `plane_compliance` (mm/N) as `plane.compliance` gives it."""
+def curled(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
+    """Tip compliance of the solid, mm/N, from the plane's parts; `k` are the width's constants, by default
+    the shipped ones."""
     k = k or by_sides("width", s.two_sided)
-    b, nu, r, l = s.width, s.poisson, s.fillet_radius, s.hinge_length
-    h, Hb, t = s.arm_height, s.body_height, s.hinge_thickness
-    x, y = l / b, t / b
-    leaf = (
-        1.0
-        + x * (k["c1"] + k["c3"] * x + k["c4"] * y + k["c8"] * nu)
-        + y * (k["c2"] + k["c5"] * y + k["c7"] * (r / l) + k["c9"] * (t / l))
-        + k["c6"] * (r / b)
-        + k["c10"] * (t / Hb)
-    )
-    wa, wb = arm_bending(s) / plane_compliance, body_bending(s) / plane_compliance
-    psi = (1.0 - wa - wb) * leaf + wa / (1.0 + k["ca"] * (h / b)) + wb / (1.0 + k["cb"] * (Hb / b))
-    return 1.0 + nu * nu / (1.0 - nu * nu) * psi
+    b, nu2 = s.width, s.poisson * s.poisson
+    free = (1.0 + k["a"] * s.poisson) * _narrowness(s, k)
+    hinge = flat.hinge * (1.0 - nu2 / (1.0 + free)) + flat.slope * (1.0 - nu2 / (1.0 + k["cs"] * free))
+    body = flat.body * (1.0 - nu2 / (1.0 + k["cb"] * (s.body_length / b)))
+    return hinge + flat.arm + body + flat.shear
+
+
+def _narrowness(s: HingeSection, k: plane.Constants) -> Array:
+    """P/(1 + a nu): how free the hinge is to curl."""
+    x, y, z = (length / s.width for length in (s.straight_length, s.hinge_thickness, s.fillet_radius))
+    t, l, reach = s.hinge_thickness, s.hinge_length, s.load_arm - s.hinge_length / 2.0
+    alone = x * (k["cx"] + k["cxx"] * x) + y * (k["cy"] + k["cyyy"] * y * y) + z * (k["cz"] + k["cl"] * t / l)
+    both = x * (x * (k["cxxy"] * y + k["cxxz"] * z) + k["cxyy"] * y * y) + y * z * (k["cyz"] + k["cyyz"] * y)
+    return alone + both + k["ch"] * (t / s.arm_height) ** 3 * reach / s.width
+
+
+def width_factor(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
+    """K3D/K2D."""
+    return flat.whole / curled(s, flat, k)
 
 
 def compliance(s: HingeSection) -> Array:
@@ -42,5 +50,5 @@ def compliance(s: HingeSection) -> Array:
 
 def compliance_by(s: HingeSection, data: dict | None = None) -> Array:
     """The same by the constants in `data` (as data/ladder.json), else the shipped ones."""
-    flat = plane.compliance_by(s, data)
-    return flat / width_factor(s, flat, by_sides("width", s.two_sided, data))
+    flat = plane.parts(s, by_sides("root", s.two_sided, data))
+    return curled(s, flat, by_sides("width", s.two_sided, data))

@@ -95,6 +95,13 @@ WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "b/Hb": lambda s: s.width / s.body_height,
 }
 
+# Groups that are bounded below alone: what is wrong there, the group, and whose fit it bounds.
+LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
+    "Lb/t": ("body too short", lambda s: s.body_length / s.hinge_thickness, "plane"),
+    "L/t": ("load arm too short", lambda s: s.load_arm / s.hinge_thickness, "plane"),
+    "b/r": ("sheet too thin for its fillets", lambda s: s.width / s.fillet_radius, "width"),
+}
+
 
 def groups(s: HingeSection) -> dict[str, Array]:
     """Value of every group for every design."""
@@ -116,13 +123,12 @@ def _fitted(rung: str) -> tuple[RangeRule, ...]:
             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s),
         ),
     ]
-    least = sampled["least_body_length"]
-    rules.append(
-        RangeRule(
-            f"body too short for the fit: Lb < {least:g} t",
-            lambda s: s.body_length < least * (1.0 - ROUNDING) * s.hinge_thickness,
-        )
-    )
+    rules += [
+        RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf))
+        for name, (what, value, of) in LEAST.items()
+        if of in BY_NAME[rung].fitted
+        for least in (sampled["least"][name],)
+    ]
     bounding = PLANE_GROUPS | (WIDTH_GROUPS if "width" in BY_NAME[rung].fitted else {})
     for name, value in bounding.items():
         low, high = sampled["groups"][name]
