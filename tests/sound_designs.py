@@ -298,7 +298,7 @@ def _clamp(d: Draw) -> None:
     widest = max(m.clearance, hole + upper)
     layers = ceil(3 / floor(d.table["array.pitch"] / LEAD + 1e-9))
     recess = d.number(
-        "element.recess_depth", max(corner + d.bottom, layers * LEAD), max(top / 8, layers * LEAD)
+        "element.recess_depth", max(corner + d.bottom + 0.001, layers * LEAD), max(top / 8, layers * LEAD)
     )
     bottom = d.number("clamp.spacer_bottom", recess, recess + top / 16)
     web = d.number("holes.web", WALL, top / 8)

@@ -133,6 +133,6 @@ def test_a_scene_that_the_design_cannot_have_is_flagged_with_the_rule():
 
     from tactcad.checks.run import _left_out
 
-    (finding,) = _left_out(variant({"grasping.moving_weight": 500.0}))
+    (finding,) = _left_out(variant({"grasping.moving_weight": 2.74}))
     assert (finding.check, finding.severity) == ("scene", "flag")
     assert "scene grasping left out: rule ballast_trims_moving_weight" in finding.message

@@ -107,7 +107,7 @@ def test_batch_takes_columns_in_any_order_and_passes_others_through(tmp_path):
     text += ",".join(['"a, b"', *(values[i] for i in order), "one"]) + "\n"
     status, rows = batch(tmp_path, text)
     assert status == 0 and rows[0]["label"] == "a, b" and rows[0]["sides"] == "one"
-    assert list(rows[0])[-4:] == ["stiffness", "model", "valid", "reason"]
+    assert list(rows[0])[-5:] == ["stiffness", "model", "valid", "reason", "expected_error"]
     assert float(rows[0]["stiffness"]) == float(ladder.stiffness(REFERENCE.with_(two_sided=False)))
 
 

@@ -53,7 +53,7 @@ DESIGNS = {
         "element.pad_height": 1.987,
         "array.row_arms": [[5.125, 6.375]],
     },
-    "long arms": {"array.row_arms": [[40, 20], [6, 8]], "clamp.end_plate_thickness": 13.0},
+    "long arms": {"array.row_arms": [[40, 20], [6, 8]]},
     "longer than any screw": {"array.row_arms": [[4] * 12, [8] * 12]},
 }
 LONG = {"array.row_arms": [[4] * 100, [8] * 100]}

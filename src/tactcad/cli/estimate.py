@@ -95,7 +95,7 @@ def run(args: argparse.Namespace) -> int:
         return _as_made(args)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
-    from tactcad.lab.array_estimate import choose_rung, compare_uncut, estimate, expected_errors
+    from tactcad.lab.array_estimate import choose_rung, compare_uncut, estimate
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
 
@@ -105,11 +105,7 @@ def run(args: argparse.Namespace) -> int:
     model, mesh = (
         (choice.candidate.rung, choice.candidate.mesh) if choice else (args.model or DEFAULT_RUNG, None)
     )
-    errors = expected_errors(layout, model, mesh)
-    rows = [
-        asdict(row) | {"expected_error": e}
-        for row, e in zip(estimate(layout, model, args.force, mesh), errors)
-    ]
+    rows = [asdict(row) for row in estimate(layout, model, args.force, mesh)]
     shares = _shares(layout, model)
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:

@@ -44,6 +44,9 @@ class ElementEstimate:
     yield_deflection: float  # mm
     rated_force: float  # N, in use
     rated_deflection: float  # mm, never passed: overload and calibration stay below
+    expected_error: (
+        float | None
+    )  # relative, of the stiffness: the largest stated; None where none was measured
 
 
 def estimate(
@@ -61,7 +64,7 @@ def estimate(
         return estimate_sections(layout, section, rung, force)
     K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)
     errors = strain_errors.stated(section, design.gauge.grid_length, rung)
-    return _estimates(layout, section, K, per_newton, errors, force)
+    return _estimates(layout, section, K, per_newton, expected_error_of(section, rung, mesh), errors, force)
 
 
 def estimate_sections(
@@ -71,7 +74,8 @@ def estimate_sections(
     elements) instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
     errors = strain_errors.stated(section, grid, rung)
-    return _estimates(layout, section, K, _closed_form_strains(section, rung, grid), errors, force)
+    strains = _closed_form_strains(section, rung, grid)
+    return _estimates(layout, section, K, strains, expected_error_of(section, rung), errors, force)
 
 
 def choose_rung(layout: Layout, accuracy: float) -> Choice:
@@ -80,12 +84,6 @@ def choose_rung(layout: Layout, accuracy: float) -> Choice:
     places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
     names = [f"element {p.number}" for p in places.values()]
     return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
-
-
-def expected_errors(layout: Layout, rung: str, mesh: int | None = None) -> list[float | None]:
-    """Every element's worst relative error of stiffness by the rung, None where that was not measured."""
-    errors = expected_error_of(hinge_section(layout, layout.elements), rung, mesh)
-    return [None if np.isnan(e) else float(e) for e in np.broadcast_to(errors, len(layout.elements))]
 
 
 @dataclass(frozen=True)
@@ -150,10 +148,12 @@ def _estimates(
     section: HingeSection,
     K: Array,
     per_newton: _PerNewton,
+    stiffness_error: Array,
     errors: StrainErrors,
     force: float,
 ) -> list[ElementEstimate]:
     alloy, rating = design_alloy(layout.design), layout.design.rating
+    stiffness_error = np.broadcast_to(stiffness_error, len(layout.elements))
     rows = []
     for i, place in enumerate(layout.elements):
         yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
@@ -187,6 +187,7 @@ def _estimates(
                 yield_deflection=yield_force / float(K[i]),
                 rated_force=min(force, yield_force / rating.yield_factor),
                 rated_deflection=yield_force / rating.deflection_factor / float(K[i]),
+                expected_error=_known(stiffness_error[i]),
             )
         )
     return rows
