@@ -13,6 +13,7 @@ from skfem import Basis, ElementTriP2
 from tactcad.design.load import names
 from tactcad.fem import elasticity
 from tactcad.fem.free_mesh import Fine, triangle_mesh
+from tactcad.fem.space import line_load
 from tactcad.mechanics import ladder
 from tactcad.parts.designs import load
 from tactcad.parts.element import element
@@ -49,7 +50,7 @@ def solved(layout: Layout, place: ElementPlace, modulus: float) -> tuple[Answer,
     """1 N spread over the pad, 1 N up at the land's tip edge, 1 N up at the pad's outer edge; plane stress,
     held between its spacers. Deflection is always the pad's mean."""
     d = layout.design
-    outer, holes = element(layout, place).body.outer, element(layout, place).body.openings
+    outer, holes = element(layout, place).extrusion.outer, element(layout, place).extrusion.openings
     t, l, r = place.hinge.t, place.hinge.l, place.hinge.r
     fine = tuple(Fine((x, t), t / 8) for x in place.hinge_x + np.linspace(-l / 2, l / 2, 15))
     land = (layout.pad_inner, layout.ledge - gap_of(layout, place))
@@ -67,7 +68,7 @@ def solved(layout: Layout, place: ElementPlace, modulus: float) -> tuple[Answer,
     pad = pad[np.argsort(x[pad])]
     (tip,) = np.flatnonzero((np.abs(x - land[0]) < 1e-9) & (np.abs(z - land[1]) < 1e-9))
     press = np.zeros(A.shape[0])
-    press[2 * pad + 1] = elasticity.line_load(x[pad], lambda q: np.full_like(q, 1.0 / (x1 - x0)))
+    press[2 * pad + 1] = line_load(x[pad], lambda q: np.full_like(q, 1.0 / (x1 - x0)), 2)
     push = np.zeros(A.shape[0])
     push[2 * tip + 1] = 1.0
     edge = np.zeros(A.shape[0])

@@ -90,13 +90,13 @@ def test_corners_are_drawn_again_from_their_seeds(shipped, kind):
 
 
 def test_a_corner_is_computed_again(shipped):
-    """By whatever mesh: its stored width factor is right to a tenth of what is claimed."""
+    """By whatever mesh: what is stored of it is right to a tenth of what is claimed."""
     columns = shipped["corners"]
     narrow = np.isfinite(columns["width_factor"]) & (columns["hinge_length"] > columns["hinge_thickness"])
     i = int(np.argmin(np.where(narrow, columns["width"] * columns["hinge_length"], np.inf)))
     one = fit_samples.section(columns).rows(i)
     plane_K = corner_samples.plane_stiffness(one)
-    assert plane_K == pytest.approx(columns["plane_stiffness"][i], rel=3e-5)
+    assert plane_K == pytest.approx(columns["plane_stiffness"][i], rel=3.5e-4)
     factor = corner_samples.solid_stiffness(one) / (plane_K * float(one.width))
     assert factor == pytest.approx(columns["width_factor"][i], rel=3.5e-4)
 

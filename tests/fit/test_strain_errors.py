@@ -11,9 +11,9 @@ import os
 import numpy as np
 import pytest
 
-from tactcad.fem import one_element
+from tactcad.fem import fem_ladder
 from tactcad.fit import strain_fit, strain_samples
-from tactcad.fit.fit_samples import section, shipped_table
+from tactcad.fit.fit_samples import section
 from tactcad.mechanics import strain, strain_errors
 from tactcad.mechanics.constants import strain_data
 from tactcad.mechanics.section import REFERENCE
@@ -47,7 +47,7 @@ NOTCH = REFERENCE.with_(
 
 def errors(s, grid):
     """Relative errors of the closed forms for one design against fem-solid, and what is stated."""
-    read = one_element.solve(s, "fem-solid", grid).readings
+    read = fem_ladder.solve(s, "fem-solid", grid).readings
     stated = strain_errors.stated(s, grid, "solid")
     return (
         (float(strain.gauge(s, 1.0, grid)) / float(read.gauge) - 1.0, float(stated.gauge)),
@@ -74,14 +74,14 @@ def test_a_sheet_without_poissons_effect_carries_the_mean_everywhere():
 
 def test_elements_fillet_strain_is_within_what_is_stated_of_it():
     """At a fillet of a sixth of the thickness, where quadratic elements were several per cent low."""
-    coarse, fine = (one_element.solve(NOTCH, "fem-solid", 0.1, mesh=mesh).readings for mesh in (2, 3))
+    coarse, fine = (fem_ladder.solve(NOTCH, "fem-solid", 0.1, mesh=mesh).readings for mesh in (2, 3))
     for name in ("gauge", "fillet_strain", "fillet_stress"):
         moved = float(getattr(coarse, name)) / float(getattr(fine, name)) - 1.0
         assert abs(moved) < strain_errors.OF_ELEMENTS
 
 
 def test_shipped_data_are_the_fits():
-    again, shipped = strain_fit.fit(shipped_table(strain_fit.SAMPLES)), strain_data()
+    again, shipped = strain_fit.fit(strain_fit.shipped_samples()), strain_data()
     assert again["designs"] == shipped["designs"] and len(again["zones"]) == len(shipped["zones"])
     s = section(strain_samples.draw(100, SEED))
     np.testing.assert_allclose(
