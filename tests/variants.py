@@ -39,9 +39,7 @@ def variant(changes: dict[str, Any] | None = None, base: str = "macro-array") ->
     material's, without which its values would have to be those of its name."""
     tree = table(changes, base)
     origin = tree.pop("origin", {})
-    return from_table(
-        tree | {"origin": {k: ORIGIN.get(k, v) for k, v in origin.items() if k.startswith("material.")}}
-    )
+    return from_table(tree | {"origin": {k: v for k, v in ORIGIN.items() if k in origin}})
 
 
 _TABLES: dict[str, dict[str, Any]] = {}

@@ -96,7 +96,11 @@ CASES = (
             body_length=0.8,
         ),
     ),
-    Case("arm 0.5 mm under the usual arm height", dict(load_arm=0.5), by_fitted("(L - l/2)/h is outside")),
+    Case(
+        "arm 0.5 mm under the usual arm height",
+        dict(load_arm=0.5),
+        by_fitted("load arm too short for the fit"),
+    ),
     Case(
         "arm 100 mm",
         dict(
@@ -123,6 +127,6 @@ CASES = (
     Case("no Poisson effect", dict(poisson=0.0), by_fitted("poisson is outside the fit's")),
     Case("nearly incompressible", dict(poisson=0.4999999), by_fitted("poisson is outside the fit's")),
     Case("incompressible", dict(poisson=0.5), by_all("poisson is outside 0 to 0.5")),
-    Case("foil", dict(width=0.01), {"solid": "b/t is outside"}),
+    Case("foil", dict(width=0.01), {"solid": "sheet too thin for its fillets for the fit"}),
     Case("plate", dict(width=1e4), {"solid": "b/t is outside"}),
 )
