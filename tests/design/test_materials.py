@@ -181,7 +181,7 @@ def test_both_stiffnesses_are_said_where_the_paper_s_modulus_stands_for_the_allo
     plain, real = estimate(tmp_path / "real.toml", capsys)
     ours, table = ([row["stiffness"] for row in d["elements"]] for d in (document, real))
     assert [k * document["stiffness_factor"] for k in ours] == pytest.approx(table, rel=1e-12)
-    assert "youngs_modulus 69000 MPa is 4.2% below 7075-T6's 72000 (paper: 69000 MPa" in text
+    assert "Young's modulus 69000 MPa is 4.2% below 7075-T6's 72000 (paper: 69000 MPa" in text
     assert f"every K is +4.3%: {max(table):.4g} instead of {max(ours):.4g} N/mm" in text
     (difference,) = document["material_differences"]
     assert (difference["property"], difference["value"], difference["table"]) == (
@@ -200,7 +200,7 @@ def sheet_notes(d):
 
 
 def test_sheets_say_what_differs():
-    assert "youngs_modulus 69000 mpa is 4.2% below 7075-t6's 72000" in sheet_notes(variant())
+    assert "young's modulus 69000 mpa is 4.2% below 7075-t6's 72000" in sheet_notes(variant())
     assert "designed with other data" not in sheet_notes(variant({"material.youngs_modulus": DROP}))
 
 

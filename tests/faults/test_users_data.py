@@ -115,7 +115,7 @@ def killed_while_somebody_writes(bench, work: Path, kills: int) -> None:
             while process.poll() is None and not list(work.glob("exports/.out.tactcad-*/making")):
                 time.sleep(0.001)
             (out / "note.txt").write_text(f"note {turn}")
-            time.sleep(chance.random() * bench.seconds * 0.1)
+            time.sleep(chance.random() * bench.seconds * 0.1 * turn / kills)  # the first one at once
             process.kill()
         died += process.returncode == -9
         assert process.returncode in (-9, 1), "a note that was kept is a failure to be told"

@@ -10,6 +10,7 @@ import os
 
 import numpy as np
 import pytest
+from test_accuracy import NOTCH
 
 from tactcad.fem import fem_ladder
 from tactcad.fit import strain_fit, strain_samples
@@ -29,18 +30,6 @@ CORNER = REFERENCE.with_(
     body_length=2.0,
     poisson=0.4,
     width=1.5,
-    two_sided=False,
-)
-NOTCH = REFERENCE.with_(
-    hinge_thickness=0.3,
-    hinge_length=0.11,
-    fillet_radius=0.05,
-    load_arm=4.0,
-    arm_height=3.0,
-    body_height=3.0,
-    body_length=1.2,
-    poisson=0.42,
-    width=2.0,
     two_sided=False,
 )
 

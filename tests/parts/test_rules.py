@@ -193,10 +193,6 @@ WITNESSES = {
         ({"clamp.carrier_screw_offset": 20.0}, "clamp.carrier_screw_offset"),
         ({"clamp.carrier_screw_offset": 6.0, "clamp.mount_pitch_y": 25.0}, "clamp.mount_pitch_y"),
     ],
-    "plates_stay_straight": [
-        ({"tolerance.pad_height": 0.001}, "clamp.end_plate_thickness"),
-        ({"tolerance.pad_height": 0.0001}, "tolerance.pad_height"),
-    ],
     "no_slivers": [
         ({"element.hinge_length": 0.6005}, "element.hinge_length"),
         ({**TWO_SIDED, "array.row_arms": [[4], [2.7405]], "stop.land_length": 0.2}, "array.row_arms"),

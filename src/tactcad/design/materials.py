@@ -22,6 +22,7 @@ LOT_SPREAD = 0.02
 PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
 OPTIONAL = ("tensile_strength", "conductivity", "magnetic")
 MAGNETIC = ("no", "weakly", "yes")
+NAMED_AFTER = {"youngs_modulus": "Young's modulus", "poisson": "Poisson's ratio"}
 UNITS = {"poisson": "", "density": " kg/m3"}  # others: MPa
 # kg/m3: wrought alloys of these families lie between, and no other metal that is wire-cut does.
 FAMILIES = {
@@ -73,10 +74,8 @@ class Difference:
     def __str__(self) -> str:
         side = "above" if self.relative > 0 else "below"
         unit = UNITS.get(self.name, " MPa")
-        return (
-            f"{self.name} {self.value:g}{unit} is {abs(self.relative):.1%} {side} {self.alloy}'s "
-            f"{self.table:g}"
-        )
+        name = NAMED_AFTER.get(self.name, self.name.replace("_", " "))
+        return f"{name} {self.value:g}{unit} is {abs(self.relative):.1%} {side} {self.alloy}'s {self.table:g}"
 
 
 def _table() -> dict[str, Alloy]:

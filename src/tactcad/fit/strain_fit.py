@@ -42,26 +42,23 @@ def shipped_samples() -> Columns:
 
 def fit(columns: Columns) -> dict:
     """The contents of data/strain.json from samples as strain_samples.compute gives them."""
-    reached = (
-        validity.reasons(section(columns), "solid") == ""
-    )  # its range ends elsewhere since they were drawn
-    columns = {name: values[reached] for name, values in columns.items()}
     solved = np.isfinite(columns["solid_fillet_stress"])
-    rows = {name: values[solved] for name, values in columns.items()}
+    # the range of solid ends elsewhere since they were drawn
+    reached = validity.reasons(section(columns), "solid") == ""
+    rows = {name: values[solved & reached] for name, values in columns.items()}
     s = section(rows)
-    inside = validity.reasons(s, "solid") == ""
     share = {}
     for side, flag in strain_errors.SIDES.items():
-        own = np.flatnonzero(inside & (s.two_sided == flag))
+        own = np.flatnonzero(s.two_sided == flag)
         measured = (rows["solid_fillet_stress"] / strain.stress_beyond_the_fit(s, 1.0))[own]
         share[side] = _fitted(s.rows(own), measured)
     errors = _errors(rows, s, share)
     zones = []
     for side, flag in strain_errors.SIDES.items():
         for bounds in ZONES:
-            own = inside & strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
+            own = strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
             zones.append({"sides": side, "bounds": bounds} | _measured(errors, own))
-    return {"seed": SEED, "designs": int(solved.sum()), "mid-width share": share, "zones": zones}
+    return {"seed": SEED, "designs": len(s.two_sided), "mid-width share": share, "zones": zones}
 
 
 def _fitted(s: HingeSection, measured: Array) -> dict[str, list[float]]:

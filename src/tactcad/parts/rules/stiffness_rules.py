@@ -1,5 +1,6 @@
-"""Rules on what is taken as rigid, the array's parts and its rigs': tactcad check has the same lines
-(checks/rigidity.py)."""
+"""Rules on the rigs' parts that are taken as rigid: tactcad check has the same lines (checks/rigidity.py).
+
+The array's need none: `stop_plate_stays` and `stop_gap_above_tolerance` refuse first what bends there."""
 
 from __future__ import annotations
 
@@ -9,12 +10,7 @@ from ..finding import Finding
 from ..layout import Layout
 from ..stiffness_remedy import remedy
 from ..stiffness_table import deflections
-from .rule import fits, rule, wrong
-
-
-@rule(after="no_slivers")
-def plates_stay_straight(layout: Layout) -> Iterator[Finding]:
-    yield from _too_much(layout, "array")
+from .rule import fits, wrong
 
 
 @fits("calibration")
