@@ -8,6 +8,7 @@ from variants import variant
 
 from tactcad.checks.strength import check_strength
 from tactcad.design.load import names
+from tactcad.mechanics import ladder
 from tactcad.paper import published
 from tactcad.parts.designs import load
 from tactcad.parts.hinge_section import hinge_section
@@ -77,8 +78,6 @@ def test_the_paper_s_grasps_stay_clear_of_the_stop_and_within_the_rated_force():
     design = load("macro-array")
     layout = Layout(design)
     states = overloads(layout)
-    from tactcad.mechanics import ladder
-
     K = ladder.stiffness(hinge_section(layout, layout.elements))
     samples = np.unique(published.load().table2.object_stiffness.value)
     assert len(samples) == 8
@@ -101,13 +100,17 @@ def test_a_stiff_stop_counts_though_its_gap_does_not_close_the_hinge():
         assert one.stress == pytest.approx(2 * other.stress)
 
 
-def test_moments_about_hinge_and_tip_balance():
-    """The load about the hinge is held by the hinge's moment K L d and by the stop at the arm's end."""
+def test_moments_about_the_hinge_balance():
+    """The load about the hinge is held by the hinge's moment K L d and by the stop at the arm's end. Short
+    arms' bodies tilt back: that help is not counted, so their hinges are said to bear a little more.
+    """
     layout = Layout(load("macro-array"))
-    for state in overloads(layout):
+    K = ladder.stiffness(hinge_section(layout, layout.elements))
+    for k, state in zip(K, overloads(layout)):
         p = state.place
-        held = state.closing_force * p.load_arm + state.stop_force * p.arm
-        assert held == pytest.approx(layout.design.rating.overload_force * p.load_arm)
+        moment = layout.design.rating.overload_force * p.load_arm
+        held = k * p.load_arm * state.deflection + state.stop_force * p.arm
+        assert held == pytest.approx(moment, rel=1e-9) if p.arm > 6 else 1.0 < held / moment < 1.003
 
 
 def test_a_rating_beyond_yield_is_flagged_with_what_it_bears():

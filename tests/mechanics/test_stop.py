@@ -2,85 +2,118 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.stop import deflection_share, largest_closing_force, largest_overload, stress_share
+from tactcad.mechanics.stop import (
+    back_share,
+    deflection_share,
+    largest_closing_force,
+    largest_overload,
+    stop_share,
+    stress_share,
+    tip_compliance,
+)
 
 
-def section(load_arm: float, arm_height: float = 2.6) -> HingeSection:
-    return HingeSection(0.25, 0.88, 0.30, load_arm, arm_height, 3.0, 4.0, 0.33, 69000.0, 3.0, False)
+def section(load_arm: float, arm_height: float = 2.6, body_length: float = 4.0) -> HingeSection:
+    return HingeSection(0.25, 0.88, 0.30, load_arm, arm_height, 3.0, body_length, 0.33, 69000.0, 3.0, False)
 
 
-def frame(
-    s: HingeSection, arm: float, force: float, at: float, give: float = 0.0
-) -> tuple[float, float, float]:
-    """Moment (N mm) in the hinge `at` mm from its centre towards the body, the hinge's own stiffness in
-    bending (N mm/rad), and its turn (rad).
+@dataclass(frozen=True)
+class Frame:
+    """1 N at the load line of body, leaf and arm, clamped at the body's far end, in Euler-Bernoulli's beams.
 
-    Euler-Bernoulli: the hinge clamped at the body, the arm, a force at the load line, the tip held.
+    stiffness  N/mm, of the free arm at the load line
+    tip        mm, of the free arm there
+    reaction   N, of a stop at the tip that gives way by `give` mm/N
+    moment     N mm, in the leaf's middle on that stop
     """
-    E, b, l, t, h = 69000.0, 3.0, 0.88, 0.25, float(s.arm_height)
-    L = float(s.load_arm)
-    spans = [(l, t), (L - l / 2, h), (arm - L, h)]
-    K = np.zeros((8, 8))
+
+    stiffness: float
+    tip: float
+    reaction: float
+    moment: float
+
+
+def frame(s: HingeSection, arm: float, give: float = 0.0) -> Frame:
+    E, b, L = 69000.0, 3.0, float(s.load_arm)
+    half = float(s.hinge_length) / 2
+    spans = [
+        (float(s.body_length), float(s.body_height)),
+        (half, float(s.hinge_thickness)),
+        (half, float(s.hinge_thickness)),
+        (L - half, float(s.arm_height)),
+        (arm - L, float(s.arm_height)),
+    ]
+    K = np.zeros((12, 12))
     for n, (length, height) in enumerate(spans):
         I = b * height**3 / 12
-        k = (
-            E
-            * I
-            / length**3
-            * np.array(
-                [
-                    [12, 6 * length, -12, 6 * length],
-                    [6 * length, 4 * length**2, -6 * length, 2 * length**2],
-                    [-12, -6 * length, 12, -6 * length],
-                    [6 * length, 2 * length**2, -6 * length, 4 * length**2],
-                ]
-            )
-        )
-        K[2 * n : 2 * n + 4, 2 * n : 2 * n + 4] += k
-    load = np.zeros(8)
-    load[4] = force
-    free = [2, 3, 4, 5, 7]  # clamped at 0 and 1, held at 6
+        k = [
+            [12, 6 * length, -12, 6 * length],
+            [6 * length, 4 * length**2, -6 * length, 2 * length**2],
+            [-12, -6 * length, 12, -6 * length],
+            [6 * length, 2 * length**2, -6 * length, 4 * length**2],
+        ]
+        K[2 * n : 2 * n + 4, 2 * n : 2 * n + 4] += E * I / length**3 * np.array(k)
+    load = np.zeros(12)
+    load[8] = 1.0
+    free = np.linalg.solve(K[2:, 2:], load[2:])
+    held = [2, 3, 4, 5, 6, 7, 8, 9, 11]  # the tip, 10, as the stop has it
     if give:
-        free, K[6, 6] = [2, 3, 4, 5, 6, 7], K[6, 6] + 1.0 / give
-    u = np.zeros(8)
-    u[free] = np.linalg.solve(K[np.ix_(free, free)], load[free])
-    reactions = K @ u - load
-    assert not give or give * 10 * force > u[6] > 0.0
-    at_wall, shear = reactions[1], reactions[0]
-    turn_stiffness = E * b * t**3 / 12 / l
-    return abs(at_wall - shear * (l / 2 - at)), turn_stiffness, u[3]
+        held, K[10, 10] = list(range(2, 12)), K[10, 10] + 1.0 / give
+    u = np.zeros(12)
+    u[held] = np.linalg.solve(K[np.ix_(held, held)], load[held])
+    reaction = u[10] / give if give else -(K @ u - load)[10]
+    return Frame(1.0 / free[6], free[8], reaction, L - reaction * arm)
 
 
-@pytest.mark.parametrize(("L", "arm"), [(3.0, 4.0), (7.0, 8.0), (4.0, 6.0)])
-@pytest.mark.parametrize("height", [2.6, 1.0])
+ARMS = pytest.mark.parametrize(("L", "arm"), [(3.0, 4.0), (7.0, 8.0), (4.0, 6.0)])
+HEIGHTS = pytest.mark.parametrize("height", [2.6, 1.0, 0.2])
+BODIES = pytest.mark.parametrize("body", [0.5, 4.0, 97.0])
+
+
+@ARMS
+@HEIGHTS
+@BODIES
+def test_way_of_the_free_tip(L, arm, height, body):
+    s = section(L, height, body)
+    exact = frame(s, arm)
+    assert float(tip_compliance(s, exact.stiffness, arm)) == pytest.approx(exact.tip, rel=1e-9)
+
+
+@ARMS
+@HEIGHTS
+@BODIES
 @pytest.mark.parametrize("give", [0.0, 3.4e-5, 1e-3])
-def test_extra_moment_on_a_closed_stop(L, arm, height, give):
-    """Within an eighth, on the safe side: the formula leaves out that the hinge also gives way sideways."""
-    s = section(L, height)
-    w = float(strain.peak_position(s))
-    exact, turning, _ = frame(s, arm, 10.0, w, give)
-    # the frame's hinge is as stiff as its own beam: K L^2 of the formula is that beam's turning stiffness
-    mine = 10.0 * float(stress_share(s, turning / L**2, arm, give)) * (L + w)
-    assert exact <= mine <= 1.125 * exact
+def test_what_a_closed_stop_leaves_the_hinge(L, arm, height, body, give):
+    """The moment in the hinge's middle, and at the peak on either side of it what shear adds."""
+    s = section(L, height, body)
+    exact = frame(s, arm, give)
+    assert float(stop_share(s, exact.stiffness, arm, give)) == pytest.approx(exact.reaction, rel=1e-9)
+    turn = float(deflection_share(s, exact.stiffness, arm, give))
+    assert turn * L == pytest.approx(max(exact.moment, 0.0), rel=1e-6, abs=1e-9)
+    w, shear = float(strain.peak_position(s)), 1.0 - exact.reaction
+    at_body, at_arm = max(exact.moment, 0.0) + shear * w, exact.moment - shear * w
+    assert float(stress_share(s, exact.stiffness, arm, give)) * (L + w) == pytest.approx(at_body, rel=1e-6)
+    back = max(-at_arm / (L + w), -exact.moment / L)
+    assert float(back_share(s, exact.stiffness, arm, give)) == pytest.approx(back, rel=1e-6)
 
 
-@pytest.mark.parametrize(("L", "arm"), [(3.0, 4.0), (7.0, 8.0), (4.0, 6.0)])
-@pytest.mark.parametrize("height", [2.6, 1.0])
-@pytest.mark.parametrize("give", [0.0, 3.4e-5, 1e-3])
-def test_extra_turn_on_a_closed_stop(L, arm, height, give):
-    """The formula's, less what a real hinge gives way sideways: the arm then turns back about the held tip by
-    V l^3/(12 E I arm), a leaf between stiff ends. The formula leaves that out, on the safe side."""
-    s = section(L, height)
-    _, turning, exact = frame(s, arm, 10.0, 0.0, give)
-    mine = 10.0 * float(deflection_share(s, turning / L**2, arm, give)) / (turning / L**2) / L
-    sideways = 10.0 * (1.0 - L / arm) * 0.88**3 / 12.0 / (69000.0 * 3.0 * 0.25**3 / 12.0)
-    assert exact <= mine
-    assert exact == pytest.approx(mine - sideways / arm, abs=0.16 * max(mine, sideways / arm))
+def test_a_soft_body_bends_the_hinge_back():
+    """97 mm of body: the tip goes hardly further than the load line, whatever the lever, and each newton more
+    on the closed stop turns the hinge the other way round, by more than one on a free arm does."""
+    s = section(1.5, body_length=97.0)
+    exact = frame(s, 4.0)
+    assert exact.tip * exact.stiffness < 1.1 < 4.0 / 1.5
+    assert exact.moment < -1.5
+    assert float(back_share(s, exact.stiffness, 4.0, 0.0)) > 1.0
+    assert largest_closing_force(s, exact.stiffness, 4.0, 0.0, 13.0, 3.5) == 0.0
+    assert largest_closing_force(section(1.5), frame(section(1.5), 4.0).stiffness, 4.0, 0.0, 13.0, 3.5) > 0.0
 
 
 def test_no_lever_no_extra():
@@ -89,17 +122,23 @@ def test_no_lever_no_extra():
     assert float(deflection_share(s, 10.0, 4.0, 0.0)) == 0.0
 
 
-@pytest.mark.parametrize("height", [2.6, 0.2])
-def test_at_the_largest_closing_force_one_limit_is_just_reached(height):
-    """With a stiff arm the fillet's stress, with a whippy one the hinge's turn."""
-    s, arm, limit, give = section(3.0, height), 4.0, 3.5, 3.4e-5
-    K = ladder.stiffness(section(3.0))
+@pytest.mark.parametrize("give", [0.0, 3.4e-5, 1e-3])
+def test_at_the_largest_closing_force_the_limit_is_just_reached(give):
+    s, arm, limit = section(3.0), 4.0, 3.5
+    K = frame(s, arm).stiffness
     closing = largest_closing_force(s, K, arm, give, 13.0, limit)
-    stress = closing + stress_share(s, K, arm, give) * (13.0 - closing)
-    deflection = closing + deflection_share(s, K, arm, give) * (13.0 - closing)
-    assert max(stress, deflection) == pytest.approx(limit, rel=1e-12)
-    assert bool(stress > deflection) is (height > 1.0)
+    assert closing + stress_share(s, K, arm, give) * (13.0 - closing) == pytest.approx(limit, rel=1e-12)
+    assert closing + deflection_share(s, K, arm, give) * (13.0 - closing) < limit
     assert largest_overload(s, K, arm, give, closing, limit) == pytest.approx(13.0, rel=1e-12)
+
+
+def test_the_largest_overload_bends_no_hinge_back_too_far():
+    s, arm, limit = section(3.0, body_length=97.0), 6.0, 3.5
+    K = frame(s, arm).stiffness
+    most = float(largest_overload(s, K, arm, 0.0, 3.0, limit))
+    assert most * float(back_share(s, K, arm, 0.0)) == pytest.approx(limit)
+    assert largest_closing_force(s, K, arm, 0.0, 0.999 * most, limit) > 0.0
+    assert largest_closing_force(s, K, arm, 0.0, 1.001 * most, limit) == 0.0
 
 
 @pytest.mark.parametrize("overload", [1e-3, 1.0, 3.5])
@@ -107,14 +146,3 @@ def test_a_stop_closes_at_the_limit_where_the_overload_alone_is_less(overload):
     """Nothing has to be kept from the hinge then, but a stop that closes later protects it from nothing."""
     s = section(3.0)
     assert largest_closing_force(s, ladder.stiffness(s), 4.0, 3.4e-5, overload, 3.5) == 3.5
-
-
-def test_a_stop_that_gives_more_than_the_hinge_keeps_nothing_from_it():
-    """A give of 1 mm/N leaves the hinge all and the lever's turn besides: no gap at all, where the equation's
-    own root would be a force beyond the overload, at which the stop is not even reached."""
-    s, K = section(3.0), ladder.stiffness(section(3.0))
-    whippy = section(3.0, 0.05)
-    share = float(deflection_share(whippy, K, 4.0, 1.0))
-    assert share > 1.0 and (3.5 - share * 13.0) / (1.0 - share) > 13.0
-    assert largest_closing_force(whippy, K, 4.0, 1.0, 13.0, 3.5) == 0.0
-    assert largest_closing_force(s, K, 4.0, 3.4e-5, 13.0, 3.5) > 0.0

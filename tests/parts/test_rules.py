@@ -157,6 +157,8 @@ WITNESSES = {
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
         ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
         ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 6.0}, "rating.overload_force"),
+        # a short arm beside a long one: 88 mm of body turn its hinge round on the closed stop
+        ({"rating.overload_force": 15.0, "array.row_arms": [[90, 4], [90, 4]]}, "rating.overload_force"),
     ],
     "stop_keeps_rated_deflection": [({"stop.gaps": {"4": 0.115}}, "stop.gaps.4")],
     "stop_land_fits_arm": [({"stop.land_length": 3.3}, "stop.land_length")],

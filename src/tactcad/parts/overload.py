@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import ladder, strain, strength
-from tactcad.mechanics.stop import deflection_share, stress_share
+from tactcad.mechanics.stop import back_share, deflection_share, stop_share, stress_share, tip_compliance
 
 from .hinge_section import design_alloy, hinge_section
 from .layout import ElementPlace, Layout
@@ -51,18 +51,19 @@ def overloads(layout: Layout) -> list[Overload]:
     known = ladder.evaluate(s, ladder.DEFAULT_RUNG)
     K, arm, tolerance = known.stiffness, np.array([p.arm for p in places]), design.stop.tolerance
     gap, give = np.array([stop_gap(layout, p) for p in places]), layout.stop_give
-    # the rigid arm's lever carries the gap at the tip to the load line
-    earliest = K * (gap - tolerance) * s.load_arm / arm
-    closing = np.minimum(K * (gap + tolerance) * s.load_arm / arm, load)
+    tip = tip_compliance(s, K, arm)
+    earliest = (gap - tolerance) / tip
+    closing = np.minimum((gap + tolerance) / tip, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
-    stress = strain.stress_beyond_the_fit(s, closing + stress_share(s, K, arm, give) * beyond)
+    forwards = closing + stress_share(s, K, arm, give) * beyond
+    stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, back_share(s, K, arm, give) * beyond))
     yields = strength.yield_force_where_known(s, alloy)
     figures = {
         "gap": gap + tolerance,
         "earliest": earliest,
         "closing_force": closing,
-        "stop_force": beyond * s.load_arm / arm,
+        "stop_force": beyond * stop_share(s, K, arm, give),
         "deflection": (closing + deflection_share(s, K, arm, give) * beyond) / K,
         "rated_deflection": yields / rating.deflection_factor / K,
         "stress": stress,
