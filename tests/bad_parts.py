@@ -32,7 +32,7 @@ class Bad:
 
 
 def strength(**changes) -> list[Finding]:
-    from tactcad.checks.strength import check_strength
+    from tactcad.checks.hinge_strength import check_strength
 
     return check_strength(variant({path.replace("__", "."): value for path, value in changes.items()}))
 
@@ -50,7 +50,7 @@ def tool() -> list[Finding]:
 
 
 def calibration() -> list[Finding]:
-    from tactcad.checks.calibration import check_calibration
+    from tactcad.checks.calibration_travel import check_calibration
 
     return check_calibration(variant({"calibration.travel": 0.2}))
 

@@ -55,7 +55,7 @@ def known_times(text: str) -> Times:
 def measured() -> Times:
     """Seconds of every timed check on the macro array alone, on it with its rigs, and on 2 x 500 elements."""
     from tactcad.bench import arrays
-    from tactcad.checks import report as clocked
+    from tactcad.checks import check_report as clocked
     from tactcad.checks.run import run_checks
     from tactcad.export.golden_file import check_golden, golden_path
     from tactcad.parts.designs import load

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tactcad.checks.report import Report, failure_table, json_bytes, junit_bytes
+from tactcad.checks.check_report import Report, failure_table, json_bytes, junit_bytes
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.finding import Finding

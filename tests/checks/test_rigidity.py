@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from random_designs import raw_table
 from variants import variant
 
-from tactcad.checks.report import Report, as_record
+from tactcad.checks.check_report import Report, as_record
 from tactcad.checks.rigidity import check_rigidity
 from tactcad.design.load import from_table, names
 from tactcad.design.messages import InputError

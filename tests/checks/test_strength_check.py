@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.checks.strength import check_strength
+from tactcad.checks.hinge_strength import check_strength
 from tactcad.design.load import names
 from tactcad.mechanics import ladder
 from tactcad.paper import published

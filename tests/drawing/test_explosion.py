@@ -17,7 +17,7 @@ from tactcad.drawing.extent import projected_box
 from tactcad.drawing.units import unit_views
 from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.library.screws import cap_screw
-from tactcad.parts.materials import STAINLESS
+from tactcad.parts.part_materials import STAINLESS
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.scene import ALONG_Y, DOWN, Contact, Placement, Scene
 

@@ -14,7 +14,7 @@ from hinges import scaled
 from variants import variant
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.mechanics import gauge_signal, ladder, readout, rigs, self_heating, signal, stop, strain
+from tactcad.mechanics import gauge_signal, ladder, readout, rig_statics, self_heating, signal, stop, strain
 from tactcad.mechanics.section import REFERENCE
 from tactcad.paper.array_model import from_design
 
@@ -185,15 +185,17 @@ SQUARE = ((25.0, 25.0), (-25.0, 25.0), (-25.0, -25.0), (25.0, -25.0))
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
 def test_rig_statics_go_with_size(size):
     contacts = tuple((x * size, y * size) for x, y in SQUARE)
-    assert rigs.tipping_margin(contacts, 10 * size) == pytest.approx(15 * size, rel=1e-12)
-    assert rigs.tipping_pull(contacts, 30 * size, 2.0, 3.0, (0, 0)) == pytest.approx(5.0 * 25 / 30, rel=1e-12)
+    assert rig_statics.tipping_margin(contacts, 10 * size) == pytest.approx(15 * size, rel=1e-12)
+    assert rig_statics.tipping_pull(contacts, 30 * size, 2.0, 3.0, (0, 0)) == pytest.approx(
+        5.0 * 25 / 30, rel=1e-12
+    )
 
 
 def test_rig_without_height_load_or_vacuum():
     assert (
-        rigs.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf
+        rig_statics.tipping_pull(SQUARE, 0.0, 2.0, 3.0, (0, 0)) == inf
     )  # a pull at the wheels' own height tips nothing
-    assert rigs.tipping_pull(SQUARE, 30.0, 0.0, 0.0, (0, 0)) == 0.0
-    assert rigs.holding_force(0.0, 100.0) == 0.0
-    assert rigs.tipping_margin(SQUARE, 25.0) == pytest.approx(0.0, abs=1e-12)
-    assert rigs.tipping_margin(SQUARE, 1e6) < 0.0
+    assert rig_statics.tipping_pull(SQUARE, 30.0, 0.0, 0.0, (0, 0)) == 0.0
+    assert rig_statics.holding_force(0.0, 100.0) == 0.0
+    assert rig_statics.tipping_margin(SQUARE, 25.0) == pytest.approx(0.0, abs=1e-12)
+    assert rig_statics.tipping_margin(SQUARE, 1e6) < 0.0

@@ -10,7 +10,7 @@ from tactcad.checks.motion import check_motions
 from tactcad.contour import circle, rectangle
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.designs import load
-from tactcad.parts.detail import envelope
+from tactcad.parts.envelope import envelope
 from tactcad.parts.finding import Finding
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Contact, Motion, Placement, Scene

@@ -10,7 +10,7 @@ from math import cos, hypot, sin
 import pytest
 from variants import variant
 
-from tactcad.checks.calibration import check_calibration
+from tactcad.checks.calibration_travel import check_calibration
 from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError

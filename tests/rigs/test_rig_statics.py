@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 from variants import variant
 
 from tactcad.checks.moving_weight import check_moving_weight
-from tactcad.mechanics.rigs import holding_force, inside_by, tipping_margin, tipping_pull
+from tactcad.mechanics.rig_statics import holding_force, inside_by, tipping_margin, tipping_pull
 from tactcad.parts.designs import load
 from tactcad.parts.rigs.cart_layout import cart_layout
 from tactcad.scenes import make_scene

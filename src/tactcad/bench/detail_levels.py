@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from tactcad.parts.detail import DETAILS
+from tactcad.parts.envelope import DETAILS
 from tactcad.scenes import scene_names
 
 from . import arrays

@@ -10,24 +10,24 @@ from OCP.TopoDS import TopoDS_Shape
 
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
-from tactcad.parts.detail import envelope
+from tactcad.parts.envelope import envelope
 from tactcad.parts.finding import Finding
 from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
 from .brep import check_brep, check_step
-from .calibration import check_calibration
+from .calibration_travel import check_calibration
+from .check_report import Report
 from .clearance import check_clearance
+from .hinge_strength import check_strength
 from .interference import check_interference
 from .machining import MACHINED, check_machining
 from .mesh import check_mesh
 from .motion import check_motions
 from .moving_weight import check_moving_weight
-from .report import Report
 from .rigidity import check_rigidity
 from .shop import DEFAULT, load_shop
-from .strength import check_strength
 from .tools import check_tools
 from .wirecut import check_wirecut
 

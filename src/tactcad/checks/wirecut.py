@@ -17,9 +17,9 @@ from tactcad.contour.intersect import crossings, self_intersections, smallest_di
 from tactcad.contour.necks import SAME_DIRECTION, Neck, direction, necks
 from tactcad.contour.rounded import ROUNDING_MM
 from tactcad.design.materials import family
+from tactcad.parts.cut_section import section
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
-from tactcad.parts.section import section
 
 from .shop import Shop
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tactcad.checks.report import Report
+    from tactcad.checks.check_report import Report
 
 from .parser import add_design, add_json, add_shop
 
@@ -37,7 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.checks.report import as_record, failure_table, json_bytes, junit_bytes
+    from tactcad.checks.check_report import as_record, failure_table, json_bytes, junit_bytes
     from tactcad.checks.shop import DEFAULT, load_shop
 
     shop = Path(args.shop) if args.shop else DEFAULT
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
 def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
     """The design's report. Of several designs one that is refused fails, and the others are checked all the
     same."""
-    from tactcad.checks.report import Case, Report
+    from tactcad.checks.check_report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
     from tactcad.export.golden_file import check_golden, golden_path

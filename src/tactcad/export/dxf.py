@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from tactcad.contour import Arc, Contour, Line, Point, Segment
 from tactcad.design.messages import CheckFailure
+from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Extrusion, Part
-from tactcad.parts.section import cut_section
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing

@@ -37,7 +37,7 @@ def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
 
 def _has_cut_file(part: Part) -> bool:
     """Whether it is cut from sheet or plate."""
-    from tactcad.parts.section import cut_section
+    from tactcad.parts.cut_section import cut_section
 
     return cut_section(part) is not None
 

@@ -13,11 +13,11 @@ from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
 from tactcad.mechanics import ladder, strength
+from tactcad.parts.cut_section import cut_section, section
 from tactcad.parts.description import Extrusion, Hole, ModelFile, Part
 from tactcad.parts.element import element_number
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import Layout
-from tactcad.parts.section import cut_section, section
 from tactcad.parts.surface import surface_area
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.bom import bom_rows

@@ -277,7 +277,7 @@ def _write_element_tables(folder: Path, design: Design) -> list[FileRecord]:
 
 
 def _part_record(part: Part, scenes: Sequence[Scene], shapes: Shapes, cache: Cache) -> PartRecord:
-    from tactcad.parts.section import cut_section
+    from tactcad.parts.cut_section import cut_section
 
     from .products import part_facts
 

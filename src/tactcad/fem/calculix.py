@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -122,7 +123,9 @@ _FACES = [
 ]
 
 
-def _end_faces(points: Array, cells: NDArray[np.int64], mesh: PlaneMesh, width: float):
+def _end_faces(
+    points: Array, cells: NDArray[np.int64], mesh: PlaneMesh, width: float
+) -> Iterator[tuple[NDArray[np.int64], Array]]:
     """Eight-node faces on the arm's end with the consistent forces of the parabolic shear."""
     end = set(_on(points[:, 0], mesh.load_x).tolist())
     xi, w = np.polynomial.legendre.leggauss(4)
@@ -158,7 +161,18 @@ def _serendipity(r: float, s: float) -> tuple[Array, Array]:
     return N, dN
 
 
-def _write(path, points, cells, kind, section, E, nu, supports, force) -> None:
+def _write(
+    path: Path,
+    points: Array,
+    cells: NDArray[np.int64],
+    kind: str,
+    section: str,
+    E: float,
+    nu: float,
+    supports: Sequence[tuple[int, int]],
+    force: Array,
+) -> None:
+    """ccx's input file; `section`: the line below *SOLID SECTION, "" for none."""
     coordinates = np.zeros((len(points), 3))
     coordinates[:, : points.shape[1]] = points
     lines = ["*NODE, NSET=ALL"]  # ccx reads 20 characters a field and drops the rest, exponents too

@@ -77,7 +77,7 @@ class FaceStrain:
 
 
 @dataclass(frozen=True)
-class Readings:
+class SurfaceReadings:
     """What is read off a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge face,
     the largest strain (1/N) and principal stress (MPa/N) of the gauge face and of the slot's."""
 
@@ -87,21 +87,21 @@ class Readings:
     fillet_strain: float
     fillet_stress: float
 
-    def __mul__(self, other: Readings) -> Readings:
-        return Readings(*(a * b for a, b in zip(astuple(self), astuple(other), strict=True)))
+    def __mul__(self, other: SurfaceReadings) -> SurfaceReadings:
+        return SurfaceReadings(*(a * b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
-    def __truediv__(self, other: Readings) -> Readings:
-        return Readings(*(a / b for a, b in zip(astuple(self), astuple(other), strict=True)))
+    def __truediv__(self, other: SurfaceReadings) -> SurfaceReadings:
+        return SurfaceReadings(*(a / b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
-def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float) -> Readings:
+def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float) -> SurfaceReadings:
     slot, flat = face_strain(solution, "slot"), face_strain(solution, "flat")
-    return Readings(flat.mean(grid_length), flat.peak, flat.peak_stress, slot.peak, slot.peak_stress)
+    return SurfaceReadings(flat.mean(grid_length), flat.peak, flat.peak_stress, slot.peak, slot.peak_stress)
 
 
 def solid_readings(
     plane: PlaneSolution, solids: tuple[SolidSolution, ...], grid_length: Array | float
-) -> Readings:
+) -> SurfaceReadings:
     """Of the solid, on the mesh of the plane that `plane` (in plane stress) is solved on: its readings times
     how much the solid differs from plane stress by the same, coarser elements, times what a higher order
     across changes.

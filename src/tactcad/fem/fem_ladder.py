@@ -10,7 +10,7 @@ from tactcad.mechanics.ladder import require_range
 from tactcad.mechanics.section import HingeSection
 
 from .convergence import SOLID_MESH, Converged, converged_plane, converged_solid
-from .face_strain import Readings, readings, solid_readings
+from .face_strain import SurfaceReadings, readings, solid_readings
 from .shape import ElementShape, reference_shape
 
 
@@ -22,8 +22,8 @@ class ElementResult:
 
     stiffness: float
     error: float
-    readings: Readings
-    flat: Readings
+    readings: SurfaceReadings
+    flat: SurfaceReadings
 
 
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:

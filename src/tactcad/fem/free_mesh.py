@@ -142,7 +142,7 @@ def _smoothed(points: Array, cells: NDArray[np.int64], border: int) -> Array:
     return moved
 
 
-def _quadratic(points: Array, cells: NDArray[np.int64], loops) -> MeshTri2:
+def _quadratic(points: Array, cells: NDArray[np.int64], loops: list[tuple[Array, list[Segment]]]) -> MeshTri2:
     used = np.unique(cells)
     renumber = np.full(len(points), -1)
     renumber[used] = np.arange(len(used))

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from math import ceil, log, pi
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
@@ -276,7 +276,7 @@ def _count(lengths: float) -> int:
     return max(1, ceil(lengths - 1e-6))
 
 
-def _edge(start, end, u: Array) -> Array:
+def _edge(start: ArrayLike, end: ArrayLike, u: Array) -> Array:
     start, end = np.asarray(start), np.asarray(end)
     return start + u[:, None] * (end - start)
 

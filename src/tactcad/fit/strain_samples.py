@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from tactcad.fem.convergence import ACROSS, ORDER
-from tactcad.fem.face_strain import Readings, readings
+from tactcad.fem.face_strain import SurfaceReadings, readings
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
@@ -95,7 +95,7 @@ def results(s: HingeSection) -> dict[str, float]:
     return flat | _named("solid", readings(plane, lengths) * against)
 
 
-def _named(model: str, found: Readings) -> dict[str, float]:
+def _named(model: str, found: SurfaceReadings) -> dict[str, float]:
     gauges = {f"{model}_gauge_{grid:g}": float(value) for grid, value in zip(GRIDS, found.gauge)}
     return {f"{model}_{name}": float(getattr(found, name)) for name in NAMES} | gauges
 

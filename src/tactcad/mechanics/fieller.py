@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from statistics import NormalDist
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .section import Array
 
@@ -31,7 +32,13 @@ class RatioInterval:
 
 
 def ratio_interval(
-    numerator, denominator, var_numerator, var_denominator, covariance, *, quantile: float | None = None
+    numerator: ArrayLike,
+    denominator: ArrayLike,
+    var_numerator: ArrayLike,
+    var_denominator: ArrayLike,
+    covariance: ArrayLike,
+    *,
+    quantile: float | None = None,
 ) -> RatioInterval:
     """Fieller's set {x : (N - x D)^2 <= q^2 Var(N - x D)} for x = N/D; variances in squared units.
 
@@ -67,16 +74,16 @@ def ratio_interval(
 
 
 def object_stiffness_interval(
-    K_r,
-    K_m,
-    d_r,
-    d_m,
-    var_r,
-    var_m,
-    covariance=0.0,
+    K_r: Array | float,
+    K_m: Array | float,
+    d_r: Array | float,
+    d_m: Array | float,
+    var_r: Array | float,
+    var_m: Array | float,
+    covariance: Array | float = 0.0,
     *,
-    var_K_r=0.0,
-    var_K_m=0.0,
+    var_K_r: Array | float = 0.0,
+    var_K_m: Array | float = 0.0,
     quantile: float | None = None,
 ) -> RatioInterval:
     """Fieller's interval for K_obj = (K_r d_r - K_m d_m)/(d_m - d_r), N/mm.

@@ -12,29 +12,29 @@ import numpy as np
 from .section import Array
 
 
-def _share(x, K) -> Array:
+def _share(x: Array | float, K: Array | float) -> Array:
     """x/(x + K), for x from 0 to infinity: 1 there."""
     x = np.asarray(x, dtype=float)
     finite = np.where(np.isinf(x), 1.0, x)
     return np.where(np.isinf(x), 1.0, finite / (finite + K))
 
 
-def element_deflection(K, K_obj, approach) -> Array:
+def element_deflection(K: Array | float, K_obj: Array | float, approach: Array | float) -> Array:
     """Delta - delta = K_obj/(K_obj + K) Delta, without the difference, mm; K_obj from 0 to infinity."""
     return approach * _share(K_obj, K)
 
 
-def deflection_ratio(K_r, K_m, K_obj) -> Array:
+def deflection_ratio(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -> Array:
     """Equation (2): R = (K_r + K_obj)/(K_m + K_obj)."""
     return 1.0 + ratio_excess(K_r, K_m, K_obj)
 
 
-def ratio_excess(K_r, K_m, K_obj) -> Array:
+def ratio_excess(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -> Array:
     """R - 1 = (K_r - K_m)/(K_m + K_obj), which keeps its digits where R is close to 1."""
     return (np.asarray(K_r) - K_m) / (np.asarray(K_m) + K_obj)
 
 
-def object_stiffness(K_r, K_m, R) -> Array:
+def object_stiffness(K_r: Array | float, K_m: Array | float, R: Array | float) -> Array:
     """Equation (3): K_obj = (K_r - R K_m)/(R - 1), N/mm. Its digits are those that R carries.
 
     Infinite for R = 1; NaN where K_r = K_m too, since then R tells nothing.
@@ -44,21 +44,21 @@ def object_stiffness(K_r, K_m, R) -> Array:
         return (K_r - R * K_m) / (R - 1.0)
 
 
-def condition_in_ratio(K_r, K_m, K_obj) -> Array:
+def condition_in_ratio(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -> Array:
     """dln K_obj/dln R = -(K_r + x)(K_m + x)/(x (K_r - K_m)), x = K_obj; infinite at x = 0 and infinity."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
     with np.errstate(divide="ignore"):
         return -(K_r + x) / (K_r - K_m) / _share(x, K_m)
 
 
-def condition_in_reference(K_r, K_m, K_obj) -> Array:
+def condition_in_reference(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -> Array:
     """dln K_obj/dln K_r = K_r (K_m + x)/(x (K_r - K_m)); infinite at x = 0."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
     with np.errstate(divide="ignore"):
         return K_r / (K_r - K_m) / _share(x, K_m)
 
 
-def condition_in_measuring(K_r, K_m, K_obj) -> Array:
+def condition_in_measuring(K_r: Array | float, K_m: Array | float, K_obj: Array | float) -> Array:
     """dln K_obj/dln K_m = -K_m (K_r + x)/(x (K_r - K_m)); with `condition_in_reference` it adds up to 1."""
     K_r, K_m, x = (np.asarray(v, dtype=float) for v in (K_r, K_m, K_obj))
     with np.errstate(divide="ignore"):

@@ -23,13 +23,15 @@ Constants = plane.Constants
 SMALL_STEP = 30.0  # below it the rise of ln(1 + e^z) is computed without a difference
 
 
-def nominal(s: HingeSection, force) -> Array:
+def nominal(s: HingeSection, force: Array | float) -> Array:
     """6 F L/(E b t^2), beam theory's surface strain at the hinge's centre; force in N."""
     t = s.hinge_thickness
     return 6.0 * np.asarray(force) * s.load_arm / (s.youngs_modulus * s.width * t * t)
 
 
-def gauge(s: HingeSection, force, grid_length, rung: str = ladder.DEFAULT_RUNG) -> Array:
+def gauge(
+    s: HingeSection, force: Array | float, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG
+) -> Array:
     """Mean strain at mid-width along the gauge face under a grid of that length (mm), centred on the hinge.
 
     Raises CheckFailure out of the rung's range.
@@ -38,7 +40,7 @@ def gauge(s: HingeSection, force, grid_length, rung: str = ladder.DEFAULT_RUNG) 
     return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
 
 
-def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
+def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """Largest surface strain at mid-width: at the slot-side fillet towards the body.
 
     The rungs short, beam and section know no fillet: theirs is the nominal strain at the slot's end
@@ -52,7 +54,7 @@ def peak(s: HingeSection, force, rung: str = ladder.DEFAULT_RUNG) -> Array:
     return nominal(s, force) * factor * width_reduction(s, rung, "fillet")
 
 
-def peak_stress(s: HingeSection, force) -> Array:
+def peak_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
 
     Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where
@@ -62,13 +64,13 @@ def peak_stress(s: HingeSection, force) -> Array:
     return stress_beyond_the_fit(s, force)
 
 
-def stress_beyond_the_fit(s: HingeSection, force) -> Array:
+def stress_beyond_the_fit(s: HingeSection, force: Array | float) -> Array:
     """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound
     a stop."""
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
-def largest_stress(s: HingeSection, force) -> Array:
+def largest_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest principal stress at mid-width, MPa: more than the width's mean, since the sheet's sides carry
     less.
 
@@ -114,7 +116,7 @@ def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
     return np.concatenate([np.ones((len(z), 1)), z, z[:, first] * z[:, second]], axis=1)
 
 
-def face_stress(s: HingeSection, force) -> Array:
+def face_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's.
 
     Raises CheckFailure where the factor was not fitted.
@@ -180,7 +182,7 @@ def face_factor(s: HingeSection, k: Constants | None = None) -> Array:
     return np.where(s.two_sided, fillet_factor(s), flat) if np.any(s.two_sided) else flat
 
 
-def grid_factor(s: HingeSection, grid_length, rung: str = ladder.DEFAULT_RUNG) -> Array:
+def grid_factor(s: HingeSection, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """Mean strain under the grid over nominal; 1 on the rungs without roots.
 
     Each root adds X(w) to the integral of strain over nominal less one, up to w = distance from the

@@ -32,17 +32,17 @@ def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:
     return alloy.yield_strength / strain.face_stress(s, 1.0)
 
 
-def yield_factor(s: HingeSection, alloy: Alloy, force) -> Array:
+def yield_factor(s: HingeSection, alloy: Alloy, force: Array | float) -> Array:
     """Yield strength over the fillet's stress; below 1 the hinge does not stay elastic."""
     return yield_force(s, alloy) / force
 
 
-def rated_force(s: HingeSection, alloy: Alloy, requested, factor: float) -> Array:
+def rated_force(s: HingeSection, alloy: Alloy, requested: Array | float, factor: float) -> Array:
     """The lesser of the requested force and the force at yield over `factor`, N."""
     return np.minimum(requested, yield_force(s, alloy) / factor)
 
 
-def elastic(s: HingeSection, alloy: Alloy, force) -> np.ndarray:
+def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:
     """Whether the hinge's stress stays at or below yield; where not, its strain is not a number to report."""
     return np.asarray(strain.peak_stress(s, force) <= alloy.yield_strength)
 
@@ -55,7 +55,7 @@ def surface_factor(tensile_strength: float) -> float:
     return min(1.0, 4.51 * tensile_strength**-0.265)
 
 
-def goodman(alloy: Alloy, peak_stress) -> Array:
+def goodman(alloy: Alloy, peak_stress: Array | float) -> Array:
     """Goodman's line for a stress between 0 and peak (MPa): 1/n = sigma_a/(k_a S_f) + sigma_m/S_u.
 
     sigma_a = sigma_m = peak/2, the fillet's peak taken whole (notch sensitivity 1).

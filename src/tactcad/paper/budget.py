@@ -14,7 +14,7 @@ import numpy as np
 
 from tactcad.mechanics import lumped
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.budget_effect import Effect, Pair
+from tactcad.paper.budget_effect import BudgetPair, Effect
 from tactcad.paper.budget_element import element
 from tactcad.paper.budget_rig import rig, stage_error
 from tactcad.paper.budget_signal import signal
@@ -43,7 +43,7 @@ def budget(data: Published, array: ArrayModel, study: Table2Study) -> Budget:
     k = study.measuring
     K_m = float(k[np.argmin(np.abs(np.log(study.reference_printed / k / data.figure["proposed_ratio"])))])
     short, long = (array.section.rows([int(i)]) for i in (np.argmin(array.arm), np.argmax(array.arm)))
-    pair = Pair(K_r, K_m, data.figure["figure_6_sample"], short, long)
+    pair = BudgetPair(K_r, K_m, data.figure["figure_6_sample"], short, long)
     effects = [
         _reference(pair, study, data, array),
         *element(pair, array),
@@ -61,7 +61,7 @@ def budget(data: Published, array: ArrayModel, study: Table2Study) -> Budget:
     )
 
 
-def _reference(pair: Pair, study: Table2Study, data: Published, array: ArrayModel) -> Effect:
+def _reference(pair: BudgetPair, study: Table2Study, data: Published, array: ArrayModel) -> Effect:
     size = abs(log(study.reference_printed / pair.K_r))
     R = float(lumped.deflection_ratio(pair.K_r, pair.K_m, pair.x))
     off = abs(float(lumped.object_stiffness(study.reference_printed, pair.K_m, R)) / pair.x - 1)

@@ -29,7 +29,7 @@ class Effect:
 
 
 @dataclass(frozen=True)
-class Pair:
+class BudgetPair:
     """The pair and how errors reach K_obj through it."""
 
     K_r: float

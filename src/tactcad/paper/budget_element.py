@@ -8,7 +8,7 @@ from math import log
 from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.as_built import COMMON, half_widths
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.budget_effect import Effect, Pair
+from tactcad.paper.budget_effect import BudgetPair, Effect
 from tactcad.paper.residuals import WIRE_TOLERANCE
 
 MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
@@ -29,11 +29,11 @@ AS_BUILT = {
 }
 
 
-def element(pair: Pair, array: ArrayModel) -> list[Effect]:
+def element(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     return [*_as_built(pair, array), *_contact(pair, array), *_models(pair, array)]
 
 
-def _as_built(pair: Pair, array: ArrayModel) -> list[Effect]:
+def _as_built(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     """What [tolerance] holds, by the model's own derivatives."""
     short, long = (half_widths(s, array.tolerance) for s in (pair.short, pair.long))
     effects = []
@@ -49,7 +49,7 @@ def _as_built(pair: Pair, array: ArrayModel) -> list[Effect]:
     return effects
 
 
-def _contact(pair: Pair, array: ArrayModel) -> list[Effect]:
+def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     """Where the load stands, and the coarsest cut: by the closed form at both ends, since they are large."""
     wire = WIRE_TOLERANCE["1 pass"]
 
@@ -71,7 +71,7 @@ def _contact(pair: Pair, array: ArrayModel) -> list[Effect]:
     ]
 
 
-def _models(pair: Pair, array: ArrayModel) -> list[Effect]:
+def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     """What a computed K leaves out."""
     width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
     gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)

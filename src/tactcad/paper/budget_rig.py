@@ -10,7 +10,7 @@ from tactcad.lab.simulate import approach
 from tactcad.mechanics import ladder
 from tactcad.mechanics.sample_coupling import coupling
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.budget_effect import Effect, Pair
+from tactcad.paper.budget_effect import BudgetPair, Effect
 from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 
@@ -21,11 +21,11 @@ SLIPPERY = 0.02  # friction of a ball-bearing roller under the force sensor, cho
 CELL_MEASURED = 0.005  # relative half-width of a load cell's stiffness measured in its stand, chosen
 
 
-def rig(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
+def rig(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     return [*_calibration(pair, data, array), *_grasp(pair, data, array), *_sample(pair, data, array)]
 
 
-def _calibration(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
+def _calibration(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """The paper's calibration: force sensor on the pad."""
     rig = array.rig
 
@@ -74,7 +74,7 @@ def stage_error(data: Published, array: ArrayModel) -> float:
     return array.rig.micrometer_resolution / (step * ((points**2 - 1) * points / 12) ** 0.5)
 
 
-def _grasp(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
+def _grasp(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """Pads out of plane, when R is made of totals instead of slopes."""
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()
@@ -107,7 +107,7 @@ def _grasp(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
     ]
 
 
-def _sample(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
+def _sample(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """What the rubber and its test do."""
     rig, x = array.rig, pair.x
     cell = rig.load_cell_stiffness
@@ -163,7 +163,7 @@ def _sample(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
     ]
 
 
-def _coupled(pair: Pair, data: Published, array: ArrayModel, thickness: float) -> float:
+def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: float) -> float:
     """R of the pair through a continuous sample, over separate springs; for the design's own elements."""
     place = array.rows(data.table1.element)
     K = ladder.stiffness(array.section).copy()

@@ -9,13 +9,13 @@ import numpy as np
 from tactcad.lab.simulate import approach
 from tactcad.mechanics import gauge_signal, readout, self_heating
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.budget_effect import Effect, Pair
+from tactcad.paper.budget_effect import BudgetPair, Effect
 from tactcad.paper.budget_rig import GRASP_TIME, SAMPLE_TEST_TIME
 from tactcad.paper.grasp_figures import elements_in_parallel
 from tactcad.paper.published import Published
 
 
-def signal(pair: Pair, data: Published, array: ArrayModel) -> list[Effect]:
+def signal(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
     """Bridge, noise, and the gauge's own warmth, at the first load of a grasp."""
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from tactcad.design.tree import Design
 
 from .description import Characteristic, Extrusion, Feature, Part
-from .materials import plate_material
+from .part_materials import plate_material
 
 RIG_COLOUR = "#8d99a6"
 ANODISED = "Ra 1.6, clear anodised after machining"

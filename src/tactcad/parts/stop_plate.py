@@ -10,7 +10,7 @@ from tactcad.contour import rectangle
 
 from .description import Characteristic, Extrusion, Part
 from .layout import Layout
-from .materials import STAINLESS
+from .part_materials import STAINLESS
 
 
 def stop_plate(layout: Layout) -> Part:

@@ -17,8 +17,8 @@ from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.dxf import check_dxf
 from tactcad.export.manifest import sha256_of
+from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Part
-from tactcad.parts.section import cut_section
 from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tactcad.parts.detail import envelope
+from tactcad.parts.envelope import envelope
 
 from .scene import Scene
 

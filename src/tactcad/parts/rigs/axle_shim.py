@@ -10,7 +10,7 @@ from __future__ import annotations
 from tactcad.contour import circle
 
 from ..description import Extrusion, Part
-from ..materials import STAINLESS
+from ..part_materials import STAINLESS
 from .cart_layout import CartLayout
 
 

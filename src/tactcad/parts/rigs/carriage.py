@@ -10,7 +10,7 @@ from __future__ import annotations
 from tactcad.contour import chain
 
 from ..description import Extrusion, Hole, Part, Purchase
-from ..materials import CARBON_STEEL
+from ..part_materials import CARBON_STEEL
 from .frame import CARRIAGE_LENGTH, RAIL_HEIGHT
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from tactcad.contour import circle
 
 from ..description import Extrusion, Part, Purchase
-from ..materials import CARBON_STEEL
+from ..part_materials import CARBON_STEEL
 from .frame import PIN
 from .guide_layout import GuideLayout
 

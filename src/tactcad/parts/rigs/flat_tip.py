@@ -14,7 +14,7 @@ from math import ceil, hypot
 from tactcad.contour import circle, rectangle
 
 from ..description import Characteristic, Extrusion, Hole, Part, Pocket
-from ..materials import STAINLESS
+from ..part_materials import STAINLESS
 from .frame import TIP, TIP_LAND
 from .stand_layout import StandLayout
 

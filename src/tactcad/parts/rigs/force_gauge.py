@@ -15,7 +15,7 @@ from tactcad.design.present import present
 
 from ..description import Extrusion, Hole, Part, Pocket, Purchase
 from ..library.screws import METRIC
-from ..materials import ALUMINIUM
+from ..part_materials import ALUMINIUM
 from .frame import GAUGE_SHAFT, GAUGE_SIZE
 from .stand_layout import StandLayout
 

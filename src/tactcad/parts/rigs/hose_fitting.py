@@ -12,7 +12,7 @@ from __future__ import annotations
 from tactcad.contour import chain
 
 from ..description import Part, Purchase, Revolution
-from ..materials import BRASS
+from ..part_materials import BRASS
 
 FITTING_RADIUS = 4.0  # the hose fitting's shoulder
 

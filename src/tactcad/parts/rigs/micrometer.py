@@ -12,7 +12,7 @@ from __future__ import annotations
 from tactcad.contour import chain
 
 from ..description import Part, Purchase, Revolution
-from ..materials import CARBON_STEEL
+from ..part_materials import CARBON_STEEL
 
 
 def micrometer(travel: float, resolution: float) -> Part:

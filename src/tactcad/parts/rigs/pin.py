@@ -15,7 +15,7 @@ from tactcad.contour import circle
 
 from ..description import Extrusion, Part
 from ..library.screws import tapped_depth
-from ..materials import plate_material
+from ..part_materials import plate_material
 from ..screw_holes import tapped_blind
 from .disc_weight import disc_weight
 from .frame import PIN

@@ -14,7 +14,7 @@ from tactcad.design.present import present
 
 from ..description import Extrusion, Part
 from ..library.dowels import dowel_diameter
-from ..materials import STAINLESS
+from ..part_materials import STAINLESS
 from .flat_tip import shaft_thread
 from .frame import TIP
 from .stand_layout import StandLayout

@@ -10,7 +10,7 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Part, Pocket, Purchase
-from ..materials import RUBBER
+from ..part_materials import RUBBER
 from .cart_layout import CartLayout
 
 

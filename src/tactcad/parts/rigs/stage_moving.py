@@ -10,7 +10,7 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Part, Purchase
-from ..materials import ALUMINIUM
+from ..part_materials import ALUMINIUM
 from ..screw_holes import corners, tapped
 from .frame import STAGE, STAGE_HOLE, STAGE_PLATE
 

@@ -12,7 +12,7 @@ from tactcad.mechanics.bending import Beam, rod, round_plate
 
 from ..layout import Layout
 from ..library.dowels import dowel_diameter
-from ..materials import plate_material
+from ..part_materials import plate_material
 from ..seating import FLAT
 from ..stiffness_table import TENTH, Deflection, pads_plane
 from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
 
-from tactcad.mechanics.rigs import tipping_margin
+from tactcad.mechanics.rig_statics import tipping_margin
 
 from ..finding import SAME, Finding
 from ..layout import HOLE_WEB, Layout

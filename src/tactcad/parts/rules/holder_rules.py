@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import pi, tan
 
 from tactcad.design.present import present
-from tactcad.mechanics.rigs import holding_force
+from tactcad.mechanics.rig_statics import holding_force
 
 from ..finding import SAME, Finding
 from ..layout import Layout
