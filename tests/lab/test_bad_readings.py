@@ -38,14 +38,29 @@ def changed(column: int, factor: float, noise: Noise = Noise()) -> np.ndarray:
 
 NO_FORCE = rows()
 NO_FORCE[:, 3] = 0.25
+NO_SIGNAL = rows()
+NO_SIGNAL[:, 4] = -1.5
+FAR_OFF = rows()
+FAR_OFF[3, 3] = 999.0
 BAD = {
     "force reversed": (
         text(changed(3, -1)),
         r"element 1: the force falls with displacement, by 12\.\d+ N/mm",
     ),
-    "displacement reversed": (text(changed(2, -1)), "the sign of one column is reversed"),
+    "displacement reversed": (text(changed(2, -1)), r":7:3: element 1 is pressed to negative displacements"),
+    "both reversed": (text(rows() * [1, 1, -1, -1, 1]), r":7:3: element 1 is pressed to negative displ"),
     "metres": (text(changed(2, 1e-3)), r"the force rises by 1\.\d+e\+04 N/mm, which the load cell of 57.04"),
     "no force": (text(NO_FORCE), "element 1: the force does not change with displacement"),
+    "no signal": (text(NO_SIGNAL), "element 1: the signal does not change with displacement"),
+    "one force far off": (
+        text(FAR_OFF),
+        r"element 1: the force falls .* from the other readings: line 5; found '-.*' .*--drop-outliers",
+    ),
+    "another separator": (
+        text(rows(), HEADER.replace(",", "|"), "{:g}|{:g}|{:g}|{:g}|{:g}"),
+        r":1:2: column 'element' is missing; found 'element\|run.* commas, semicolons or tabs between$",
+    ),
+    "no header": (text(rows()).partition("\n")[2], r":1:1: no header line: numbers alone; found '1,1,0"),
     "two units": (
         text(
             np.column_stack([rows(), rows()[:, 3] * 1e3]),

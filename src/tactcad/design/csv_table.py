@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isnan, nan
+from math import inf, isfinite, isnan, nan
 from pathlib import Path
 
 import numpy as np
@@ -232,6 +232,10 @@ def read_table(path: str | Path, kind: str, most_bytes: int = LARGEST_FILE, comm
     line, header = next(_split(shown, lines[start:end], numbers[start:end], delimiter))
     while not header[-1]:
         header.pop()
+    if all(isfinite(number(name)) for name in header):
+        raise InputError(
+            f"{shown}:{line}:1", "no header line: numbers alone", value=delimiter.join(header), legal=kind
+        )
     for i, name in enumerate(header):
         if name and name in header[:i]:
             raise InputError(f"{shown}:{line}:{i + 1}", "column named twice", value=name)
@@ -242,10 +246,12 @@ def require_columns(table: Table, names: Sequence[str]) -> None:
     """Raise InputError at the first of the columns that the table lacks."""
     for name in names:
         if name not in table.header:
+            alone = "; commas, semicolons or tabs between" if len(table.header) == 1 < len(names) else ""
             raise InputError(
                 f"{table.path}:{table.header_line}:{len(table.header) + 1}",
                 f"column {name!r} is missing",
-                legal=", ".join(names),
+                value=table.delimiter.join(table.header),
+                legal=", ".join(names) + alone,
             )
 
 

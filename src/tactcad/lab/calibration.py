@@ -184,7 +184,7 @@ def _element(
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
-    _require_spring(e.where, x, y, k, t * covariance[0, 0] ** 0.5, load_cell)
+    _require_spring(e.where, x, y, lines.slope, t * covariance[0, 0] ** 0.5, load_cell, outliers)
     stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
     per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
     averaged = _averaged(x, y, run)
@@ -254,17 +254,36 @@ def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tu
 
 
 def _require_spring(
-    where: str, x: np.ndarray, y: np.ndarray, k: float, half_width: float, load_cell: LoadCell
+    where: str,
+    x: np.ndarray,
+    y: np.ndarray,
+    slope: np.ndarray,
+    half_width: float,
+    load_cell: LoadCell,
+    outliers: tuple[Outlier, ...],
 ) -> None:
-    """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series.
+    """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series, or
+    the signal (y[:, 1], V) that of a gauge on it.
 
-    k, half_width: slope of force over displacement with its interval, N/mm.
+    slope: of force and signal over displacement, N/mm and V/mm; half_width: of the first one's interval.
     """
-    if abs(k) * np.ptp(x) <= rounding(y)[0]:
+    still = np.abs(slope) * np.ptp(x) <= rounding(y)
+    for name, unit, unchanged in zip(("force", "signal"), "NV", still):
+        if unchanged:
+            raise InputError(
+                where,
+                f"the {name} does not change with displacement",
+                legal=f"{name} in {unit} that {'rises' if unit == 'N' else 'changes'} with displacement",
+            )
+    k = float(slope[0])
+    far = [str(o.line) for o in outliers if o.quantity == "force"]
+    if k <= 0 < k + half_width and far:  # of noise alone it may be negative
         raise InputError(
             where,
-            "the force does not change with displacement",
-            legal="force in N that rises with displacement",
+            f"the force falls with displacement, because of what lies far from the other readings: line "
+            f"{', '.join(far)}",
+            value=f"{k:.4g} +-{half_width:.4g} N/mm",
+            legal="force in N that rises with displacement; --drop-outliers leaves those lines out",
         )
     if k + half_width < 0:
         raise InputError(

@@ -79,6 +79,14 @@ def calibration(path: str | Path) -> CalibrationReadings:
                 value=len(here),
                 legal="three more than runs, at three displacements at least",
             )
+        least = int(here[np.argmin(out.displacement[here])])
+        if -out.displacement[least] > out.displacement[here].max():
+            raise InputError(
+                rows.where(least, scaled["displacement"][0]),
+                f"element {number} is pressed to negative displacements: the column's sign is reversed",
+                value=f"{out.displacement[least]:g} mm",
+                legal="displacement and force both grow as the element is pressed",
+            )
     return out
 
 
