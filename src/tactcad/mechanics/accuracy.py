@@ -1,12 +1,12 @@
-"""The cheapest rung that keeps an asked accuracy at a design, by the worst errors that were measured near it.
+"""The cheapest rung that keeps a requested accuracy at a design, by the largest errors measured near it.
 
-Error is that of the tip stiffness K against one reference for all rungs: three-dimensional linear elasticity
-of the element cut at load line and clamp edge, solved by solid elements to their limit. What the reference
-leaves out (the real hinge's thickness, where the load stands) is not in it.
+"Error" is that of the tip stiffness K against one reference for all rungs: three-dimensional linear
+elasticity of the element cut at load line and clamp edge, solved by solid elements to their limit. It
+excludes what the reference leaves out, such as the real hinge's thickness and the real position of the load.
 
 `data/accuracy.json`, written by `tactcad fit`, divides the envelope into zones by notch form and
-dimensionless groups, and holds for each the worst error of every candidate, what is promised, and the time an
-element takes.
+dimensionless groups. For each zone it holds the largest error of every candidate, the error that is promised,
+and the time an element takes.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Candidate:
         return self.rung if self.mesh is None else f"{self.rung}, mesh {self.mesh}"
 
 
-# By how much work an element is: operations of the closed forms, unknowns of the finite elements. What was
-# measured on a clock would put the finer of two meshes first whenever one run was disturbed.
+# In the order of the work per element: operations of the closed forms, unknowns of the finite elements. An
+# order by measured time would put the finer of two meshes first whenever one run was disturbed.
 CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in rung.meshes)
 
 
@@ -65,10 +65,22 @@ def accuracy_data() -> dict:
 
 
 def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choice:
-    """The candidate of least work that keeps the relative `accuracy` at every one of the designs.
+    """The candidate of least work that keeps an accuracy at every one of the designs.
 
-    Raises CheckFailure where a design, called by its name where `names` has one, lies outside what was
-    measured, or where no candidate keeps the accuracy.
+    Parameters
+    ----------
+    s
+        One design or many.
+    accuracy
+        Largest relative error of K that is accepted, such as 0.01.
+    names
+        Of the designs, in the order of the flattened section, for the message of a refusal.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design lies outside the envelope in which errors were measured, or no candidate keeps the
+        accuracy.
     """
     where = lambda i: f" ({names[i]})" if names else ""  # noqa: E731
     outside = validity.reasons(s, MEASURED_FOR).ravel()
@@ -83,7 +95,20 @@ def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choic
 
 
 def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
-    """For every design its own choice, or why there is none."""
+    """For every design its own choice, or the reason why there is none.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    accuracy
+        Largest relative error of K that is accepted.
+
+    Returns
+    -------
+    list of Choice or str
+        One entry a design, in the order of the flattened section.
+    """
     by_zone: dict[int, Choice | str] = {}
     zone = zones(s).ravel()
     for z in np.unique(zone):
@@ -105,7 +130,9 @@ def zones(s: HingeSection) -> np.ndarray:
 
 
 def in_zone(zone: dict, groups: dict[str, Array], two_sided: np.ndarray) -> np.ndarray:
-    """Which designs lie in a zone: its notch form, and low <= group < high for each group that bounds it."""
+    """Mask of the designs in a zone: of its notch form, and with low <= group < high for each of its
+    bounds.
+    """
     inside = two_sided == (zone["sides"] == "two")
     for name, (low, high) in zone["bounds"].items():
         inside = inside & (groups[name] >= low) & (groups[name] < (np.inf if high is None else high))
@@ -119,12 +146,27 @@ def expected_error(s: HingeSection, candidate: Candidate) -> Array:
 
 
 def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Array:
-    """The same of a rung by its name, fem-solid by its own mesh where none is given."""
+    """Promised largest relative error of a rung at every design, NaN outside the envelope.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        The rung's name.
+    mesh
+        Half the order of fem-solid's elements in the plane, by default the rung's own.
+
+    Returns
+    -------
+    Array
+        Of the section's shape.
+    """
     return expected_error(s, Candidate(rung, mesh or BY_NAME[rung].meshes[0]))
 
 
 def stated(error: float) -> str:
-    """What a reader is told of an expected error."""
+    """How an expected error is worded for a reader."""
     return f"K within {100.0 * error:.2g} % of solid elements refined to their limit (docs/accuracy.md)"
 
 

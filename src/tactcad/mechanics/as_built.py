@@ -1,8 +1,8 @@
-"""What an element as built differs by from its drawing, and what each of that does to its stiffness.
+"""How an element as built differs from its drawing, and what each difference does to its stiffness.
 
-All are half-widths of `[tolerance]`, taken as two standard deviations, by the names of its fields. Two only
-soften: a layer of the cut that carries nothing, and a clamp that turns. They count both ways in a root of
-squares.
+All differences are half-widths of `[tolerance]`, taken as two standard deviations, by the names of its
+fields. Two of them can only soften the element: a surface layer that carries no load, and a clamp that turns.
+They still count both ways in the root of the sum of squares.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ DIMENSIONS = {
     "arm_height": "arm_height",
     "sheet_thickness": "width",
 }
-# What a layer (mm) off every cut face takes from the section that is left: faces come nearer, the slot grows.
+# Change of each dimension (mm) for each mm of layer taken off every cut face: webs get thinner, the slot
+# grows.
 CUT_FACES = {
     "hinge_thickness": -2.0,
     "hinge_length": 2.0,
@@ -40,20 +41,47 @@ COMMON = ("sheet_thickness", "youngs_modulus", "recast_layer")  # one sheet, one
 
 
 def without_layer(s: HingeSection, layer: Array | float) -> HingeSection:
-    """The section that carries load where `layer` mm of every face that the wire cut carry none."""
+    """The section that still carries load where a layer (mm) on every wire-cut face carries none."""
     return s.with_(**{name: getattr(s, name) + by * layer for name, by in CUT_FACES.items()})
 
 
 def in_clamp(s: HingeSection, stiffness: Array, turn: Array | float) -> Array:
-    """Tip stiffness (N/mm) in a clamp that turns by `turn` rad/(N mm) under the moment at its edge."""
+    """Tip stiffness in a clamp that turns under the moment at its edge, N/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    stiffness
+        Tip stiffness in a rigid clamp, N/mm.
+    turn
+        Rotation of the clamp per moment, rad/(N mm).
+    """
     lever = s.load_arm + s.hinge_length / 2.0 + s.body_length
     return stiffness / (1.0 + stiffness * turn * lever * lever)
 
 
 def half_widths(s: HingeSection, tolerance: Tolerance, rung: str = ladder.DEFAULT_RUNG) -> dict[str, Array]:
-    """Relative half-width of every design's tip stiffness, by field of [tolerance], to first order.
+    """Relative half-width of every design's tip stiffness, to first order.
 
-    Raises CheckFailure where a design is out of the rung's range.
+    Parameters
+    ----------
+    s
+        One design or many.
+    tolerance
+        Half-widths of the dimensions, mm; of Young's modulus, relative; of the clamp, rad/(N mm).
+    rung
+        The closed form that is differentiated.
+
+    Returns
+    -------
+    dict of str to Array
+        By field of [tolerance]; each of the section's shape.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range.
     """
     names = dict.fromkeys((*DIMENSIONS.values(), *CUT_FACES))
     per_mm = {name: elasticity(s, name, rung) / getattr(s, name) for name in names}

@@ -1,4 +1,4 @@
-"""Beams and round plates that are taken as rigid elsewhere: by how much they bend.
+"""How much the beams and round plates bend that are taken as rigid elsewhere.
 
 Straight beams with shear after Timoshenko (Strength of Materials, part I; shear factor 5/6 of a rectangle),
 round plates after Roark's Formulas for Stress and Strain, table 11.2. mm, N, MPa.
@@ -32,34 +32,40 @@ class Beam:
         return 5.0 / 6.0 * self.youngs_modulus / (2.0 * (1.0 + self.poisson)) * self.width * self.height
 
     def supported(self) -> float:
-        """mm for each newton in the middle of two supports that let it turn: no supports that hold it leave
-        it softer."""
+        """Deflection in the middle (mm/N) on supports that let the ends turn: an upper bound for real
+        supports.
+        """
         return self.length**3 / (48.0 * self.bending) + self.length / (4.0 * self.shear)
 
     def clamped(self) -> float:
-        """mm for each newton in the middle of two supports that let nothing turn: none leave it stiffer."""
+        """Deflection in the middle (mm/N) between supports that prevent rotation: a lower bound for real
+        supports.
+        """
         return self.length**3 / (192.0 * self.bending) + self.length / (4.0 * self.shear)
 
     def supported_beside(self, at: float) -> float:
-        """mm in the middle for each newton that presses `at` mm from one of two supports that let it turn."""
+        """Deflection in the middle (mm/N) under a force `at` mm from one of two supports that let the ends
+        turn.
+        """
         a = min(at, self.length - at)
         return a * (3.0 * self.length**2 - 4.0 * a**2) / (48.0 * self.bending) + a / (2.0 * self.shear)
 
     def supported_evenly(self) -> float:
-        """mm in the middle for each newton of a load spread over the length, between supports that let it
-        turn."""
+        """Deflection in the middle (mm/N) under a load spread over the length; the supports let the ends
+        turn.
+        """
         return 5.0 * self.length**3 / (384.0 * self.bending) + self.length / (8.0 * self.shear)
 
     def cantilever(self) -> float:
-        """mm at the free end for each newton there."""
+        """Deflection of the free end under a force there, mm/N."""
         return self.length**3 / (3.0 * self.bending) + self.length / self.shear
 
     def cantilever_tilt(self) -> float:
-        """rad at the free end for each newton there, the other end clamped; of the bending alone."""
+        """Rotation of the free end under a force there, rad/N; of the bending alone."""
         return self.length**2 / (2.0 * self.bending)
 
     def turned_by_moment(self) -> float:
-        """rad at the free end for each N mm there, the other end clamped."""
+        """Rotation of the free end under a moment there, rad/(N mm)."""
         return self.length / self.bending
 
     @property
@@ -71,14 +77,19 @@ class Beam:
 
 
 def rod(length: float, diameter: float, youngs_modulus: float, poisson: float) -> Beam:
-    """A round bar, as the rectangle of its height and its pi d^4/64; a third softer than it in shear."""
+    """A round bar as a rectangular one of the same height and the same second moment of area, pi d^4/64.
+
+    The rectangle is a third softer in shear than the round bar.
+    """
     return Beam(length, 3.0 * pi / 16.0 * diameter, diameter, youngs_modulus, poisson)
 
 
 def round_plate(
     radius: float, thickness: float, youngs_modulus: float, poisson: float
 ) -> tuple[float, float]:
-    """A round plate on its rim: mm in its middle for each newton there, and for each MPa on its face."""
+    """A round plate supported on its rim: deflection of its middle in mm/N of force there, and in mm/MPa
+    on its face.
+    """
     D = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson**2))
     nu = poisson
     force = (3.0 + nu) / (1.0 + nu) * radius**2 / (16.0 * pi * D)

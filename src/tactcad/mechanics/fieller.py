@@ -40,9 +40,16 @@ def ratio_interval(
     *,
     quantile: float | None = None,
 ) -> RatioInterval:
-    """Fieller's set {x : (N - x D)^2 <= q^2 Var(N - x D)} for x = N/D; variances in squared units.
+    """Fieller's set {x : (N - x D)^2 <= q^2 Var(N - x D)} for the ratio x = N/D.
 
-    `quantile` q defaults to the normal 0.975 (95 % two-sided); pass Student's for estimated variances.
+    Parameters
+    ----------
+    numerator, denominator
+        N and D; all arguments broadcast.
+    var_numerator, var_denominator, covariance
+        Of N and D, in squared units.
+    quantile
+        q, by default the normal 0.975 (95 % two-sided); pass Student's for estimated variances.
     """
     q = NormalDist().inv_cdf(0.975) if quantile is None else quantile
     N, D, vN, vD, c = np.broadcast_arrays(
@@ -53,7 +60,7 @@ def ratio_interval(
     )
     # a x^2 - 2 h x + k <= 0
     a, h, k = D * D - q * q * vD, N * D - q * q * c, N * N - q * q * vN
-    # h^2 - a k with N^2 D^2 taken out of both, so that certain readings leave no rounding to take a root of
+    # h^2 - a k with N^2 D^2 cancelled by hand: for exact readings it is 0, not a rounding error
     discriminant = q * q * (N * N * vD - 2.0 * N * D * c + D * D * vN - q * q * (vN * vD - c * c))
     real = discriminant >= 0.0
     root = np.sqrt(np.where(real, discriminant, 0.0))
@@ -88,8 +95,18 @@ def object_stiffness_interval(
 ) -> RatioInterval:
     """Fieller's interval for K_obj = (K_r d_r - K_m d_m)/(d_m - d_r), N/mm.
 
-    d_r, d_m: deflections (mm) with variances var_r, var_m and their covariance (mm2); var_K_r,
-    var_K_m: variances of the calibrated stiffnesses ((N/mm)2), taken to first order, independent.
+    Parameters
+    ----------
+    K_r, K_m
+        Stiffness of the reference and the measuring element, N/mm.
+    d_r, d_m
+        Their deflections, mm.
+    var_r, var_m, covariance
+        Of the deflections, mm2.
+    var_K_r, var_K_m
+        Variances of the calibrated stiffnesses, (N/mm)^2; taken to first order, independent.
+    quantile
+        As for `ratio_interval`.
     """
     K_r, K_m, d_r, d_m = (np.asarray(v, dtype=float) for v in (K_r, K_m, d_r, d_m))
     numerator, denominator = K_r * d_r - K_m * d_m, d_m - d_r

@@ -1,4 +1,4 @@
-"""What a pad that stands out and rubs does to the stiffness felt at its contact."""
+"""How friction at a pad that stands out changes the stiffness felt at its contact."""
 
 from __future__ import annotations
 

@@ -64,13 +64,17 @@ def composite(s: HingeSection, gauge: Gauge) -> Composite:
 
 
 def leaf_share(s: HingeSection, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """How much of the element's compliance goes with the leaf's bending stiffness: dlnK/dln t / 3."""
+    """Share of the compliance that is inversely proportional to the leaf's bending stiffness: dln K/dln t
+    / 3.
+    """
     return elasticity(s, "hinge_thickness", rung) / 3
 
 
 def stiffness(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Tip stiffness with the gauge on, N/mm; an upper bound, since the carrier is taken to cover the whole
-    hinge.
+    """Tip stiffness with the gauge on, N/mm.
+
+    An upper bound, since the carrier is taken to cover the whole hinge. Raises CheckFailure out of the rung's
+    range.
     """
     K = ladder.stiffness(s, rung)
     return K / (1 - leaf_share(s, rung) * (1 - 1 / composite(s, gauge).stiffening))
@@ -82,5 +86,20 @@ def foil_strain_per_force(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFA
 
 
 def foil_strain_per_deflection(s: HingeSection, gauge: Gauge, rung: str = ladder.DEFAULT_RUNG) -> Array:
-    """Mean strain of the foil per millimetre of tip deflection, 1/mm."""
+    """Mean strain of the foil per millimetre of tip deflection, 1/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    gauge
+        Its grid, foil and carrier, for every design alike.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
+    """
     return foil_strain_per_force(s, gauge, rung) * stiffness(s, gauge, rung)

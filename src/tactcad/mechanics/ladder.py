@@ -31,7 +31,20 @@ class Result:
 
 
 def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
-    """Tip stiffness of every design by a closed-form rung; out of its range NaN and a reason."""
+    """Tip stiffness of every design by a closed-form rung.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Result
+        Arrays of the section's shape; out of the rung's range NaN and the first rule that is broken.
+    """
     reason = validity.reasons(s, rung)
     valid = reason == ""
     stiffness = np.full(s.shape, np.nan)
@@ -41,21 +54,41 @@ def evaluate(s: HingeSection, rung: str = DEFAULT_RUNG) -> Result:
 
 
 def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
-    """Tip stiffness in N/mm, friction at the pad included. Raises CheckFailure where any is out of range."""
+    """Tip stiffness by a closed-form rung, friction at the pad included, N/mm.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    rung
+        One of `CLOSED_FORMS`.
+
+    Returns
+    -------
+    Array
+        Of the section's shape.
+
+    Raises
+    ------
+    CheckFailure
+        Where any design is out of the rung's range; names the rule and the design.
+    """
     require_range(s, rung)
     return _stiffness(s, rung)
 
 
 def require_range(s: HingeSection, rung: str) -> None:
-    """Raises CheckFailure with the first broken rule, and which design breaks it."""
+    """Raise CheckFailure with the first broken rule and the design that breaks it."""
     for name, mask in validity.broken_rules(s, rung).items():
         where = f" (design {np.flatnonzero(mask)[0] + 1} of {mask.size})" if mask.size > 1 else ""
         raise CheckFailure(f"rung {rung} does not reach this design: {name}{where}")
 
 
 def compliance(s: HingeSection, rung: str) -> Array:
-    """Tip compliance of the elastic element by a closed-form rung, without friction and wherever it gives a
-    number; mm/N."""
+    """Tip compliance of the elastic element by a closed-form rung, mm/N.
+
+    Friction is left out, and the rung's range is not checked.
+    """
     form = BY_NAME[rung].compliance
     if form is None:
         raise ValueError(f"{rung} is no closed form")

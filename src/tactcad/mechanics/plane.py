@@ -16,13 +16,13 @@ lc = l - 2 r, and n the number of slotted faces, E b C is the sum of::
 
 g t is the hinge length that one filleted root adds to a block without end. A = (3 pi/16)^2 2/n is the exact
 limit of a thin notch; p6 to p8 are what two roots close to each other take from one another. A block of
-finite height adds less, by p3 and d. A body that is high over its length feels its clamp instead of its
-height: J goes over from kappa^3 - p3 kappa^2 (written with u, J0 = -4 p3^3/27 and d0 = 8 p3^3/27) to a
-constant, and never falls with kappa, so that K never falls as the body grows higher. m is the length over
-which a load that is in equilibrium by itself fades in a strip, V the logarithm's factor under a force on a
-straight edge or a corner; both are elasticity's. c is the clamp's grip on the body's end, which may not
-narrow; e couples moment and shear in the roots. By Michell's theorem Poisson's ratio enters plane stress only
-where displacements are held: at the clamp. All other letters are constants of the fit.
+finite height adds less, by p3 and d. In a body that is high for its length the clamp, not the height, limits
+the deformation: J goes over from kappa^3 - p3 kappa^2 (written with u, J0 = -4 p3^3/27 and d0 = 8 p3^3/27) to
+a constant, and never falls with kappa, so that K never falls as the body grows higher. m is the length over
+which a self-equilibrated load fades in a strip, V the logarithm's factor under a force on a straight edge or
+a corner; both follow from elasticity. c accounts for the clamp, which prevents lateral contraction of the
+body's end; e couples moment and shear in the roots. By Michell's theorem Poisson's ratio enters plane stress
+only where displacements are prescribed: at the clamp. All other letters are constants of the fit.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ from .constants import by_sides
 from .section import Array, HingeSection
 
 THIN_NOTCH = (3.0 * np.pi / 16.0) ** 2 * 2.0  # over n: squared root length per r/t as r/t grows
-# Length, in heights of the strip, over which the energy of a load in equilibrium by itself fades: of the
-# slowest mode that is odd (two-sided; sin x = x) or of any kind (one-sided; sin x = -x), by the real part of
-# x (Papkovich, Fadle).
+# Length, in heights of the strip, over which the energy of a self-equilibrated load fades: that of the
+# slowest odd mode (two-sided; sin x = x) or of the slowest of all (one-sided; sin x = -x), by the real part
+# of x (Papkovich, Fadle).
 FADING = {True: 1.0 / (2.0 * 7.498), False: 1.0 / (2.0 * 4.212)}
-# E b times the compliance that a force along a half-plane's or a quarter-plane's edge finds, by logarithm of
+# E b times the compliance under a force along the edge of a half-plane or a quarter-plane, per logarithm of
 # the radius (Flamant, Michell).
 EDGE_FORCE = {True: 2.0 / np.pi, False: 1.0 / (np.pi / 4.0 - 1.0 / np.pi)}
 
@@ -51,8 +51,11 @@ Constants = Mapping[str, Array | float]
 
 @dataclass(frozen=True)
 class Parts:
-    """Tip compliance in plane stress by what gives way, mm/N: bending of the leaf by its mean moment, with
-    the roots, and by its moment's `slope`, of arm and body; and all shear."""
+    """Tip compliance in plane stress by where the deformation is, mm/N.
+
+    Bending of the leaf with its roots under the mean moment; of the leaf under the moment's `slope`; of the
+    arm; of the body; and all shear.
+    """
 
     hinge: Array
     slope: Array
@@ -66,7 +69,7 @@ class Parts:
 
 
 def root_length(s: HingeSection, k: Constants | None = None) -> Array:
-    """g of a root in a block without end, in units of the hinge thickness."""
+    """Length g that one root in a block without end adds to the leaf, in units of the hinge thickness."""
     k = k or by_sides("root", s.two_sided)
     rho = s.fillet_radius / s.hinge_thickness
     alone = np.sqrt(THIN_NOTCH / s.notch_sides * rho + k["p0"] - k["p1"] / (1.0 + k["p2"] * rho))
@@ -74,7 +77,9 @@ def root_length(s: HingeSection, k: Constants | None = None) -> Array:
 
 
 def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Array]:
-    """What the roots to arm and body add to the leaf where blocks bend like beams, in hinge thicknesses."""
+    """Lengths that the roots to arm and body add to the leaf between blocks of finite height, in hinge
+    thicknesses.
+    """
     k = k or by_sides("root", s.two_sided)
     g, t = root_length(s, k), s.hinge_thickness
     low, rise = _height_felt(s, k)
@@ -84,7 +89,9 @@ def root_lengths(s: HingeSection, k: Constants | None = None) -> tuple[Array, Ar
 
 
 def parts(s: HingeSection, k: Constants | None = None) -> Parts:
-    """Tip compliance in plane stress; `k` are the root's constants, by default the shipped ones."""
+    """Tip compliance in plane stress by its parts; `k` are the root's constants, by default the shipped
+    ones.
+    """
     k = k or by_sides("root", s.two_sided)
     per = s.youngs_modulus * s.width
     slope = (s.straight_length / s.hinge_thickness) ** 3 / per
@@ -141,13 +148,14 @@ def _shear(s: HingeSection, k: Constants) -> Array:
 
 
 def _cubic(s: HingeSection, k: Constants) -> Array:
-    """d: what a root's length falls with the cube of thickness over height."""
+    """d: factor of the term by which a root's length decreases, cubic in thickness over height."""
     return k["p4"] + k["p5"] * (s.fillet_radius / s.hinge_thickness)
 
 
 def _height_felt(s: HingeSection, k: Constants) -> tuple[Array, Array]:
-    """2 p3/3, the least body length over height that makes a difference, and u, how far beyond it the
-    body's is."""
+    """2 p3/3, the body length over height below which the height has no effect, and u, by how much it is
+    exceeded.
+    """
     low, fading = np.asarray(k["p3"]) / 1.5, _by_form(FADING, s.two_sided)
     return low, fading * np.logaddexp(0.0, (s.body_length / s.body_height - low) / fading)
 

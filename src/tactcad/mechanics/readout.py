@@ -67,7 +67,7 @@ def bridge_nonlinearity(x: ArrayLike) -> Array:
 
 
 def resistance_change(ratio: ArrayLike) -> Array:
-    """x from output over supply, the bridge turned round: 4 v/(1 - 2 v), for v < 1/2."""
+    """Inverse of `bridge_output`: x = 4 v/(1 - 2 v) from v = output over supply, for v < 1/2."""
     v = np.asarray(ratio, dtype=float)
     return 4 * v / (1 - 2 * v)
 
@@ -91,6 +91,16 @@ def strain_from_output(volts: ArrayLike, factor: float, readout: ReadOut) -> Arr
 
 
 def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -> Array:
-    """Slope of the output at a foil strain, V: U G GF 4/(4 + 2 x)^2."""
+    """Sensitivity of the amplifier's output to strain at a foil strain, V: U G GF 4/(4 + 2 x)^2.
+
+    Parameters
+    ----------
+    factor
+        Gauge factor GF.
+    readout
+        Supply U, gain G and offset; x = GF strain + offset.
+    strain
+        Foil strain at which the slope is taken.
+    """
     x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
     return readout.excitation * readout.gain * factor * 4 / (4 + 2 * x) ** 2

@@ -1,8 +1,8 @@
-"""The rungs of the model ladder, each registered once, in the order of their work: all that asks which rungs
-there are reads it here.
+"""The rungs of the model ladder, each registered once, in the order of the work they take.
 
-A new closed form is a file with its compliance and an entry in `REGISTER`; `tactcad fit --shipped-samples`
-then measures its errors (data/ladder.json, data/accuracy.json).
+Every list of rungs elsewhere is derived from this one. A new closed form is a file with its compliance and an
+entry in `REGISTER`; `tactcad fit --shipped-samples` then measures its errors (data/ladder.json,
+data/accuracy.json).
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ class Rung:
 
     name             as `--model` takes it
     when             what it is good for, in the benchmarks' table
-    compliance       tip compliance (mm/N) by a closed form, from the fitted constants given or the shipped
+    compliance       tip compliance (mm/N) by a closed form, from the constants passed in or else the shipped
                      ones; None for finite elements, which tactcad.fem solves by the rung's name
-    fitted           what its constants were fitted on, and which groups therefore bound it: plane elements,
-                     and also the width on solid ones; empty where nothing is fitted
+    fitted           which samples its constants were fitted on, whose range therefore bounds it: "plane", and
+                     "width" for solid elements; empty where nothing is fitted
     constant_moment  whether the leaf's moment is taken as the same along the slot
     meshes           halves of the elements' order that can be chosen, rising; (None,) where there is no
                      choice
@@ -39,7 +39,9 @@ class Rung:
 
     @property
     def against(self) -> str:
-        """The elements that its errors are told against: "solid" where it knows the width, else "plane"."""
+        """The finite elements that its errors are measured against: "solid" where it models the width,
+        else "plane".
+        """
         return "solid" if "width" in self.fitted else "plane"
 
 

@@ -19,18 +19,35 @@ def inside_by(polygon: Sequence[Point], point: Point) -> float:
 
 
 def tipping_margin(contacts: Sequence[Point], half: float) -> float:
-    """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the contacts, mm.
+    """How far a vertical load anywhere on the square |x|, |y| <= half stays inside the wheels' contacts, mm.
 
-    `contacts` is the convex polygon of the wheels, counter-clockwise. A vertical load inside it leaves every
-    wheel pressed, however large it is; the cart's own weight only helps. The square's corners are its worst
-    places.
+    A vertical load inside their polygon leaves every wheel pressed, however large it is; the cart's own
+    weight only helps. The square's corners are the critical places.
+
+    Parameters
+    ----------
+    contacts
+        Contact points of the wheels, mm: a convex polygon, counter-clockwise.
+    half
+        Half the square's side, mm.
     """
     return min(inside_by(contacts, (sx * half, sy * half)) for sx in (-1, 1) for sy in (-1, 1))
 
 
 def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: float, at: Point) -> float:
-    """Horizontal force (N) at `height` (mm) over the wheels that would lift one, with `load` (N) down at `at`
-    and the cart's own weight (N) in its middle; inf where height is 0."""
+    """Horizontal force that would lift a wheel, N; inf where `height` is 0.
+
+    Parameters
+    ----------
+    contacts
+        Contact points of the wheels, mm: a convex polygon, counter-clockwise.
+    height
+        Of the horizontal force over the contacts, mm.
+    weight
+        The cart's own, in its middle, N.
+    load, at
+        Vertical load, N, and the point where it acts, mm.
+    """
     if height == 0:
         return inf
     moments = []

@@ -23,10 +23,10 @@ FAR = 50.0  # mm
 
 @dataclass(frozen=True)
 class Coupling:
-    """Array on one sample against the same elements each on its own spring.
+    """Elements on one continuous sample compared with the same elements each on an independent spring.
 
-    stiffness: array's stiffness over that of independent springs. ratio: R of each measuring element over
-    equation (2).
+    stiffness: the array's stiffness over that on independent springs. ratio: R of each element over equation
+    (2).
     """
 
     stiffness: float
@@ -45,9 +45,23 @@ def layer_factor(c: np.ndarray, poisson: float) -> np.ndarray:
 def influence(
     dx: np.ndarray, dy: np.ndarray, length: float, width: float, thickness: float, poisson: float
 ) -> np.ndarray:
-    """Mean displacement of a pad for unit force on another, dx, dy away (mm), over that of the pad itself.
+    """Mean displacement of a pad under a force on another one, over that under the same force on itself.
 
-    length, width: of the pads along x, y, mm; thickness of the sample, inf for a half-space.
+    Parameters
+    ----------
+    dx, dy : ndarray, shape (n,)
+        From the loaded pad to the other one, mm.
+    length, width
+        Of every pad along x and y, mm.
+    thickness
+        Of the sample, mm; inf for a half-space.
+    poisson
+        Of the sample.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        1 at distance 0.
     """
     size = (length * width) ** 0.5
     k = (np.arange(WAVES) + 0.5) * LARGEST / size / WAVES
@@ -58,9 +72,7 @@ def influence(
     own = weight.sum()
 
     def share(x: float, y: float) -> float:
-        """Further than FAR a layer carries nothing over, and a half-space 1/r: there the sum over waves
-        would alias.
-        """
+        """Beyond FAR the sum over waves would alias: a layer transmits nothing there, a half-space as 1/r."""
         r = float(np.hypot(x, y))
         if r > FAR:
             return share(x * FAR / r, y * FAR / r) * FAR / r if np.isinf(thickness) else 0.0
@@ -91,8 +103,20 @@ def coupling(
     thickness: float,
     poisson: float,
 ) -> Coupling:
-    """Elements K (N/mm) at x, y (mm) pressed together into a sample that is object_stiffness under one
-    pad alone.
+    """Elements pressed together into one sample, compared with independent springs of the same stiffness.
+
+    Parameters
+    ----------
+    K : ndarray, shape (n,)
+        Stiffness of the elements, N/mm.
+    x, y : ndarray, shape (n,)
+        Centres of their pads, mm.
+    object_stiffness
+        Of the sample under one pad alone, N/mm.
+    reference
+        Index of the reference element.
+    length, width, thickness, poisson
+        As for `influence`.
     """
     A = shares_between(x, y, length, width, thickness, poisson) / object_stiffness
     force = np.linalg.solve(np.diag(1 / K) + A, np.ones(len(K)))

@@ -33,12 +33,12 @@ def _none() -> Array:
 
 @dataclass(frozen=True)
 class HingeSection:
-    """Parameters of one element or of many: arrays (of no dimension for one) that broadcast together.
+    """Parameters of one element or of many: arrays (of no dimension for one element) that broadcast together.
 
-    Numbers and lists are taken too, and made arrays; where types are checked, by `HingeSection.of`. Lengths
-    in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools. `pad_height` (mm, from the
-    hinge's face towards the object to the contact) and `friction` there only act together, see
-    `friction.factor`.
+    Numbers and lists are also taken, and converted to arrays; code that is type-checked passes them to
+    `HingeSection.of`. Lengths in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools.
+    `pad_height` (mm, from the hinge's face towards the object to the contact) and the `friction` coefficient
+    there matter only together, see `friction.factor`.
     """
 
     hinge_thickness: Array
@@ -91,7 +91,9 @@ class HingeSection:
         return replace(self, **{name: np.asarray(value) for name, value in changes.items()})
 
     def rows(self, index: int | slice | Sequence[int] | NDArray[Any]) -> HingeSection:
-        """The designs at `index` of the flattened common shape; what is one for all stays one."""
+        """The designs at `index` of the flattened common shape; a parameter that is one number for all
+        stays so.
+        """
         shape = self.shape
         picked = {}
         for each in fields(self):
@@ -103,7 +105,7 @@ class HingeSection:
         return HingeSection(**picked)
 
 
-# Names of the numbers that make a section: those without which there is none, and the others' defaults.
+# Names of the parameters that must be given, and of the optional ones with their defaults.
 REQUIRED = tuple(
     f.name for f in fields(HingeSection) if f.default_factory is MISSING and f.name != "two_sided"
 )

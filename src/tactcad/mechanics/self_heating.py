@@ -1,4 +1,4 @@
-"""How warm a gauge makes itself, with power on all the time and with power on only while it is read.
+"""Temperature rise of a gauge, with power on continuously and with power on only while it is read.
 
 The grid's heat (U/2)^2/R goes through the backing into the leaf, a good conductor. Grid and half the
 backing store heat, so a short reading ends before the grid is warm: an exponential approach with one time

@@ -15,7 +15,7 @@ from .section import Array, HingeSection
 
 @dataclass(frozen=True)
 class Signal:
-    """By element. Magnitudes: the sign depends on which bridge arm the gauge is."""
+    """Signals by element, as magnitudes: the sign depends on the arm of the bridge that the gauge is in."""
 
     per_deflection: Array  # K_v, V/mm, at no load
     per_force: Array  # K_v/K, V/N
@@ -33,7 +33,24 @@ def predict(
     deflection: ArrayLike,
     rung: str = ladder.DEFAULT_RUNG,
 ) -> Signal:
-    """Signals of all elements, `deflection` (mm) of each at its tip."""
+    """Signals of all elements.
+
+    Parameters
+    ----------
+    s
+        The elements.
+    gauge, electronics
+        Alike for all elements.
+    deflection
+        Of each element at its tip, mm.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where an element is out of the rung's range.
+    """
     gain = readout.volts_per_strain(gauge.factor, electronics)
     per_mm = gauge_signal.foil_strain_per_deflection(s, gauge, rung)
     per_newton = gauge_signal.foil_strain_per_force(s, gauge, rung)

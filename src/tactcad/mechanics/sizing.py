@@ -19,10 +19,25 @@ GRID = 4001  # points, by logarithm, on which the rung's range is looked for
 
 
 def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.DEFAULT_RUNG) -> float:
-    """The hinge thickness or length (mm) at which one design (scalars) has the stiffness, N/mm.
+    """The hinge thickness or length that gives a stiffness, mm.
 
-    Stiffness grows with thickness and falls with length, so that the answer is the only one. Raises
-    CheckFailure, naming what can be reached, where none lies within the rung's range.
+    Stiffness grows with thickness and falls with length, so there is at most one answer.
+
+    Parameters
+    ----------
+    s
+        One design (scalars); its own value of the parameter is not used.
+    stiffness
+        Wanted at the tip, N/mm.
+    parameter
+        "hinge_thickness" or "hinge_length".
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where the rung's range holds no such design; says which stiffnesses can be reached.
     """
     low, high = SEARCHED[parameter]
     values = np.geomspace(low, high, GRID)

@@ -1,14 +1,14 @@
-"""Rung solid: the plane rung's parts, each less compliant by what a wide sheet may not curl.
+"""Rung solid: the plane rung's parts, each stiffened as the width prevents anticlastic curvature.
 
     C3D = hinge (1 - nu^2/(1 + P)) + slope (1 - nu^2/(1 + cs P)) + arm + body (1 - nu^2/(1 + cb Lb/b)) + shear
     P = (1 + a nu) (cx x + cy y + (cz + cl t/l) z + cxx x^2 + cyz y z + cxxy x^2 y + cxxz x^2 z + cxyy x y^2
                     + cyyy y^3 + cyyz y^2 z + ch (t/h)^3 (L - l/2)/b)
 
-with x = lc/b, y = t/b, z = r/b, and hinge, slope, arm, body, shear as in `plane`. Bending is free to curl
-where the sheet is narrow against what bends (plane stress), and kept from it where it is wide (plane
-strain, 1 - nu^2). The arm, which nothing holds across at its ends, curls however wide it is, and where it
-is low takes the hinge with it (ch). As no constant but a is negative, C3D is never more than plane stress
-has and K3D/b never falls with b, whatever their values are.
+with x = lc/b, y = t/b, z = r/b, and hinge, slope, arm, body, shear as in `plane`. A sheet that is
+narrow for the length that bends curls freely across (plane stress); a wide one cannot (plane strain,
+1 - nu^2). The arm's ends are free across, so it curls however wide it is, and where it is low the hinge
+curls with it (ch). As no constant but a is negative, C3D never exceeds that of plane stress, and K3D/b never
+falls with b, whatever the constants' values are.
 """
 
 from __future__ import annotations
@@ -19,8 +19,17 @@ from .section import Array, HingeSection
 
 
 def curled(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
-    """Tip compliance of the solid, mm/N, from the plane's parts; `k` are the width's constants, by default
-    the shipped ones."""
+    """Tip compliance of the solid from the parts in plane stress, mm/N.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    flat
+        Their compliances in plane stress, `plane.parts`.
+    k
+        Constants of the width, by default the shipped ones.
+    """
     k = k or by_sides("width", s.two_sided)
     b, nu2 = s.width, s.poisson * s.poisson
     free = (1.0 + k["a"] * s.poisson) * _narrowness(s, k)
@@ -30,7 +39,7 @@ def curled(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None)
 
 
 def _narrowness(s: HingeSection, k: plane.Constants) -> Array:
-    """P/(1 + a nu): how free the hinge is to curl."""
+    """P/(1 + a nu): how freely the hinge curls across."""
     x, y, z = (length / s.width for length in (s.straight_length, s.hinge_thickness, s.fillet_radius))
     t, l, reach = s.hinge_thickness, s.hinge_length, s.load_arm - s.hinge_length / 2.0
     alone = x * (k["cx"] + k["cxx"] * x) + y * (k["cy"] + k["cyyy"] * y * y) + z * (k["cz"] + k["cl"] * t / l)
@@ -39,7 +48,7 @@ def _narrowness(s: HingeSection, k: plane.Constants) -> Array:
 
 
 def width_factor(s: HingeSection, flat: plane.Parts, k: plane.Constants | None = None) -> Array:
-    """K3D/K2D."""
+    """K3D/K2D: stiffness of the solid over that in plane stress."""
     return flat.whole / curled(s, flat, k)
 
 

@@ -1,8 +1,8 @@
 """Surface strain of the hinge: nominal, at the centre, as a gauge's grid averages it, and its peak.
 
-Closed forms for factors over the nominal strain, fitted on plane elements like the stiffness; how
-well each fits stands in the fit report. In three dimensions strain per newton goes down as the
-stiffness goes up; strain per deflection nearly stays.
+The closed forms are factors on the nominal strain, fitted on plane elements like the stiffness; the fit
+report says how well each fits. In three dimensions strain per newton goes down as the stiffness goes up;
+strain per deflection hardly changes.
 """
 
 from __future__ import annotations
@@ -32,9 +32,23 @@ def nominal(s: HingeSection, force: Array | float) -> Array:
 def gauge(
     s: HingeSection, force: Array | float, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG
 ) -> Array:
-    """Mean strain at mid-width along the gauge face under a grid of that length (mm), centred on the hinge.
+    """Mean strain at mid-width under a grid on the gauge face, centred on the hinge.
 
-    Raises CheckFailure out of the rung's range.
+    Parameters
+    ----------
+    s
+        One design or many.
+    force
+        At the load line, N.
+    grid_length
+        Of the gauge's grid, mm.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
     """
     ladder.require_range(s, rung)
     return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
@@ -43,8 +57,22 @@ def gauge(
 def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """Largest surface strain at mid-width: at the slot-side fillet towards the body.
 
-    The rungs short, beam and section know no fillet: theirs is the nominal strain at the slot's end
-    (short: at its centre). Raises CheckFailure out of the rung's range.
+    The rungs short, beam and section do not model the fillet: theirs is the nominal strain at the slot's end
+    (short: at its centre).
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    force
+        At the load line, N.
+    rung
+        A closed-form rung.
+
+    Raises
+    ------
+    CheckFailure
+        Where a design is out of the rung's range.
     """
     ladder.require_range(s, rung)
     if rung in ladder.FITTED:
@@ -55,39 +83,45 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
 
 
 def peak_stress(s: HingeSection, force: Array | float) -> Array:
-    """Largest surface stress, MPa: 6 F L/(b t^2) times the fillet's factor.
+    """Largest surface stress under a force (N) at the load line, MPa: 6 F L/(b t^2) times the fillet's
+    factor.
 
-    Stress along the hinge follows from equilibrium and is not changed by the width. Raises CheckFailure where
-    the factor was not fitted.
+    Stress along the hinge follows from equilibrium and does not depend on the width. Raises CheckFailure
+    where the factor was not fitted.
     """
     _require_fitted(s)
     return stress_beyond_the_fit(s, force)
 
 
 def stress_beyond_the_fit(s: HingeSection, force: Array | float) -> Array:
-    """`peak_stress` by the same formula wherever it gives a number: no figure to report, but of use to bound
-    a stop."""
+    """`peak_stress` without its check of the range, MPa: not accurate enough to report, but good for
+    bounds.
+    """
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
 def largest_stress(s: HingeSection, force: Array | float) -> Array:
-    """Largest principal stress at mid-width, MPa: more than the width's mean, since the sheet's sides carry
-    less.
+    """Largest principal stress at mid-width under a force (N) at the load line, MPa.
 
-    Raises CheckFailure out of rung solid's range.
+    It exceeds the mean over the width, since the sheet's sides carry less. Raises CheckFailure out of rung
+    solid's range.
     """
     ladder.require_range(s, "solid")
     return stress_beyond_the_fit(s, force) * mid_width_share(s)
 
 
 def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
-    """Largest principal stress at mid-width over the width's mean as the closed form has it, at the fillet:
-    1 + nu^2 P.
+    """Largest principal stress at mid-width over the closed form's mean over the width, at the fillet.
 
-    It takes up what that form errs by.
+    1 + nu^2 P, where P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each clipped to the
+    range that was sampled. The error of the closed form is fitted with it.
 
-    P is a polynomial of second degree in l/b, t/b, nu and ln(r/t), each held within what was sampled; `data`
-    are its constants by notch form, by default the shipped ones.
+    Parameters
+    ----------
+    s
+        One design or many.
+    data
+        Constants by notch form, by default the shipped ones.
     """
     share = np.ones(s.shape)
     for side, k in (data or strain_data()["mid-width share"]).items():
@@ -101,15 +135,17 @@ def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
 
 
 def share_features(s: HingeSection) -> Array:
-    """l/b, t/b, nu and ln(r/t) of every design, a row each."""
+    """l/b, t/b, nu and ln(r/t) of every design, one row for each."""
     l, t, b = s.hinge_length, s.hinge_thickness, s.width
-    # a slot without fillets is out of every range, yet bounded
+    # a slot without fillets is out of every range, yet bounds are wanted for it
     columns = l / b, t / b, s.poisson, np.log(np.maximum(s.fillet_radius / t, np.finfo(float).tiny))
     return np.stack([np.broadcast_to(c, s.shape).ravel() for c in columns], axis=1)
 
 
 def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
-    """1, the features between -1 and 1 over what was sampled, and their products."""
+    """1, the features scaled to -1 to 1 over the sampled range, and their products; one row for each
+    design.
+    """
     low, high = np.array(k["low"]), np.array(k["high"])
     z = np.clip(2.0 * (share_features(s) - low) / (high - low) - 1.0, -1.0, 1.0)
     first, second = np.triu_indices(z.shape[1])
@@ -131,9 +167,9 @@ def _require_fitted(s: HingeSection) -> None:
 
 
 def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
-    """Strain per newton at mid-width over the plane value; 1 on the rungs that do not know the width.
+    """Strain per newton at mid-width over that in plane stress; 1 on rungs that do not model the width.
 
-    `at` is "grid" or "fillet": K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
+    `at` is "grid" or "fillet". K2D/K3D, since strain per deflection hardly changes, times `mid_width`.
     """
     if "width" not in BY_NAME[rung].fitted:
         return 1.0
@@ -141,9 +177,9 @@ def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
-    """Strain per deflection at mid-width over the plane value.
+    """Strain per deflection at mid-width over that in plane stress.
 
-    1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b.
+    1 + nu^2 (a x^2 + d x y + e y^2), x = l/b, y = t/b; `at` is "grid" or "fillet".
     """
     k = k or by_sides(f"mid-width {at}", s.two_sided)
     x, y, nu = s.hinge_length / s.width, s.hinge_thickness / s.width, s.poisson
@@ -153,8 +189,8 @@ def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
 def fillet_factor(s: HingeSection, k: Constants | None = None) -> Array:
     """Peak at the body-side fillet over nominal.
 
-    [1 + (lc/2 + a sqrt(r t) - b r)/L] [1 + c rho^-m (1 + d exp(-e lc/t))]: the moment where the peak
-    sits, times the fillet's own factor, larger where two fillets make one round notch.
+    [1 + (lc/2 + a sqrt(r t) - b r)/L] [1 + c rho^-m (1 + d exp(-e lc/t))]: the moment at the peak, times the
+    fillet's own stress concentration, which is larger where two fillets form one round notch.
     """
     k = k or by_sides("fillet", s.two_sided)
     t, r, lc = s.hinge_thickness, s.fillet_radius, s.straight_length
@@ -185,9 +221,9 @@ def face_factor(s: HingeSection, k: Constants | None = None) -> Array:
 def grid_factor(s: HingeSection, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:
     """Mean strain under the grid over nominal; 1 on the rungs without roots.
 
-    Each root adds X(w) to the integral of strain over nominal less one, up to w = distance from the
+    Each root adds X(w) to the integral of (strain over nominal - 1), up to w = distance from the
     fillet's end over t: mean = 1 + 2 t/grid [X(w+) - X(w-)], w+- = (+-grid - lc)/(2 t). Raises
-    CheckFailure where a grid on a two-sided hinge would climb more than half of its fillets.
+    CheckFailure where a grid on a two-sided hinge would reach over more than half of its fillets.
     """
     grid = np.asarray(grid_length, dtype=float)
     if rung not in ladder.FITTED:

@@ -1,4 +1,4 @@
-"""What the closed forms for strain and stress of rung solid err by at a design, against solid elements.
+"""Errors of rung solid's closed forms for strain and stress at a design, against solid elements.
 
 `data/strain.json`, written by `tactcad.fit.strain_fit`, divides the range into zones, as data/accuracy.json
 does for K.
@@ -33,8 +33,17 @@ class StrainErrors:
 
 
 def stated(s: HingeSection, grid_length: float, rung: str) -> StrainErrors:
-    """Of rungs solid and fem-solid at every design, for a gauge's grid of that length (mm); NaN of the
-    others."""
+    """Stated errors of a rung at every design; NaN for rungs other than solid and fem-solid.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid_length
+        Of the gauge's grid, mm.
+    rung
+        The rung's name.
+    """
     if rung != "solid":
         error = np.full(s.shape, OF_ELEMENTS if rung == "fem-solid" else np.nan)
         return StrainErrors(error, error, error)

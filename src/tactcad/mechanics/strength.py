@@ -1,4 +1,4 @@
-"""When the hinge yields or tires, and what force and deflection it may be given."""
+"""At which force the hinge yields or fatigues, and which force it is rated for."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from .section import Array, HingeSection
 def yield_force(s: HingeSection, alloy: Alloy) -> Array:
     """Force at which the fillet's surface reaches the yield strength, N.
 
-    Like all of this module's it raises CheckFailure where the closed forms for stress do not reach.
+    Raises CheckFailure, as the module's other functions of a section do, where the closed forms
+    for stress were not fitted.
     """
     return alloy.yield_strength / strain.peak_stress(s, 1.0)
 
 
 def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
-    """The same, N, with NaN for designs that the closed forms for stress do not reach."""
+    """`yield_force`, N; NaN where the closed forms for stress were not fitted."""
     force = np.full(s.shape, np.nan)
     known = validity.reasons(s, "plane") == ""
     if known.any():
@@ -33,7 +34,7 @@ def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:
 
 
 def yield_factor(s: HingeSection, alloy: Alloy, force: Array | float) -> Array:
-    """Yield strength over the fillet's stress; below 1 the hinge does not stay elastic."""
+    """Yield strength over the fillet's stress under a force, N; below 1 the hinge does not stay elastic."""
     return yield_force(s, alloy) / force
 
 
@@ -43,7 +44,9 @@ def rated_force(s: HingeSection, alloy: Alloy, requested: Array | float, factor:
 
 
 def elastic(s: HingeSection, alloy: Alloy, force: Array | float) -> np.ndarray:
-    """Whether the hinge's stress stays at or below yield; where not, its strain is not a number to report."""
+    """Whether the hinge stays elastic under a force, N; where it does not, its computed strain is
+    meaningless.
+    """
     return np.asarray(strain.peak_stress(s, force) <= alloy.yield_strength)
 
 

@@ -1,4 +1,4 @@
-"""Where a rung may be used: named rules, each a mask over the designs."""
+"""Where a rung may be used: named rules, each giving a mask over the designs."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from .section import OPTIONAL, REQUIRED, Array, HingeSection
 
 ROUNDING = 1e-12  # a design on a limit is inside, however its ratios are rounded
 POSITIVE = tuple(name for name in REQUIRED if name not in ("fillet_radius", "poisson"))
-# What is computed at all, chosen so that no power of these numbers that a rung takes leaves a double: a
-# nanometre to a kilometre, and a gel's modulus of a pascal to a metal's that was given in pascal.
+# Numbers outside these limits are refused by every rung, so that no power that a rung takes of them overflows
+# a double: a nanometre to a kilometre; a gel's 1 Pa to a metal's modulus mistakenly given in Pa.
 LENGTH = (1e-6, 1e6)  # mm
 MODULUS = (1e-6, 1e12)  # MPa
 LENGTHS = tuple(name for name in POSITIVE if name != "youngs_modulus")
@@ -95,7 +95,7 @@ WIDTH_GROUPS: dict[str, Callable[[HingeSection], Array]] = {
     "b/Hb": lambda s: s.width / s.body_height,
 }
 
-# Groups that are bounded below alone: what is wrong there, the group, and whose fit it bounds.
+# Groups with a lower bound only: what is wrong below it, the group, and whose fit it bounds.
 LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
     "Lb/t": ("body too short", lambda s: s.body_length / s.hinge_thickness, "plane"),
     "L/t": ("load arm too short", lambda s: s.load_arm / s.hinge_thickness, "plane"),
@@ -156,7 +156,13 @@ def rules(rung: str) -> tuple[RangeRule, ...]:
 
 
 def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
-    """Masks (of the section's shape) of the designs that break each of the rung's rules."""
+    """The rung's rules that any design breaks.
+
+    Returns
+    -------
+    dict of str to ndarray of bool
+        By the rule's name, the mask of the designs that break it, of the section's shape.
+    """
     with np.errstate(all="ignore"):
         masks = {rule.name: np.broadcast_to(rule.broken(s), s.shape) for rule in rules(rung)}
     return {name: mask for name, mask in masks.items() if mask.any()}
