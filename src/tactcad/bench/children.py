@@ -84,12 +84,12 @@ def stages(elements: int) -> dict:
     data = clock("STEP assembly", lambda: _step(scene, shapes))
     for name in PICTURES:
         clock(f"picture, {name}", lambda: _picture(scene, shapes, name))  # noqa: B023
-    found = clock("interference", lambda: check_interference(scene, shapes))
+    findings = clock("interference", lambda: check_interference(scene, shapes))
     return {
         "seconds": clock.seconds,
         "bytes": len(data),
         "solids": len(scene.placements),
-        "findings": len(found),
+        "findings": len(findings),
     }
 
 
@@ -103,15 +103,15 @@ def element(designator: str, repeats: int, files: dict[str, str]) -> dict:
     part = next(
         p.part for p in make_scene(arrays.published(), "array").placements if p.designator == designator
     )
-    found: dict[str, Any] = {"build": [], "write": []}
+    times: dict[str, Any] = {"build": [], "write": []}
     for _ in range(repeats):
         clock = Clock()
         solid = clock("build", lambda: build(part))
         data = clock("write", lambda: part_step(part, solid.wrapped, HEADER))  # noqa: B023
         for name, seconds in clock.seconds.items():
-            found[name].append(seconds)
+            times[name].append(seconds)
     Path(files["tactcad"]).write_bytes(data)
-    return found | {
+    return times | {
         "volume": solid.volume,
         "read": {name: model_file(path).volume for name, path in files.items()},
     }

@@ -52,14 +52,14 @@ def peers() -> dict[str, str]:
 
     from .freecad import version as freecad
 
-    found = _said([calculix.executable() or "ccx", "-v"], r"Version ([\d.]+)")
-    return {"CalculiX": found or MISSING, "FreeCAD": freecad() or MISSING}
+    version = _said([calculix.executable() or "ccx", "-v"], r"Version ([\d.]+)")
+    return {"CalculiX": version or MISSING, "FreeCAD": freecad() or MISSING}
 
 
 def _processor() -> str:
     info = Path("/proc/cpuinfo")
-    found = re.search(r"model name\s*:\s*(.+)", info.read_text()) if info.is_file() else None
-    return found[1].strip() if found else platform.processor() or platform.machine()
+    match = re.search(r"model name\s*:\s*(.+)", info.read_text()) if info.is_file() else None
+    return match[1].strip() if match else platform.processor() or platform.machine()
 
 
 def _version(library: str) -> str:
@@ -74,5 +74,5 @@ def _said(command: Sequence[str], pattern: str) -> str:
         run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
     except OSError:
         return ""
-    found = re.search(pattern, run.stdout)
-    return found[1] if found else ""
+    match = re.search(pattern, run.stdout)
+    return match[1] if match else ""

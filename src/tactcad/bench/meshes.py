@@ -50,24 +50,24 @@ class Solver:
 
 def cases(plan: RunPlan) -> list[Solver]:
     plane, solid = plan.of((1, 2), (1, 2, 3, 4, 6), (1, 2, 3, 4, 6, 8)), plan.of((1,), (1, 2), (1, 2, 3))
-    found = [Solver("tactcad", "plane", d, partial(_plane, d)) for d in plane]
-    found += [
+    solvers = [Solver("tactcad", "plane", d, partial(_plane, d)) for d in plane]
+    solvers += [
         Solver("tactcad", "plane, two meshes", d, partial(_extrapolated, d)) for d in plane if d % 2 == 0
     ]
-    found += [Solver("tactcad", "solid", d, partial(_solid, d)) for d in solid]
-    found += [Solver("tactcad", "solid, corrected", d, partial(_corrected, d)) for d in solid]
+    solvers += [Solver("tactcad", "solid", d, partial(_solid, d)) for d in solid]
+    solvers += [Solver("tactcad", "solid, corrected", d, partial(_corrected, d)) for d in solid]
     if calculix.executable():
-        found += [
+        solvers += [
             Solver("CalculiX", "plane", d, partial(_ccx_plane, d, plan.folder))
             for d in plan.of((1,), (1, 2, 3, 4), (1, 2, 3, 4, 6))
         ]
-        found += [
+        solvers += [
             Solver("CalculiX", "solid", d, partial(_ccx_solid, d, plan.folder))
             for d in plan.of((), (1,), (1, 2))
         ]
     if _cholmod():
-        found += [Solver("CHOLMOD", "solid", d, partial(_with_cholmod, d)) for d in solid]
-    return found
+        solvers += [Solver("CHOLMOD", "solid", d, partial(_with_cholmod, d)) for d in solid]
+    return solvers
 
 
 def measure(plan: RunPlan) -> dict:
@@ -213,10 +213,10 @@ def _own_clock(case: Solver, design: tuple, folder: Path) -> float | None:
         text=True,
         check=True,
     )
-    found = re.search(r"Total CalculiX Time:\s*([0-9.]+)", run.stdout)
-    if not found:
+    match = re.search(r"Total CalculiX Time:\s*([0-9.]+)", run.stdout)
+    if not match:
         raise CheckFailure("CalculiX did not report its time")
-    return float(found[1])
+    return float(match[1])
 
 
 def _cholmod() -> Callable | None:

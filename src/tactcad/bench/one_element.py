@@ -34,7 +34,7 @@ def measure(plan: RunPlan) -> dict:
                 _answer(run) | {"process": run.seconds, "peak_bytes": run.peak_bytes}
             )
     read = runs["tactcad"][-1]["read"]
-    rows = [_row(name, found, read[name], part.volume, plan.folder) for name, found in reversed(runs.items())]
+    rows = [_row(name, own, read[name], part.volume, plan.folder) for name, own in reversed(runs.items())]
     bare = next(row for row in rows if row["program"] == "bare kernel")
     for row in rows:
         row["time ratio"] = (row["build"] + row["write"]) / (bare["build"] + bare["write"])
@@ -91,16 +91,16 @@ def _answer(run: Run) -> dict:
     return freecad.answer(run.output) or last_line(run)
 
 
-def _row(name: str, found: list[dict], read: float, exact: float, folder: Path) -> dict:
-    build, write = ([s for f in found for s in f[key]] for key in ("build", "write"))
-    volume = found[0]["volume"]
+def _row(name: str, runs: list[dict], read: float, exact: float, folder: Path) -> dict:
+    build, write = ([s for f in runs for s in f[key]] for key in ("build", "write"))
+    volume = runs[0]["volume"]
     return {
         "program": name,
         "build": min(build),
         "write": min(write),
         "median": of_samples([b + w for b, w in zip(build, write)]).median,
-        "process": min(f["process"] for f in found),
-        "peak_bytes": min(f["peak_bytes"] for f in found),
+        "process": min(f["process"] for f in runs),
+        "peak_bytes": min(f["peak_bytes"] for f in runs),
         "bytes": (folder / f"{name}.step").stat().st_size,
         "volume": volume,
         "off": abs(volume / exact - 1.0),

@@ -72,14 +72,14 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
 def _elements(rung: str, fine: Columns, plan: RunPlan, count: int) -> dict:
     from tactcad.fem.fem_ladder import stiffness
 
-    found = np.full(len(fine["width"]), np.nan)
+    K = np.full(len(fine["width"]), np.nan)
     for i, one in enumerate(truth.sections(fine)[:count]):
         plan.say(f"{rung}, design {i + 1} of {count}")
-        found[i] = stiffness(one, rung)
+        K[i] = stiffness(one, rung)
     flat = fine["plane_error"]
-    row = {"rung": rung} | errors(found, truth.solid_stiffness(fine), "solid", flat + fine["width_error"])
+    row = {"rung": rung} | errors(K, truth.solid_stiffness(fine), "solid", flat + fine["width_error"])
     return row | (
-        errors(found, fine["plane_stiffness"] * fine["width"], "plane", flat) if rung == "fem-plane" else {}
+        errors(K, fine["plane_stiffness"] * fine["width"], "plane", flat) if rung == "fem-plane" else {}
     )
 
 

@@ -79,10 +79,10 @@ def near(scene: Scene) -> list[Placed]:
     return [(scene.placements[i], scene.placements[j]) for i, j in near_pairs(boxes)]
 
 
-def count_wrong(found: list[str], true: list[str]) -> dict[str, int]:
+def count_wrong(verdicts: list[str], true: list[str]) -> dict[str, int]:
     """Wrong verdicts in all, and by kind: overlaps not seen, overlaps that are none, touch and clear
     mistaken."""
-    pairs = Counter(zip(found, true))
+    pairs = Counter(zip(verdicts, true))
     missed = sum(n for (f, t), n in pairs.items() if t == "overlap" != f)
     false = sum(n for (f, t), n in pairs.items() if f == "overlap" != t)
     wrong = sum(n for (f, t), n in pairs.items() if f != t)
@@ -125,8 +125,8 @@ def kernel_verdict(pair: Placed, made: Prepared) -> str:
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting, placed_box
 
     a, b = (placed_box(p, made.boxes[p.part.part_no]) for p in pair)
-    found = meeting(pair, (a, b), made.shapes, made.faces)
-    return "overlap" if found.overlap > OVERLAP_MM3 else "touch" if found.distance < TOUCH_MM else "clear"
+    met = meeting(pair, (a, b), made.shapes, made.faces)
+    return "overlap" if met.overlap > OVERLAP_MM3 else "touch" if met.distance < TOUCH_MM else "clear"
 
 
 def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
@@ -218,8 +218,8 @@ def _situations(plan: RunPlan) -> list[dict]:
     return rows
 
 
-def _said(found: list) -> list[tuple[str, str]]:
-    return sorted((f.check, f.message.split(" by ")[0]) for f in found)
+def _said(findings: list) -> list[tuple[str, str]]:
+    return sorted((f.check, f.message.split(" by ")[0]) for f in findings)
 
 
 def findings(rows: list[dict], situations: list[dict]) -> list[str]:

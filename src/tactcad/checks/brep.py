@@ -76,21 +76,23 @@ def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 def check_step_file(part: Part, shape: TopoDS_Shape, data: bytes) -> list[Finding]:
     """Findings on a STEP file of the part's shape. Raises ValueError where it cannot be read."""
     read = read_step(data)
-    found = [replace(f, message=f"read back from STEP: {f.message}") for f in check_brep(part, read)]
-    if any(f.check == "one-solid" for f in found):
-        return found
+    findings = [replace(f, message=f"read back from STEP: {f.message}") for f in check_brep(part, read)]
+    if any(f.check == "one-solid" for f in findings):
+        return findings
     back, meant = measure(read), measure(shape)
     for name, unit in (("volume", "mm3"), ("area", "mm2")):
         if abs(back[name] - meant[name]) > STEP_AGREES * meant[name]:
             message = f"{name} of {back[name]:.9g} {unit} read back from STEP, {meant[name]:.9g} written"
-            found.append(Finding(f"step-{name}", "fail", part.part_no, (), back[name], meant[name], message))
+            findings.append(
+                Finding(f"step-{name}", "fail", part.part_no, (), back[name], meant[name], message)
+            )
     for end, corner, wanted in zip(("least", "largest"), back["box"], meant["box"]):
         if (off := dist(corner, wanted)) > STEP_AGREES_MM:
             message = f"{end} corner {off:.3g} mm off its place, read back from STEP"
-            found.append(
+            findings.append(
                 Finding("step-box", "fail", part.part_no, tuple(corner), off, STEP_AGREES_MM, message)
             )
-    return found
+    return findings
 
 
 def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[Finding]:

@@ -65,11 +65,11 @@ class Report:
         subject = getattr(args[0], "part_no", None) or args[0].name
         start = time.perf_counter()
         try:
-            found = list(check(*args))  # one that yields does its work here
+            findings = list(check(*args))  # one that yields does its work here
         except CheckFailure as error:
-            found = [Finding(name, "flag", subject, (), 0, 0, f"not checked: {error}")]
+            findings = [Finding(name, "flag", subject, (), 0, 0, f"not checked: {error}")]
         seconds = time.perf_counter() - start
-        self.cases.append(Case(name, subject, seconds, tuple(found)))
+        self.cases.append(Case(name, subject, seconds, tuple(findings)))
 
 
 def as_record(report: Report) -> dict[str, Any]:

@@ -44,8 +44,8 @@ def _thin(
     check: str, part: Part, at: Vector, wall: float, limit: Machining, message: str
 ) -> Iterator[Finding]:
     """A wall is flagged where it is thinner than advised, and fails where no workshop would leave it."""
-    for found in at_least(check, part.part_no, wall, limit.wall, message, at):
-        yield found if wall < limit.wall_least - SAME else replace(found, severity="flag")
+    for finding in at_least(check, part.part_no, wall, limit.wall, message, at):
+        yield finding if wall < limit.wall_least - SAME else replace(finding, severity="flag")
 
 
 def _pockets(part: Part) -> Iterator[Pocket]:
@@ -230,14 +230,16 @@ def _between(a: Vector, b: Vector, c: Vector, d: Vector) -> float:
 
     u, v, w = sub(b, a), sub(d, c), sub(a, c)
     uu, vv, uv = dot(u, u), dot(v, v), dot(u, v)
-    found = [nearest(a, c, d), nearest(b, c, d), nearest(c, a, b), nearest(d, a, b)]
+    distances = [nearest(a, c, d), nearest(b, c, d), nearest(c, a, b), nearest(d, a, b)]
     cross = uu * vv - uv * uv
     if cross > 1e-12:
         s = (uv * dot(v, w) - vv * dot(u, w)) / cross
         t = (uu * dot(v, w) - uv * dot(u, w)) / cross
         if 0 <= s <= 1 and 0 <= t <= 1:
-            found.append(dist(tuple(x + s * y for x, y in zip(a, u)), tuple(x + t * y for x, y in zip(c, v))))
-    return min(found)
+            distances.append(
+                dist(tuple(x + s * y for x, y in zip(a, u)), tuple(x + t * y for x, y in zip(c, v)))
+            )
+    return min(distances)
 
 
 def _material_along(part: Part, at: Vector, axis: Vector) -> float:

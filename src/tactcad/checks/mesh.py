@@ -21,9 +21,9 @@ def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
     with making("mesh", part.part_no):
         vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
-    found = check_triangles(part.part_no, mesh)
-    if found:
-        return found
+    findings = check_triangles(part.part_no, mesh)
+    if findings:
+        return findings
     exact = measure(shape)
     bound = chord_bound(exact["area"])
     for check, value, meant, limit in (
@@ -32,8 +32,8 @@ def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
     ):
         if abs(value - meant) > limit:
             message = f"mesh has {value:.6g}, the solid {meant:.6g}; tessellation explains {limit:.3g}"
-            found.append(Finding(check, "fail", part.part_no, (), value, meant, message))
-    return found
+            findings.append(Finding(check, "fail", part.part_no, (), value, meant, message))
+    return findings
 
 
 # A chord of a turn w is shorter than its arc by w^2/24: 0.17 % at 0.2 rad; twice that where both

@@ -184,8 +184,8 @@ RULES: tuple[Callable[[_Cut], Iterator[Finding]], ...] = (inside_corners, slots,
 
 
 def _necks(cut: _Cut, within: str, below: float) -> list[Neck]:
-    found = necks(cut.outer, cut.openings, below - ROUNDING_MM)
-    return [neck for neck in found if neck.within == within]
+    narrow = necks(cut.outer, cut.openings, below - ROUNDING_MM)
+    return [neck for neck in narrow if neck.within == within]
 
 
 def _between(neck: Neck) -> str:

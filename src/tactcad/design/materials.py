@@ -154,7 +154,7 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
         raise InputError(
             "material.magnetic", f"not {name}'s", value=given["magnetic"], legal=f"{row.magnetic!r}"
         )
-    found = []
+    differing = []
     for key, spread in row.spread.items():
         value, table = given[key], getattr(row, key)
         if isclose(value, table, rel_tol=1e-9):
@@ -176,5 +176,5 @@ def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) 
                 value=value,
                 legal=f'within it, or with the value\'s source in [origin] as "{path}" = "..."',
             )
-        found.append(difference)
-    return tuple(found)
+        differing.append(difference)
+    return tuple(differing)

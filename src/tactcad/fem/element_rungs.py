@@ -21,15 +21,15 @@ def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
 
     columns = [np.broadcast_to(getattr(s, f.name), s.shape) for f in fields(s)]
     distinct, index = np.unique(np.column_stack(columns).astype(float), axis=0, return_inverse=True)
-    found = {"fem-plane": np.empty(len(distinct)), "fem-solid": np.empty(len(distinct))}
+    K = {"fem-plane": np.empty(len(distinct)), "fem-solid": np.empty(len(distinct))}
     for i, row in enumerate(distinct):
         one = HingeSection.of(**dict(zip((f.name for f in fields(s)), row)))
         shape, material = (
             reference_shape(one),
             (float(one.youngs_modulus), float(one.poisson), float(one.width)),
         )
-        found["fem-plane"][i] = solve_plane(shape, *material, density=1, order=PLANE_ORDER).stiffness
-        found["fem-solid"][i] = solve_solid(
+        K["fem-plane"][i] = solve_plane(shape, *material, density=1, order=PLANE_ORDER).stiffness
+        K["fem-solid"][i] = solve_solid(
             shape, *material, density=1, order=SOLID_ORDER, order_across=2
         ).stiffness
-    return {name: values[index.ravel()] for name, values in found.items()}
+    return {name: values[index.ravel()] for name, values in K.items()}

@@ -58,7 +58,7 @@ def solve(
 
     Raises CheckFailure where the design is impossible or the mesh cannot follow it.
     """
-    found = converged(s, rung, shape, mesh)
-    flat = readings(found.plane, grid_length)
-    read = solid_readings(found.plane, found.solids, grid_length) if found.solids else flat
-    return ElementResult(found.stiffness * float(friction.factor(s)), found.error, read, flat)
+    solution = converged(s, rung, shape, mesh)
+    flat = readings(solution.plane, grid_length)
+    read = solid_readings(solution.plane, solution.solids, grid_length) if solution.solids else flat
+    return ElementResult(solution.stiffness * float(friction.factor(s)), solution.error, read, flat)

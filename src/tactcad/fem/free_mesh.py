@@ -60,10 +60,10 @@ class _Size:
     largest: float
 
     def __call__(self, p: Array) -> Array:
-        found = np.full(len(p), self.largest)
+        size = np.full(len(p), self.largest)
         for seed in self.seeds:
-            found = np.minimum(found, seed.size + GROWTH * np.hypot(*(p - seed.at).T))
-        return found
+            size = np.minimum(size, seed.size + GROWTH * np.hypot(*(p - seed.at).T))
+        return size
 
 
 def _seeds(contours: tuple[Contour, ...], fine: tuple[Fine, ...]) -> tuple[Fine, ...]:

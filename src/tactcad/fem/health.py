@@ -63,11 +63,11 @@ def corner_angles(mesh: PlaneMesh) -> tuple[float, float]:
 
     Edges are curved: their tangents count, as the parabola through corner, middle and far corner has them.
     """
-    found = []
+    angles = []
     for u, v in ((0, 0), (0, 2), (2, 0), (2, 2)):
         corner = mesh.cells[:, u, v]
         along = 4.0 * mesh.cells[:, 1, v] - 3.0 * corner - mesh.cells[:, 2 - u, v]
         across = 4.0 * mesh.cells[:, u, 1] - 3.0 * corner - mesh.cells[:, u, 2 - v]
         cross = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
-        found.append(np.degrees(np.arctan2(np.abs(cross), np.sum(along * across, axis=1))))
-    return float(np.min(found)), float(np.max(found))
+        angles.append(np.degrees(np.arctan2(np.abs(cross), np.sum(along * across, axis=1))))
+    return float(np.min(angles)), float(np.max(angles))

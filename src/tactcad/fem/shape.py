@@ -160,18 +160,18 @@ def read(contour: Contour, load_x: float) -> ElementShape:
     arm_at_right = abs(load_x - x1) < abs(load_x - x0)
     fillets = _hinge_fillets(outer)
     floor_low, floor_high = fillets[0].low, fillets[0].high
-    found: dict[tuple[bool, bool], _SlotCorner] = {}
+    by_place: dict[tuple[bool, bool], _SlotCorner] = {}
     for corner in fillets:
         key = (corner.at_right == arm_at_right, corner.on_top)
-        if key in found:
+        if key in by_place:
             raise CheckFailure("the contour has more than one hinge of the same thickness")
-        found[key] = corner
-    sides = {on_top for _, on_top in found}
-    if len(found) != 2 * len(sides):
+        by_place[key] = corner
+    sides = {on_top for _, on_top in by_place}
+    if len(by_place) != 2 * len(sides):
         raise CheckFailure("a slot of the hinge does not have two rounded corners")
 
     def block(arm: bool) -> Block:
-        low, high = found.get((arm, False)), found.get((arm, True))
+        low, high = by_place.get((arm, False)), by_place.get((arm, True))
         return Block(
             (x1 if arm == arm_at_right else x0),
             low.face if low else floor_low,
@@ -227,7 +227,7 @@ def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
     else:
         return []
     floor = min((arc.start, arc.end), key=lambda p: abs(p[0] - cx))[1] if turn < 2.0 else None
-    found = []
+    slots = []
     for point, step in ends:
         at_right = point[0] > cx
         wall = outer.segments[(index + step) % count]
@@ -240,8 +240,8 @@ def _slot_corners(outer: Contour, arc: Arc, index: int) -> list[_SlotCorner]:
         if not other:
             continue
         low, high = (max(other), z) if on_top else (z, min(other))
-        found.append(_SlotCorner(point[0], r, at_right, on_top, low, high, face))
-    return found
+        slots.append(_SlotCorner(point[0], r, at_right, on_top, low, high, face))
+    return slots
 
 
 def _slot_above(arc: Arc) -> bool:

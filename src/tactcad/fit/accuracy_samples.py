@@ -83,13 +83,13 @@ def compute_range(
     """
     s, count = section(columns), len(columns["two_sided"])
     names = ("plane_stiffness", "solid_mesh_2", "solid_mesh_3", "solid_mesh_4", *SECONDS.values())
-    found = {name: np.full(count, math.nan) for name in names}
+    computed = {name: np.full(count, math.nan) for name in names}
     for i in range(count):
         for name, value in results(s.rows(i), meshes(i)).items():
-            found[name][i] = value
+            computed[name][i] = value
         if (i + 1) % 20 == 0:
             report(f"{i + 1} of {count} designs")
-    return columns | found
+    return columns | computed
 
 
 def with_width_factor(columns: Columns) -> Columns:

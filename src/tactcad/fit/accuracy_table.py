@@ -107,12 +107,12 @@ def closed_form_seconds(ladder_data: dict, repeats: int = 7) -> dict[str, tuple[
 
     many = section(draw_box(200, seed=0)).rows(np.arange(TIMED) % 200)
     one = many.rows(0)
-    found = {}
+    seconds = {}
     for rung in REGISTER:
         if form := rung.compliance:
             call, table = (min(_seconds(form, s, ladder_data) for _ in range(repeats)) for s in (one, many))
-            found[rung.name] = (call, table / TIMED)
-    return {rung: (float(f"{alone:.2g}"), float(f"{each:.2g}")) for rung, (alone, each) in found.items()}
+            seconds[rung.name] = (call, table / TIMED)
+    return {rung: (float(f"{alone:.2g}"), float(f"{each:.2g}")) for rung, (alone, each) in seconds.items()}
 
 
 def _seconds(form: Callable[[HingeSection, dict], Array], s: HingeSection, ladder_data: dict) -> float:

@@ -114,15 +114,15 @@ def compute_corners(columns: Columns, solids: int, report: Callable[[str], None]
     Solids for the first `solids`, and of the others for those of few elements; K3D/K2D is NaN else.
     """
     s, count = section(columns), len(columns["two_sided"])
-    found = {"plane_stiffness": np.empty(count), "width_factor": np.full(count, math.nan)}
+    results = {"plane_stiffness": np.empty(count), "width_factor": np.full(count, math.nan)}
     for i in range(count):
         one = s.rows(i)
-        plane = found["plane_stiffness"][i] = plane_stiffness(one)
+        plane = results["plane_stiffness"][i] = plane_stiffness(one)
         if i < solids or few_elements(one):
-            found["width_factor"][i] = solid_stiffness(one) / (plane * float(one.width))
+            results["width_factor"][i] = solid_stiffness(one) / (plane * float(one.width))
         if (i + 1) % 20 == 0:
             report(f"{i + 1} of {count} designs")
-    return columns | found
+    return columns | results
 
 
 def few_elements(s: HingeSection) -> bool:

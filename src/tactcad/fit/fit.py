@@ -257,37 +257,37 @@ def _report(data: dict, samples: dict[str, Columns], today: date) -> dict:
 def _errors(data: dict, rows: Columns, side: str, strains: bool) -> dict[str, dict[str, float | None]]:
     """rms, worst and number of each quantity's relative error over the rows; strains only where they were
     read."""
-    found = _stiffness_errors(data, rows, side) | (_strain_errors(data, rows, side) if strains else {})
-    return {name: _summary(e) for name, e in found.items()}
+    errors = _stiffness_errors(data, rows, side) | (_strain_errors(data, rows, side) if strains else {})
+    return {name: _summary(e) for name, e in errors.items()}
 
 
 def _stiffness_errors(data: dict, rows: Columns, side: str) -> dict[str, Array]:
     s, K2 = section(rows), rows["plane_stiffness"] * rows["width"]
     K3, flat = K2 * rows["width_factor"], plane.parts(s, data["root"][side])
-    found = {
+    errors = {
         f"{rung.name}, against plane elements": 1.0 / (rung.compliance(s, data) * K2) - 1.0
         for rung in REGISTER
         if rung.compliance and not rung.fitted
     }
-    found["plane, against plane elements"] = 1.0 / (flat.whole * K2) - 1.0
-    found["plane, against solid elements"] = 1.0 / (flat.whole * K3) - 1.0
+    errors["plane, against plane elements"] = 1.0 / (flat.whole * K2) - 1.0
+    errors["plane, against solid elements"] = 1.0 / (flat.whole * K3) - 1.0
     curled = solid.curled(s, flat, data["width"][side])
-    found["solid, against solid elements"] = 1.0 / (curled * K3) - 1.0
-    found["width factor"] = flat.whole / curled / rows["width_factor"] - 1.0
-    return found
+    errors["solid, against solid elements"] = 1.0 / (curled * K3) - 1.0
+    errors["width factor"] = flat.whole / curled / rows["width_factor"] - 1.0
+    return errors
 
 
 def _strain_errors(data: dict, rows: Columns, side: str) -> dict[str, Array]:
-    s, root, found = section(rows), data["root"][side], {}
-    found["peak strain at the fillet"] = (
+    s, root, errors = section(rows), data["root"][side], {}
+    errors["peak strain at the fillet"] = (
         strain.fillet_factor(s, data["fillet"][side]) / rows["slot_peak"] - 1.0
     )
     if side == "one":
-        found["peak strain on the flat face"] = (
+        errors["peak strain on the flat face"] = (
             strain.face_factor(s, data["face"]["one"]) / rows["flat_peak"] - 1.0
         )
     form = strain.two_sided_grid if side == "two" else strain.one_sided_grid
-    found["mean strain under a grid"] = np.concatenate(
+    errors["mean strain under a grid"] = np.concatenate(
         [np.empty(0)]
         + [
             form(section(r), grid * r["hinge_length"], data["grid"][side], _mean_root(section(r), root))
@@ -298,10 +298,10 @@ def _strain_errors(data: dict, rows: Columns, side: str) -> dict[str, Array]:
     )
     for at, column in MID_WIDTH.items():
         measured = rows[column] * rows["width_factor"]
-        found[f"strain per deflection at mid-width, {at}"] = (
+        errors[f"strain per deflection at mid-width, {at}"] = (
             strain.mid_width(s, at, data[f"mid-width {at}"][side]) / measured - 1.0
         )
-    return found
+    return errors
 
 
 def _summary(error: Array) -> dict[str, float | None]:

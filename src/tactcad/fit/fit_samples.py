@@ -134,11 +134,11 @@ def section(columns: Columns) -> HingeSection:
 def plane_results(s: HingeSection) -> dict[str, float]:
     """One design (scalars): plane-stress stiffness of unit width and modulus, face strains over nominal."""
     shape, nu, L, t = reference_shape(s), float(s.poisson), float(s.load_arm), float(s.hinge_thickness)
-    found = converged_plane(shape, 1.0, nu, 1.0)
+    plane = converged_plane(shape, 1.0, nu, 1.0)
     nominal = 6.0 * L / (t * t)
-    slot, flat = face_strain(found.plane, "slot"), face_strain(found.plane, "flat")
+    slot, flat = face_strain(plane.plane, "slot"), face_strain(plane.plane, "flat")
     result = {
-        "plane_stiffness": found.stiffness,
+        "plane_stiffness": plane.stiffness,
         "slot_peak": slot.peak / nominal,
         "flat_peak": flat.peak / nominal,
         "flat_centre": flat.centre / nominal,
@@ -153,11 +153,11 @@ def plane_results(s: HingeSection) -> dict[str, float]:
 def solid_results(s: HingeSection) -> dict[str, float]:
     """One design (scalars): K3D/K2D of rung fem-solid, and mid-width over plane strain, per newton."""
     shape, nu, b = reference_shape(s), float(s.poisson), float(s.width)
-    found = converged_solid(shape, 1.0, nu, b)
+    solid = converged_solid(shape, 1.0, nu, b)
     grid = 0.5 * float(s.hinge_length)
-    over_plane = solid_readings(found.plane, found.solids, grid) / readings(found.plane, grid)
+    over_plane = solid_readings(solid.plane, solid.solids, grid) / readings(solid.plane, grid)
     return {
-        "width_factor": found.stiffness / converged_plane(shape, 1.0, nu, b).stiffness,
+        "width_factor": solid.stiffness / converged_plane(shape, 1.0, nu, b).stiffness,
         "mid_grid_ratio": float(over_plane.gauge),
         "mid_peak_ratio": over_plane.fillet_strain,
     }

@@ -69,8 +69,8 @@ def _fitted(s: HingeSection, measured: Array) -> dict[str, list[float]]:
     terms = strain.share_terms(s, k) * (s.poisson**2 / measured)[:, None]
     wanted = (measured - 1.0) / measured
     normal = terms.T @ terms + RIDGE * np.mean(terms**2) * len(terms) * np.eye(terms.shape[1])
-    found = k | {"coefficients": np.linalg.solve(normal, terms.T @ wanted).tolist()}
-    return {name: [float(f"{value:.6g}") for value in values] for name, values in found.items()}
+    constants = k | {"coefficients": np.linalg.solve(normal, terms.T @ wanted).tolist()}
+    return {name: [float(f"{value:.6g}") for value in values] for name, values in constants.items()}
 
 
 def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array]]:
@@ -81,8 +81,8 @@ def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array
         known = np.flatnonzero(np.isfinite(rows[f"solid_gauge_{grid:g}"]))
         error = np.full(s.shape, math.nan)
         lengths = grid * slot[known] * (1.0 - 1e-9)
-        found = strain.gauge(s.rows(known), 1.0, lengths, "solid")
-        error[known] = found / rows[f"solid_gauge_{grid:g}"][known] - 1.0
+        mean = strain.gauge(s.rows(known), 1.0, lengths, "solid")
+        error[known] = mean / rows[f"solid_gauge_{grid:g}"][known] - 1.0
         gauges["gauge" if grid <= strain_errors.LONG_GRID else "long gauge"].append(error)
     stress = strain.peak_stress(s, 1.0) * strain.mid_width_share(s, share)
     return gauges | {

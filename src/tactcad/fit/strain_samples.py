@@ -95,9 +95,9 @@ def results(s: HingeSection) -> dict[str, float]:
     return flat | _named("solid", readings(plane, lengths) * against)
 
 
-def _named(model: str, found: SurfaceReadings) -> dict[str, float]:
-    gauges = {f"{model}_gauge_{grid:g}": float(value) for grid, value in zip(GRIDS, found.gauge)}
-    return {f"{model}_{name}": float(getattr(found, name)) for name in NAMES} | gauges
+def _named(model: str, strains: SurfaceReadings) -> dict[str, float]:
+    gauges = {f"{model}_gauge_{grid:g}": float(value) for grid, value in zip(GRIDS, strains.gauge)}
+    return {f"{model}_{name}": float(getattr(strains, name)) for name in NAMES} | gauges
 
 
 def compute(count: int) -> Columns:
@@ -105,11 +105,11 @@ def compute(count: int) -> Columns:
     none."""
     columns = {name: values[:count] for name, values in draw(COUNT).items()}
     s = section(columns)
-    found = {name: np.full(count, math.nan) for name in COLUMNS}
+    computed = {name: np.full(count, math.nan) for name in COLUMNS}
     for i in range(count):
         for name, value in results(s.rows(i)).items():
-            found[name][i] = value
-    return columns | found
+            computed[name][i] = value
+    return columns | computed
 
 
 if __name__ == "__main__":

@@ -85,12 +85,14 @@ def half_widths(s: HingeSection, tolerance: Tolerance, rung: str = ladder.DEFAUL
     """
     names = dict.fromkeys((*DIMENSIONS.values(), *CUT_FACES))
     per_mm = {name: elasticity(s, name, rung) / getattr(s, name) for name in names}
-    found = {field: getattr(tolerance, field) * per_mm[name] for field, name in DIMENSIONS.items()}
-    found["youngs_modulus"] = np.full(s.shape, tolerance.youngs_modulus)  # K goes with it
-    found["recast_layer"] = tolerance.recast_layer * sum(by * per_mm[name] for name, by in CUT_FACES.items())
+    by_field = {field: getattr(tolerance, field) * per_mm[name] for field, name in DIMENSIONS.items()}
+    by_field["youngs_modulus"] = np.full(s.shape, tolerance.youngs_modulus)  # K goes with it
+    by_field["recast_layer"] = tolerance.recast_layer * sum(
+        by * per_mm[name] for name, by in CUT_FACES.items()
+    )
     K = ladder.stiffness(s, rung)
-    found["clamp_compliance"] = np.log(in_clamp(s, K, tolerance.clamp_compliance) / K)
-    return {field: np.broadcast_to(np.abs(half), s.shape) for field, half in found.items()}
+    by_field["clamp_compliance"] = np.log(in_clamp(s, K, tolerance.clamp_compliance) / K)
+    return {field: np.broadcast_to(np.abs(half), s.shape) for field, half in by_field.items()}
 
 
 def together(shares: dict[str, Array]) -> Array:

@@ -44,14 +44,14 @@ def size(s: HingeSection, stiffness: float, parameter: str, rung: str = ladder.D
     result = ladder.evaluate(s.with_(**{parameter: values}), rung)
     if not result.valid.any():
         raise CheckFailure(f"no {parameter} lies in the range of rung {rung}: {result.reason[GRID // 2]}")
-    reached, found = values[result.valid], result.stiffness[result.valid]
-    if not found.min() <= stiffness <= found.max():
+    reached, reachable = values[result.valid], result.stiffness[result.valid]
+    if not reachable.min() <= stiffness <= reachable.max():
         raise CheckFailure(
             f"{stiffness:g} N/mm is out of reach: with {parameter} from {reached[0]:.3g} to "
-            f"{reached[-1]:.3g} mm, "
-            f"the range of rung {rung}, stiffness goes from {found.min():.4g} to {found.max():.4g} N/mm"
+            f"{reached[-1]:.3g} mm, the range of rung {rung}, "
+            f"stiffness goes from {reachable.min():.4g} to {reachable.max():.4g} N/mm"
         )
-    at = np.flatnonzero(np.diff(np.sign(found - stiffness)) != 0)[0] if found[0] != stiffness else 0
+    at = np.flatnonzero(np.diff(np.sign(reachable - stiffness)) != 0)[0] if reachable[0] != stiffness else 0
     return _bisect(
         lambda v: float(ladder.stiffness(s.with_(**{parameter: v}), rung)) - stiffness,
         reached[at],

@@ -64,8 +64,8 @@ def in_zone(bounds: dict[str, list[float | None]], s: HingeSection) -> np.ndarra
 
 
 def _stated(s: HingeSection, name: str) -> Array:
-    found = np.full(s.shape, np.nan)
+    error = np.full(s.shape, np.nan)
     for zone in strain_data()["zones"]:
         inside = in_zone(zone["bounds"], s) & (s.two_sided == SIDES[zone["sides"]])
-        found[inside] = np.nan if zone["stated"][name] is None else zone["stated"][name]
-    return np.where(validity.reasons(s, "solid") == "", found, np.nan)
+        error[inside] = np.nan if zone["stated"][name] is None else zone["stated"][name]
+    return np.where(validity.reasons(s, "solid") == "", error, np.nan)

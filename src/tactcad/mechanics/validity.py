@@ -170,7 +170,7 @@ def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
 
 def reasons(s: HingeSection, rung: str) -> np.ndarray:
     """For each design the first rule it breaks, or an empty string; array of str of the section's shape."""
-    found = np.full(s.shape, "", dtype=object)
+    reason = np.full(s.shape, "", dtype=object)
     for name, mask in reversed(broken_rules(s, rung).items()):
-        found[mask] = name
-    return found
+        reason[mask] = name
+    return reason

@@ -65,9 +65,9 @@ class BudgetPair:
 
     def change(self, name: str, half: float) -> tuple[float, float]:
         """Half-width of ln K of both arms for a half-width (mm) of one dimension."""
-        found = []
+        changes = []
         for s in (self.short, self.long):
             own = getattr(s, name)
             both = [ladder.stiffness(s.with_(**{name: own + sign * half})) for sign in (-1, 1)]
-            found.append(float(abs(np.log(both[0] / both[1])).item()) / 2)
-        return found[0], found[1]
+            changes.append(float(abs(np.log(both[0] / both[1])).item()) / 2)
+        return changes[0], changes[1]

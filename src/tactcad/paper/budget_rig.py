@@ -171,7 +171,7 @@ def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: fl
     reference = int(array.rows(np.array([data.table1.element[data.reference]]))[0])
     K[reference] = pair.K_r
     measuring = int(np.argmin(np.abs(np.log(K / pair.K_m))))
-    found = coupling(
+    shares = coupling(
         K,
         array.pad_x,
         array.pad_y,
@@ -182,4 +182,4 @@ def _coupled(pair: BudgetPair, data: Published, array: ArrayModel, thickness: fl
         thickness,
         array.rig.sample_poisson,
     )
-    return float(found.ratio[measuring])
+    return float(shares.ratio[measuring])

@@ -77,17 +77,17 @@ def figure_6(data: Published, array: ArrayModel, supported: float, rng: np.rando
         K = truth.stiffness.copy()
         K[reference] = K_r
         here = replace(truth, stiffness=K)
-        found, slopes = [], []
+        ratios, slopes = [], []
         for i in range(REPEATS):
             h = None if height is None else height[i]
             signal = grasp_signals(here, load, x, noise, rng, h)
             d = (signal - here.zero_signal[:, None]) / here.signal_per_deflection[:, None]
-            found.append(d[rows] / d[reference])
+            ratios.append(d[rows] / d[reference])
             g = (d - d.mean(1, keepdims=True)) @ (load - load.mean())
             slopes.append(g[rows] / g[reference])
         true = lumped.deflection_ratio(K_r, K_m, x)
         _, clean = approach(load, K, x)
-        result = Simulated(K_r, found[0], np.array(found).std(0), true, clean[reference] * 1e3)
+        result = Simulated(K_r, ratios[0], np.array(ratios).std(0), true, clean[reference] * 1e3)
         return result, np.array(slopes).mean(0)
 
     printed, _ = simulated(data.figure["reference_stiffness"], None)

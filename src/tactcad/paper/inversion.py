@@ -77,12 +77,12 @@ def invert(study: Table2Study) -> Inversion:
 def _left_out(study: Table2Study) -> np.ndarray:
     """No reading, and none of its element or sample, has a part in the K_r by which it is inverted."""
     k, x, R = study.measuring, study.object_printed, study.ratio
-    found = np.empty_like(R)
+    K_obj = np.empty_like(R)
     for i, j in np.ndindex(R.shape):
         rows, columns = np.arange(len(k)) != i, np.arange(len(x)) != j
         K_r = solve("K_r free", study.reference_printed, k[rows], x[columns], R[np.ix_(rows, columns)])[0]
-        found[i, j] = lumped.object_stiffness(K_r, k[i], R[i, j])
-    return found
+        K_obj[i, j] = lumped.object_stiffness(K_r, k[i], R[i, j])
+    return K_obj
 
 
 def _estimate(study: Table2Study, K_r: float) -> np.ndarray:

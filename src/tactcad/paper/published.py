@@ -63,10 +63,10 @@ class Table1:
 
     def index(self, number: int) -> int:
         """Row of an element by its number."""
-        found = np.flatnonzero(self.element == number)
-        if not len(found):
+        rows = np.flatnonzero(self.element == number)
+        if not len(rows):
             raise InputError("table 1", f"element {number} is not there", legal=str(self.element.tolist()))
-        return int(found[0])
+        return int(rows[0])
 
 
 @dataclass(frozen=True)

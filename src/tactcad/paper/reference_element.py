@@ -180,7 +180,7 @@ def _explanations(
     q_thick = float(gauge_signal.foil_strain_per_deflection(s.with_(hinge_thickness=[t]), array.gauge)[0])
     scale = K / nominal
     pad, wire = array.pad_length / 2, array.tolerance.hinge_thickness
-    found = [
+    candidates = [
         (
             "load point",
             L - L0,
@@ -220,7 +220,7 @@ def _explanations(
             float(np.log(k_v / v)),
             float(np.log(k_v / K / (v / K))),
         )
-        for name, size, unit, possible, limit, v in found
+        for name, size, unit, possible, limit, v in candidates
     )
 
 
@@ -239,8 +239,8 @@ def _from_k_v(
     q_grid = gauge_signal.foil_strain_per_deflection(usable, array.gauge)
     order = np.argsort(q_grid)
     log_q, log_k = np.log(q_grid[order]), np.log(result.stiffness[result.valid][order])
-    found = [
+    stiffness = [
         float(np.exp(np.interp(np.log(q) + shift * scatter, log_q, log_k, left=-np.inf, right=np.inf)))
         for shift in (0.0, -1.96, 1.96)
     ]
-    return found[0], found[1], found[2]
+    return stiffness[0], stiffness[1], stiffness[2]

@@ -129,7 +129,7 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
     """
     own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
     factor = np.geomspace(least, most, 400)
-    found = np.full(own.shape, np.nan)
+    solution = np.full(own.shape, np.nan)
     for i in range(len(own)):
         one = s.rows([i])
 
@@ -146,8 +146,8 @@ def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, 
         root = np.log(factor[j]) - scan[j] / slope
         for _ in range(4):
             root -= misfit(root)[0] / slope
-        found[i] = own[i] * np.exp(root)
-    return found.reshape(s.shape)
+        solution[i] = own[i] * np.exp(root)
+    return solution.reshape(s.shape)
 
 
 def spread(

@@ -63,7 +63,7 @@ def fitting_rules(scene: str) -> dict[str, Rule]:
 def _misfit(design: Design, scene: str) -> Finding | None:
     """Why the scene's rig cannot take this array; None where it can."""
     layout = Layout(design)
-    return next((found for rule in fitting_rules(scene).values() for found in rule(layout)), None)
+    return next((finding for rule in fitting_rules(scene).values() for finding in rule(layout)), None)
 
 
 def _with_tables(design: Design) -> list[str]:

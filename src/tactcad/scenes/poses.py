@@ -70,12 +70,12 @@ def pose_of(given: Sequence[str], design: Design) -> Pose | None:
         low, high = limits[key]
         legal = f"{key} from {low:g} to {high:g}"
         try:
-            found = as_whole(value) if isinstance(low, int) else as_number(value)
+            number = as_whole(value) if isinstance(low, int) else as_number(value)
         except ValueError:
             raise InputError("--pose", "not a number", value=text, legal=legal) from None
-        if not low <= found <= high:
+        if not low <= number <= high:
             raise InputError("--pose", "out of range", value=text, legal=legal)
-        if 0 < abs(found) < LEAST:
+        if 0 < abs(number) < LEAST:
             raise InputError("--pose", "below a micrometre", value=text, legal=f"0, or {LEAST:g} mm and more")
-        values[key] = found
+        values[key] = number
     return Pose(**values) if values else None

@@ -266,7 +266,7 @@ def visible_edges(shape: Shape, eye: Point) -> list:
     removal.Update()
     result = HLRBRep_PolyHLRToShape()
     result.Update(removal)
-    kept = [found for found in (result.VCompound(), result.OutLineVCompound()) if found is not None]
+    kept = [edges for edges in (result.VCompound(), result.OutLineVCompound()) if edges is not None]
     for compound in kept:
         BRepLib.BuildCurves3d_s(compound)
     return [edge for compound in kept for edge in Compound(compound).edges()]

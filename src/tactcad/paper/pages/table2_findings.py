@@ -34,7 +34,7 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
 
     i = int(np.flatnonzero(r.element == e.element)[0])
     rest = next(f for f in s.without_stiffest if f.model == "K_r free")
-    found = [
+    collected = [
         of("Table 2, all pairs", s.supported),
         of("Table 2 without the stiffest pair", rest),
         of("Table 2, K_obj as its ratios imply", s.with_implied_object),
@@ -51,10 +51,10 @@ def witnesses(s: Table2Study, r: Residuals, e: ReferenceElement) -> tuple[Witnes
     ]
     if e.twin is not None:
         K = float(r.measured[np.flatnonzero(r.element == e.twin)[0]])
-        found.append(Witness(f"Table 1's K of no. {e.twin}, of equal arm", K, K, K))
-    found.append(Witness(f"K_v of no. {e.element}, load point free", *e.from_k_v_load_point))
-    found.append(Witness(f"K_v of no. {e.element}, thickness free", *e.from_k_v_thickness))
-    return tuple(found)
+        collected.append(Witness(f"Table 1's K of no. {e.twin}, of equal arm", K, K, K))
+    collected.append(Witness(f"K_v of no. {e.element}, load point free", *e.from_k_v_load_point))
+    collected.append(Witness(f"K_v of no. {e.element}, thickness free", *e.from_k_v_thickness))
+    return tuple(collected)
 
 
 def findings(s: Table2Study, data: Published, who: tuple[Witness, ...]) -> tuple[str, ...]:

@@ -66,4 +66,4 @@ def refuse_broken(design: Design) -> None:
 
 def misfit(layout: Layout, scene: str) -> Finding | None:
     """Why the scene's rig cannot take this array; None where it can."""
-    return next((found for rule in scene_rules(scene).values() for found in rule(layout)), None)
+    return next((finding for rule in scene_rules(scene).values() for finding in rule(layout)), None)

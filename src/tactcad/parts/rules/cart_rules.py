@@ -23,11 +23,11 @@ def on_cart(find: Callable[[CartLayout], Iterable[Finding]]) -> Find:
     """A rule on cart, holder and sample: it says nothing where the design has none."""
 
     @wraps(find)
-    def found(layout: Layout) -> Iterable[Finding]:
+    def where_present(layout: Layout) -> Iterable[Finding]:
         rig = cart_layout(layout.design)
         return find(rig) if rig is not None else ()
 
-    return found
+    return where_present
 
 
 @rule(after="stop_land_above_arm")
