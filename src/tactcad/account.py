@@ -1,7 +1,7 @@
 """What a run made, how often and how long it took, and what it loaded and held: for `--profile`.
 
-Makers of what is dear (solids, meshes, finite-element solutions, scenes) say so through `making`; where
-nobody has asked for an account that costs a comparison.
+Code that makes something expensive (solids, meshes, finite-element solutions, scenes) reports it through
+`making`; without a profile that costs one comparison.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Made:
 
 @dataclass
 class Account:
-    """Of one run; `made` in the order of finishing."""
+    """What one run made; `made` in the order of finishing."""
 
     made: list[Made] = field(default_factory=list)
     started: float = field(default_factory=time.perf_counter)
@@ -70,7 +70,7 @@ _open: Account | None = None
 
 @contextmanager
 def account() -> Iterator[Account]:
-    """Whatever is made inside is put down in the account that this yields."""
+    """Everything made inside the block is entered in the account that this yields."""
     global _open
     before, _open = _open, Account()
     try:
@@ -81,7 +81,15 @@ def account() -> Iterator[Account]:
 
 @contextmanager
 def making(kind: str, name: str) -> Iterator[None]:
-    """Around the making of one thing; what fails is not put down."""
+    """Enter the making of one thing in the open account, if any; not where it fails.
+
+    Parameters
+    ----------
+    kind
+        "solid", "mesh", "elements" or "scene".
+    name
+        What was made; things of one name are counted together.
+    """
     own = _open
     if own is None:
         yield
@@ -96,7 +104,7 @@ _listener: Callable[[str], None] | None = None
 
 @contextmanager
 def listening(hear: Callable[[str], None]) -> Iterator[None]:
-    """`hear` is told how far a long piece of work has come, by whoever does it inside."""
+    """Inside the block `hear` is called with every message of `under_way`."""
     global _listener
     before, _listener = _listener, hear
     try:
@@ -106,7 +114,7 @@ def listening(hear: Callable[[str], None]) -> Iterator[None]:
 
 
 def under_way(how_far: str) -> None:
-    """Say how far a long piece of work has come ("strip 3 of 7"); costs nothing where nobody listens."""
+    """Report how far a long piece of work has come ("strip 3 of 7"); does nothing where nobody listens."""
     if _listener:
         _listener(how_far)
 
@@ -138,7 +146,7 @@ def _loaded() -> dict[str, int]:
 
 
 def _peak_memory_mb() -> float:
-    """Most memory that this process ever held."""
+    """Largest memory that this process has used."""
     kibibytes = _high_water()
     if kibibytes is None:
         import resource  # not on every system, and only a profile needs it

@@ -1,4 +1,4 @@
-"""Lines, arcs and closed contours in mm: the truth that every output is made from.
+"""Lines, arcs and closed contours in mm, from which every output is made.
 
 In: exact points, radii, corners. Out: contours, their area and moments, cuts, distances, all in
 closed form.

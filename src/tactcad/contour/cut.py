@@ -39,13 +39,28 @@ def cut(
     kept = [p for p in pieces if side * (_middle(p)[i] - at) > ON_LINE_MM]
     if kept and all(side * (_middle(p)[i] - at) > -ON_LINE_MM for p in pieces):
         return (outline,)  # nothing lies beyond the line
-    # along the cut the area lies to the left: up at the right-hand end of what is kept "below" in x
+    # the area lies to the left of the cut: up at the right-hand end of what is kept "below" in x
     forward = -side if axis == "x" else side
     return _closed(_chains(kept), 1 - i, forward, name)
 
 
 def between(contour: Contour, x0: float, x1: float, names: tuple[str, str] = ("cut", "cut")) -> Contour:
-    """The part of the contour with x0 <= x <= x1, mm. Raises ValueError where that is not one piece."""
+    """The part of a contour between two lines parallel to y, as one closed contour.
+
+    Parameters
+    ----------
+    contour
+        Outline to cut.
+    x0, x1
+        The lines, mm; x0 < x1.
+    names
+        Of the lines that then lie along the two cuts.
+
+    Raises
+    ------
+    ValueError
+        Where that is not one piece.
+    """
     parts = [q for p in cut(contour, "x", x0, "above", names[0]) for q in cut(p, "x", x1, "below", names[1])]
     if len(parts) != 1:
         raise ValueError(f"between x = {x0:.6g} and {x1:.6g} the contour has {len(parts)} pieces")

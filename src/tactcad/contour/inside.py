@@ -13,7 +13,9 @@ from .segment import Line, Point, Segment
 
 
 def side(contour: Contour, p: Point) -> int:
-    """1 inside, 0 on the contour within rounding, -1 outside; the direction of the chain does not matter."""
+    """1 where p is inside, 0 on the contour within rounding, -1 outside; the direction of the chain does
+    not matter.
+    """
     if min(distance_to(s, p) for s in contour) <= ROUNDING_MM:
         return 0
     return 1 if round(sum(_turn(s, p) for s in contour) / tau) else -1
@@ -66,9 +68,10 @@ def place_for_circle(contour: Contour, diameter: float, within: float = 1e-3) ->
 
 
 def _turn(s: Segment, p: Point) -> float:
-    """Angle by which the view from p turns along the segment, radians, counter-clockwise positive.
+    """Angle by which the direction from p to a point turns as it moves along the segment, radians, positive
+    ccw.
 
-    An arc turns it as its chord does, and by a full turn more where p lies between arc and chord.
+    For an arc it is that of its chord, and a full turn more where p lies between arc and chord.
     """
     if not isinstance(s, Line) and s.start == s.end:
         inside = dist(p, s.centre) < s.radius

@@ -9,13 +9,13 @@ from .contour import Contour
 from .nearest import distance, meeting_points
 from .segment import Point, Segment
 
-# Neighbours that are tangent within rounding seem to meet again up to sqrt(2 r x rounding) beside their
+# Neighbours that are tangent within rounding are found to meet again up to sqrt(2 r x rounding) from their
 # joint.
 JOINT_MM = 1e-4
 
 
 def self_intersections(contour: Contour) -> list[Point]:
-    """Points in which pieces meet anywhere but in the joint that neighbours share (mm)."""
+    """Points (mm) in which pieces meet, other than the joint of two neighbours."""
     return [
         p
         for (i, a), (j, b) in combinations(enumerate(contour), 2)
@@ -30,7 +30,7 @@ def crossings(one: Contour, other: Contour) -> list[Point]:
 
 
 def smallest_distance(contour: Contour) -> float:
-    """Smallest distance of two pieces that are no neighbours, mm; infinite where there are none."""
+    """Smallest distance of two pieces that are not neighbours, mm; infinite where there are none."""
     pairs = combinations(enumerate(contour), 2)
     return min(
         (distance(a, b) for (i, a), (j, b) in pairs if not _joints(contour, i, j)), default=float("inf")

@@ -10,10 +10,10 @@ from .segment import Arc, Line, Point, Segment
 
 
 def feet(s: Segment, p: Point) -> list[Point]:
-    """Points of the segment at which the line from p meets it at a right angle; ends count.
+    """Feet of the perpendiculars from p on the segment; its ends count too.
 
-    For an arc these are the near and the far side; from its own centre every point is one, and its middle is
-    given.
+    On an arc these are the nearest and the farthest point; for p at its own centre, where every point is one,
+    its middle.
     """
     if isinstance(s, Line):
         foot = s.at(_along(s, p))
@@ -41,7 +41,8 @@ def distance_to(s: Segment, p: Point) -> float:
 
 
 def common_normals(a: Segment, b: Segment) -> Iterator[tuple[Point, Point]]:
-    """Pairs (on a, on b) whose connection is normal to both, an end counting as normal to everything.
+    """Pairs of points (on a, on b) whose connection is normal to both segments; an end counts as normal to
+    all.
 
     The nearest points of two segments that do not meet are among them.
     """
@@ -109,7 +110,9 @@ def distance(a: Segment, b: Segment) -> float:
 
 
 def meeting_points(a: Segment, b: Segment) -> list[Point]:
-    """Points in which two segments meet, within rounding; of a stretch in common, its ends."""
+    """Points in which two segments meet, within rounding; where they overlap, the ends of the common
+    stretch.
+    """
     if not _discs_meet(a, b):
         return []
     if isinstance(a, Line):

@@ -18,7 +18,7 @@ from .nearest import common_normals, meeting_points
 from .rounded import ROUNDING_MM
 from .segment import Arc, Line, Point, Segment
 
-# Directions that differ by less are one: sine of the angle, above the rounding of short segments' tangents.
+# Directions closer than this are taken as equal: sine of the angle, above the rounding of short tangents.
 SAME_DIRECTION = 1e-6
 
 
@@ -84,7 +84,7 @@ def necks(outer: Contour, openings: Sequence[Contour] = (), below: float = float
 
 
 def _same(a: Neck, b: Neck) -> bool:
-    """Whether two necks are one: equally wide, and on the same segments or on their neighbours."""
+    """Whether two necks are the same place: equally wide, and on the same segments or on their neighbours."""
 
     def joined(s: Segment, t: Segment) -> bool:
         return s == t or s.end == t.start or s.start == t.end
@@ -124,8 +124,9 @@ def direction(s: Segment, p: Point) -> Point:
 
 
 def _side(piece: _Piece, p: Point, q: Point) -> Literal["material", "void"] | None:
-    """Which way the connection from p on the piece to q leaves it; None where it does not leave it along a
-    normal."""
+    """On which side of the piece the connection from p to q leaves it; None where it does not leave along
+    a normal.
+    """
     s = piece.segment
     here = direction(s, p)
     before = piece.arriving if dist(p, s.start) <= ROUNDING_MM else here

@@ -9,14 +9,15 @@ from dataclasses import dataclass
 from math import atan2, cos, hypot, pi, sin, tau
 
 Point = tuple[float, float]
-# mm, a tenth of the finest step that any shop works to (0.01 mm); and what decimals lose when they are added
-# up.
+# mm: a tenth of the finest step that any shop works to (0.01 mm), with room for the rounding of sums of
+# decimals.
 LEAST_EDGE, LOST = 1e-3, 1e-9
 
 
 def is_sliver(length: float) -> bool:
-    """Whether an edge of that length (mm) is shorter than wire and kernel make: the one judge of rules and
-    checks."""
+    """Whether an edge of that length (mm) is too short for wire and kernel; rules and checks both ask
+    here.
+    """
     return length < LEAST_EDGE - LOST
 
 

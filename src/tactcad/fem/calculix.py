@@ -68,13 +68,39 @@ def run(path: Path, force: Array) -> float:
 
 
 def plane_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, folder: Path) -> float:
-    """Tip stiffness by CalculiX's CPS8, N/mm."""
+    """Tip stiffness by CalculiX's plane-stress elements CPS8, N/mm.
+
+    Parameters
+    ----------
+    mesh
+        Of order 2.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    folder
+        Existing folder for CalculiX's files.
+    """
     force = write_plane(mesh, E, nu, folder / "plane.inp")
     return width / THIN / ((2.0 if mesh.half else 1.0) * run(folder / "plane.inp", force))
 
 
 def solid_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, folder: Path) -> float:
-    """Tip stiffness by CalculiX's C3D20, N/mm."""
+    """Tip stiffness by CalculiX's 20-node bricks C3D20, N/mm.
+
+    Parameters
+    ----------
+    mesh
+        Of the plane, of order 2.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    across
+        Density of the mesh over half the width.
+    folder
+        Existing folder for CalculiX's files.
+    """
     force = write_solid(mesh, E, nu, width, across, folder / "solid.inp")
     return 1.0 / ((4.0 if mesh.half else 2.0) * run(folder / "solid.inp", force))
 
@@ -90,7 +116,7 @@ def _swept(mesh: PlaneMesh, across: AcrossSpace) -> Array:
 
 
 def _turned(points: Array, cells: NDArray[np.int64], flipped: list[int]) -> NDArray[np.int64]:
-    """Cells that run clockwise in (x, z) are turned round: CalculiX wants positive volumes."""
+    """Cells with those that run clockwise in (x, z) reversed: CalculiX requires positive volumes."""
     a, b, d = (points[cells[:, i], :2] for i in (0, 1, 3))
     (bx, bz), (dx, dz) = (b - a).T, (d - a).T
     clockwise = bx * dz - bz * dx < 0.0
@@ -104,7 +130,7 @@ def _on(values: Array, at: float) -> NDArray[np.int64]:
 
 
 def _supports(points: Array, mesh: PlaneMesh, dim: int) -> list[tuple[int, int]]:
-    """(node, direction) held, as `plane.fixed_unknowns`."""
+    """Held unknowns (node, direction), as in `plane_elements.fixed_unknowns`."""
     held = [(n, i) for n in _on(points[:, 0], mesh.clamp_x) for i in range(dim)]
     if mesh.half:
         held += [(n, i) for n in _on(points[:, 1], mesh.middle) for i in range(dim) if i != 1]
@@ -175,7 +201,7 @@ def _write(
     """ccx's input file; `section`: the line below *SOLID SECTION, "" for none."""
     coordinates = np.zeros((len(points), 3))
     coordinates[:, : points.shape[1]] = points
-    lines = ["*NODE, NSET=ALL"]  # ccx reads 20 characters a field and drops the rest, exponents too
+    lines = ["*NODE, NSET=ALL"]  # ccx reads 20 characters a field and drops the rest, even of an exponent
     lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(coordinates, 1)]
     lines.append(f"*ELEMENT, TYPE={kind}, ELSET=BODY")
     for i, cell in enumerate(cells, 1):

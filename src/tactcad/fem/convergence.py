@@ -15,25 +15,35 @@ PLANE_DENSITIES = (1, 2)
 RATE = 4.0
 SOLID_MESH = 2  # of fem-solid, where none is asked for
 ACROSS = 2  # order of the elements over the width beside the finest in the plane
-# By how much elements of twice the order err less in the solid's share between plane stress and plane strain:
-# observed 37 or more over the range's corners (tests/fem).
+# Factor by which doubling the elements' order reduces the error of the solid's share between plane stress and
+# plane strain: observed 37 or more over the range's corners (tests/fem).
 GAIN = 16.0
-NO_POISSON = 1e-9  # relative: plane stress and plane strain are one problem, and so is the solid
+NO_POISSON = 1e-9  # relative: with nu = 0 plane stress, plane strain and the solid are the same problem
 
 
 def richardson(compliance: tuple[float, float], densities: tuple[int, int], order: float) -> float:
-    """Limit of c(h) = c + k h^order from two meshes, mm/N."""
+    """Limit of c(h) = c + k h^order from two meshes, mm/N.
+
+    Parameters
+    ----------
+    compliance
+        On the two meshes, mm/N.
+    densities
+        Of the two meshes, inversely proportional to h.
+    order
+        Rate of convergence.
+    """
     coarse, fine = compliance
     return fine + (fine - coarse) / ((densities[1] / densities[0]) ** order - 1.0)
 
 
 @dataclass(frozen=True)
 class Converged:
-    """Compliance (mm/N), its estimated relative error, and the solutions that it is made of.
+    """Compliance (mm/N), its estimated relative error, and the solutions behind it.
 
     plane     plane stress, on the finest mesh
-    solids    of a solid: the finest in the plane, then on the plane's coarsest mesh with finer and with the
-              finest's elements across
+    solids    of a solid, otherwise empty: the finest in the plane; then two on the plane's coarsest mesh, the
+              first with finer elements across, the second with the finest's
     """
 
     compliance: float
@@ -50,7 +60,24 @@ class Converged:
 def converged_plane(
     shape: ElementShape, E: float, nu: float, width: float, *, plane_strain: bool = False
 ) -> Converged:
-    """Rung fem-plane: two meshes and Richardson's limit; the error is what the limit adds to the finer."""
+    """Rung fem-plane: Richardson's limit of two meshes.
+
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    plane_strain
+        Instead of plane stress.
+
+    Returns
+    -------
+    Converged
+        Its error is the difference between the limit and the finer mesh.
+    """
     pair = [
         solve_plane(shape, E, nu, width, density=d, order=ORDER, plane_strain=plane_strain)
         for d in PLANE_DENSITIES
@@ -62,13 +89,25 @@ def converged_plane(
 def converged_solid(
     shape: ElementShape, E: float, nu: float, width: float, *, mesh: int = SOLID_MESH
 ) -> Converged:
-    """Rung fem-solid by elements of order 2 `mesh` in the plane.
+    """Rung fem-solid.
 
-    On one mesh of the plane the solid stands between plane stress and plane strain, at the share
-    chi = (C_stress - C_solid)/(C_stress - C_strain), which converges faster than the compliances: the three
-    problems miss the fillets by nearly the same share. Three steps: chi by the finest elements in the plane;
-    what elements of a higher order across the width add to it, found with quadratic ones in the plane, where
-    it is cheap; and the limits of plane stress and plane strain between which it stands.
+    On one mesh of the plane the solid's compliance lies between plane stress and plane strain, at the share
+    chi = (C_stress - C_solid)/(C_stress - C_strain). It converges faster than the compliances, since the
+    three problems have nearly the same relative error at the fillets. Three steps: chi by the finest elements
+    in the plane; its change by elements of a higher order across the width, found with quadratic elements in
+    the plane, where that is cheap; and the limits of plane stress and plane strain, between which chi
+    interpolates.
+
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    mesh
+        Half the order of the finest elements in the plane.
     """
     stress, strain = (converged_plane(shape, E, nu, width, plane_strain=p) for p in (False, True))
 
@@ -83,7 +122,6 @@ def converged_solid(
 
 
 def _share(solid: SolidSolution) -> float:
-    """Where the solid stands between plane stress (0) and plane strain (1) by the same elements of the
-    plane."""
+    """The solid's share between plane stress (0) and plane strain (1), by the same elements of the plane."""
     stress, strain = (solid.flat(plane_strain).compliance for plane_strain in (False, True))
     return (stress - solid.compliance) / (stress - strain)

@@ -48,10 +48,22 @@ def stiffness_matrix(basis: Basis, lam: float, mu: float) -> csc_matrix:
 
 
 def solve(A: csc_matrix, f: Array, fixed: Array) -> Array:
-    """Displacements with the `fixed` unknowns held at zero; symmetric positive definite A, SuperLU.
+    """Displacements with some unknowns held at zero; A symmetric and positive definite, by SuperLU.
 
-    One step of iterative refinement shows what rounding did. Raises CheckFailure where that is more than
-    MOST_ROUNDING of the compliance: a leaf hundreds of times longer than thick leaves float64 too few digits.
+    Parameters
+    ----------
+    A : sparse matrix, shape (n, n)
+        Stiffness, N/mm.
+    f : ndarray, shape (n,)
+        Load, N.
+    fixed
+        Indices of the unknowns that are held.
+
+    Raises
+    ------
+    CheckFailure
+        Where one step of iterative refinement changes the compliance by more than MOST_ROUNDING: for a leaf
+        hundreds of times longer than thick double precision is not enough.
     """
     free = np.setdiff1d(np.arange(len(f)), fixed)
     u = np.zeros_like(f)

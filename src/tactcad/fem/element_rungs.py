@@ -9,11 +9,11 @@ import numpy as np
 
 from tactcad.mechanics.section import HingeSection
 
-PLANE_ORDER, SOLID_ORDER = 4, 3  # plane within 0.02 %, solid within 0.2 % of converged
+PLANE_ORDER, SOLID_ORDER = 4, 3  # plane within 0.02 %, solid within 0.2 % of the converged value
 
 
 def stiffnesses(s: HingeSection) -> dict[str, np.ndarray]:
-    """K (N/mm) of every element by the plane and the solid rung, element cut off at its load line."""
+    """K (N/mm) of every element by the rungs fem-plane and fem-solid, each element cut at its load line."""
     logging.getLogger("skfem").setLevel(logging.ERROR)  # it warns about the order of arrays in memory
     from tactcad.fem.plane_elements import solve_plane
     from tactcad.fem.shape import reference_shape

@@ -17,20 +17,18 @@ from .space import PlaneSpace, gauss, lagrange
 
 Array = NDArray[np.float64]
 
-DENSE = 16  # places looked at for a peak or an end, for each point that the elements are read at
+DENSE = 16  # places searched for a peak or an end, for each point at which the elements are evaluated
 
 
 @dataclass(frozen=True)
 class FaceStrain:
     """Strain and stress per newton at points along one face, in the order of the face.
 
-    along        length along the face from its end at the body, mm
-    x            from the hinge's centre towards the arm, mm
-    strain       tangential, 1/N; positive in tension, for a force that bends this face convex
-    stress       tangential, MPa/N: the largest principal stress, of which the others are at most half, and so
-                 Tresca's too
-
-    Points are those of Gauss, where elements' strains err least; in between cubic splines.
+    along        length along the face from its end at the body, mm x            from the hinge's centre
+    towards the arm, mm strain       tangential, 1/N; positive in tension, for a force that bends this face
+    convex stress       tangential, MPa/N: the largest principal stress; the others are at most half of it, so
+    that it is Tresca's too  The points are Gauss points, where the elements' strains are most accurate;
+    between them cubic splines.
     """
 
     along: Array
@@ -54,13 +52,15 @@ class FaceStrain:
         return float(CubicSpline(self.along, self.strain)(self._at(np.zeros(1)))[0])
 
     def mean(self, grid: Array | float) -> Array:
-        """Mean over |x| <= grid/2, weighted by face length, 1/N: what gauges' grids of these lengths read."""
+        """Mean over |x| <= grid/2, weighted by face length, 1/N: the strain that gauges with these grids
+        read.
+        """
         ends = self._at(np.multiply.outer((-0.5, 0.5), grid))
         integral = CubicSpline(self.along, self.strain).antiderivative()(ends)
         return (integral[1] - integral[0]) / (ends[1] - ends[0])
 
     def largest(self, values: Array) -> float:
-        """Largest of a quantity that is given at the points."""
+        """Largest value of a quantity that is given at the points."""
         near = slice(max(0, (at := int(values.argmax())) - 1), at + 2)
         places = np.linspace(self.along[near][0], self.along[near][-1], 2 * DENSE + 1)
         return float(CubicSpline(self.along, values)(places).max())
@@ -78,8 +78,9 @@ class FaceStrain:
 
 @dataclass(frozen=True)
 class SurfaceReadings:
-    """What is read off a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge face,
-    the largest strain (1/N) and principal stress (MPa/N) of the gauge face and of the slot's."""
+    """Strains and stresses of a hinge at mid-width per newton: the mean strain (1/N) under grids on the gauge
+    face, and the largest strain (1/N) and principal stress (MPa/N) on the gauge face and on the slot's.
+    """
 
     gauge: Array
     face_strain: float
@@ -95,6 +96,15 @@ class SurfaceReadings:
 
 
 def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float) -> SurfaceReadings:
+    """Strains and stresses per newton, read off a solution.
+
+    Parameters
+    ----------
+    solution
+        Under a unit force.
+    grid_length : scalar or ndarray, shape (n,)
+        Of the gauges' grids, mm.
+    """
     slot, flat = face_strain(solution, "slot"), face_strain(solution, "flat")
     return SurfaceReadings(flat.mean(grid_length), flat.peak, flat.peak_stress, slot.peak, slot.peak_stress)
 
@@ -102,12 +112,20 @@ def readings(solution: PlaneSolution | SolidSolution, grid_length: Array | float
 def solid_readings(
     plane: PlaneSolution, solids: tuple[SolidSolution, ...], grid_length: Array | float
 ) -> SurfaceReadings:
-    """Of the solid, on the mesh of the plane that `plane` (in plane stress) is solved on: its readings times
-    how much the solid differs from plane stress by the same, coarser elements, times what a higher order
-    across changes.
+    """Strains and stresses per newton of the solid, on the mesh of a solution in plane stress.
 
-    `solids`: the finest in the plane, then two of one coarser order there, the first of a higher order
-    across, the second of the finest's.
+    They are the readings in plane stress, times the ratio of solid to plane stress with the same coarser
+    elements, times the change by elements of a higher order across the width.
+
+    Parameters
+    ----------
+    plane
+        In plane stress, on the finest mesh.
+    solids
+        As in `convergence.Converged`: the finest in the plane; then two coarser ones there, the first of a
+        higher order across, the second of the finest's.
+    grid_length : scalar or ndarray, shape (n,)
+        Of the gauges' grids, mm.
     """
     fine, across, coarse = (readings(s, grid_length) for s in solids)
     flat = readings(solids[0].flat(), grid_length)
@@ -115,11 +133,16 @@ def solid_readings(
 
 
 def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrain:
-    """Along the "slot" face (upper floor and its fillets), or the "flat" face below the hinge.
+    """Strain and stress along one face of the hinge, from wall to wall of the slot; on a flat face over its
+    length.
 
-    A solid is read on its mid-plane y = 0. A two-sided hinge has a slot face on both sides, equal and
-    opposite; its "flat" face is the lower one. Reaches from wall to wall of the slot, on a flat
-    face over its whole length.
+    Parameters
+    ----------
+    solution
+        Under a unit force; a solid is read on its mid-plane y = 0.
+    face
+        "slot" (upper floor with its fillets), or "flat" (below the hinge). A two-sided hinge has slots on
+        both sides with opposite strains; its "flat" face is the lower one.
     """
     space, shape = solution.space, solution.mesh.shape
     upper = face == "slot" or shape.two_sided
@@ -132,7 +155,7 @@ def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrai
     u = solution.displacement[:2].reshape(2, space.nodes.shape[1], -1)[:, :, 0]  # at mid-width
     tangent, moved = (np.einsum("cen,nq->ceq", q[:, edges], slope) for q in (space.nodes, u))
     speed = np.hypot(*tangent)
-    # a force towards +z bends the upper face hollow
+    # a force towards +z compresses the upper face
     sign = -1.0 if upper else 1.0
     strain = sign * np.sum(tangent * moved, axis=0) / speed**2
     E, nu = solution.youngs_modulus, solution.poisson
@@ -148,8 +171,8 @@ def face_strain(solution: PlaneSolution | SolidSolution, face: str) -> FaceStrai
 def _strain_across(solution: SolidSolution) -> Array:
     """d u_y/dy at mid-width at the plane's nodes.
 
-    u_y is odd in y: the odd powers through the nodes of the first element know its slope at y = 0 better than
-    that element's own.
+    u_y is odd in y. An odd polynomial through the nodes of the first element gives its slope at y = 0 more
+    accurately than the element's own shape functions.
     """
     first = slice(1, solution.across.order + 1)
     y = solution.across.nodes[first]

@@ -16,9 +16,10 @@ from .shape import ElementShape, reference_shape
 
 @dataclass(frozen=True)
 class ElementResult:
-    """Of one element: stiffness (N/mm, friction at the pad included), its estimated relative error from
-    the mesh, and strains and stresses per newton: at mid-width, and in plane stress, whose stress is what
-    equilibrium leaves for the mean over a solid's width."""
+    """Result for one element: stiffness (N/mm, friction at the pad included), its estimated relative error
+    from the mesh, and strains and stresses per newton, at mid-width (`readings`) and in plane stress
+    (`flat`). By equilibrium the stress in plane stress is the mean over a solid's width.
+    """
 
     stiffness: float
     error: float
@@ -27,10 +28,21 @@ class ElementResult:
 
 
 def stiffness(s: HingeSection, rung: str, mesh: int = SOLID_MESH) -> float:
-    """Tip stiffness of one reference element (scalars) in N/mm, friction at the pad included.
+    """Tip stiffness of one reference element by a finite-element rung, friction at the pad included, N/mm.
 
-    `mesh` is the density of fem-solid's finer mesh. Raises CheckFailure where the design is impossible or the
-    mesh cannot follow it.
+    Parameters
+    ----------
+    s
+        One design (scalars).
+    rung
+        "fem-plane" or "fem-solid".
+    mesh
+        Half the order of fem-solid's finest elements in the plane.
+
+    Raises
+    ------
+    CheckFailure
+        Where the design is impossible or the mesh cannot follow it.
     """
     return converged(s, rung, mesh=mesh).stiffness * float(friction.factor(s))
 
@@ -54,9 +66,25 @@ def converged(
 def solve(
     s: HingeSection, rung: str, grid_length: float, shape: ElementShape | None = None, mesh: int = SOLID_MESH
 ) -> ElementResult:
-    """One design (scalars) by finite elements, on the shape cut from its contour or on the reference shape.
+    """Stiffness, strains and stresses of one element by a finite-element rung.
 
-    Raises CheckFailure where the design is impossible or the mesh cannot follow it.
+    Parameters
+    ----------
+    s
+        One design (scalars).
+    rung
+        "fem-plane" or "fem-solid".
+    grid_length
+        Of the gauge's grid, mm.
+    shape
+        The shape cut from the element's contour; by default the reference shape.
+    mesh
+        Half the order of fem-solid's finest elements in the plane.
+
+    Raises
+    ------
+    CheckFailure
+        Where the design is impossible or the mesh cannot follow it.
     """
     solution = converged(s, rung, shape, mesh)
     flat = readings(solution.plane, grid_length)

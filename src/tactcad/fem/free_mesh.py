@@ -1,4 +1,4 @@
-"""Six-node triangles in any contour with holes: for the uncut part, which no mapped mesh follows.
+"""Six-node triangles in any contour with holes: for the uncut part, which the mapped mesh cannot follow.
 
 Points on the boundary at a graded spacing, points inside from lattices of halving size, thinned and
 smoothed, joined by Delaunay's triangulation; mid-side nodes of the boundary lie on its arcs.
@@ -21,7 +21,7 @@ from tactcad.design.messages import CheckFailure
 Array = NDArray[np.float64]
 
 ARC_STEPS = 6.0  # elements along a radius' length of arc, at least
-GROWTH = 0.3  # of element size with distance from where it is small
+GROWTH = 0.3  # growth of the element size per distance from a seed
 CLEAR = 0.55  # inner points keep this share of the local size from the boundary
 APART = 0.75  # and this from each other
 SMOOTHING = 8
@@ -38,8 +38,22 @@ class Fine:
 def triangle_mesh(
     outer: Contour, holes: tuple[Contour, ...], fine: tuple[Fine, ...], largest: float
 ) -> MeshTri2:
-    """Mesh with elements of at most `largest` mm, finer at `fine` and at arcs. Raises CheckFailure where
-    the triangles do not follow the boundary."""
+    """Mesh of a contour with holes, finer at arcs.
+
+    Parameters
+    ----------
+    outer, holes
+        Simple closed contours, mm.
+    fine
+        Places that want smaller elements.
+    largest
+        Largest element, mm.
+
+    Raises
+    ------
+    CheckFailure
+        Where the triangles do not follow the boundary.
+    """
     contours = (outer, *holes)
     size = _Size(_seeds(contours, fine), largest)
     loops = [_boundary(c, size) for c in contours]
@@ -54,7 +68,7 @@ def triangle_mesh(
 
 @dataclass(frozen=True)
 class _Size:
-    """Wanted element size at any place: the least of what each seed allows at its distance."""
+    """Wanted element size at any place: the smallest of what each seed allows at its distance."""
 
     seeds: tuple[Fine, ...]
     largest: float

@@ -1,5 +1,6 @@
-"""How far a finite-element solution can be trusted: angles of its elements, condition, and what rounding
-leaves."""
+"""How far a finite-element solution can be trusted: angles of its elements, condition number, rounding
+error.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +20,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Health:
-    """Of one plane mesh and the system that it gives. Angles in degrees, at the corners of the elements.
+    """Quality of one plane mesh and of its system of equations. Angles in degrees, at the corners of the
+    elements.
 
-    condition: of the stiffness matrix with the held unknowns left out, in the 1-norm (estimated by Hager's
-    method, which has nothing random). rounding: relative change of the compliance by one step of iterative
-    refinement, an estimate of what rounding did to it.
+    condition: of the stiffness matrix without the held unknowns, in the 1-norm (by Hager's estimate, which is
+    deterministic). rounding: relative change of the compliance by one step of iterative refinement, an
+    estimate of its rounding error.
     """
 
     smallest_angle: float
@@ -61,7 +63,7 @@ def plane_health(shape: ElementShape, E: float, nu: float, width: float, density
 def corner_angles(mesh: PlaneMesh) -> tuple[float, float]:
     """Smallest and largest angle between the two edges that meet at an element's corner, degrees.
 
-    Edges are curved: their tangents count, as the parabola through corner, middle and far corner has them.
+    Edges are curved; the angle is that of the tangents of the parabola through an edge's corners and middle.
     """
     angles = []
     for u, v in ((0, 0), (0, 2), (2, 0), (2, 2)):

@@ -31,15 +31,15 @@ Grid = Array  # (order nx + 1, order ny + 1, 2): nodes of a block of nx x ny ele
 
 GROWTH = 1.8  # of successive rings on the coarsest mesh
 SAME_POINT = 1e-10  # of the mesh's size: rounding, far below any element
-SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are none
+SLIVER = 1e-4  # straight parts of the hinge shorter than this times its thickness are left out
 SIDE_LAYER = 0.5  # outermost layer of the solid mesh, in hinge thicknesses, on the coarsest mesh
 # Fillet radii: height of the row of elements at a slot's floor, and twice that its length, on the coarsest
 # mesh.
 NEAR = 1.0
-MOUTH = 2  # least elements under a fillet, on the coarsest mesh
+MOUTH = 2  # fewest elements under a fillet, on the coarsest mesh
 # Longest element beside a fillet, and half of that along it, in hinge thicknesses, on the coarsest mesh.
 COLUMN = 0.6
-LONGEST = 10.0  # columns: of an element between the fillets
+LONGEST = 10.0  # columns: width of an element between the fillets
 # fillet radius over the strip's height above which the ring's bulge, felt far inside, would fold the mouth
 STEEP = 4.0
 TWO_BLOCKS = 1.4  # a rectangle longer than this times its height gets columns beside the square
@@ -71,11 +71,23 @@ class PlaneMesh:
 
 
 def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order: int = 2) -> PlaneMesh:
-    """Mesh of density 1, 2, 3...: every block has density times the elements of the coarsest each way, of
-    that order.
+    """Mapped mesh of a hinge shape.
 
-    A symmetric two-sided shape is meshed to its mid-line unless `whole`. Raises CheckFailure where
-    slots from both faces differ in length or radius.
+    Parameters
+    ----------
+    shape
+        Symmetric two-sided shapes are meshed down to their mid-line only.
+    density
+        1, 2, 3...: elements of every block each way, over those of the coarsest mesh.
+    whole
+        Mesh a symmetric shape on both sides of its mid-line too.
+    order
+        Of the elements.
+
+    Raises
+    ------
+    CheckFailure
+        Where slots from both faces differ in length or radius.
     """
     shape = _without_slivers(shape)
     if not shape.two_sided:
@@ -96,9 +108,19 @@ def plane_mesh(shape: ElementShape, density: int = 1, whole: bool = False, order
 
 
 def layers(half_width: float, thickness: float, density: int) -> Array:
-    """Where the elements over half the width end, from y = 0 to the free side, mm.
+    """Ends of the elements over half the width, from y = 0 to the free side, mm.
 
-    They shrink towards the free side, where within a thickness or so plane strain turns to plane stress.
+    They get smaller towards the free side, where plane strain changes to plane stress within about a
+    thickness.
+
+    Parameters
+    ----------
+    half_width
+        Half the sheet's thickness, mm.
+    thickness
+        Of the hinge, mm.
+    density
+        As for `plane_mesh`.
     """
     return half_width * (1.0 - _graded(half_width, SIDE_LAYER * thickness, density)[::-1])
 
@@ -106,9 +128,10 @@ def layers(half_width: float, thickness: float, density: int) -> Array:
 def merged(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     """Unique points of (elements, corners, dim), and each element's indices into them.
 
-    Points are one where they share a cell of either of two shifted grids, so that no grid line can
-    part two that differ by rounding. The grid's step is no round number: on one, points of a decimal
-    design would lie on grid lines, one coordinate on the first grid's and the other on the second's.
+    Two points are equal where they share a cell of either of two shifted grids, so that no grid line can
+    separate points that differ by rounding only. The grid's step is not a round number: with a round one,
+    points of a design in decimals would lie on grid lines, one coordinate on those of the first grid, the
+    other on those of the second.
     """
     flat = corners.reshape(-1, corners.shape[-1])
     step = SAME_POINT * np.ptp(flat, axis=0).max() / np.e
@@ -128,7 +151,9 @@ def _first_of_group(keys: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def _without_slivers(shape: ElementShape) -> ElementShape:
-    """A straight part that is next to nothing would be a sliver: the fillets take it and meet."""
+    """The shape without a negligible straight part, which would give sliver elements: its fillets meet
+    instead.
+    """
 
     def met(block: Block, other: Block, side: str) -> Block:
         mine, theirs = getattr(block, side), getattr(other, side)
@@ -206,12 +231,15 @@ class _Root:
     wall: float
     end: float
     height: float
-    square_height: float  # lesser height of the halves that share the mid-line
+    square_height: float  # the smaller height of the two halves that share the mid-line
     column: float  # longest element along the fillet
 
     def grids(self, steps: int, rows: Array) -> list[Grid]:
-        """`steps`: from node to node over the length of an element of the coarsest mesh; `rows`: shares of
-        the strip's height at which its rows of nodes stand, 1/2 among them."""
+        """Node grids of the root's blocks.
+
+        `steps`: intervals between nodes over the length of an element of the coarsest mesh. `rows`: heights
+        of the strip's rows of nodes as shares of its height, 1/2 among them.
+        """
         reach = self.end - self.wall
         inner = self.strip_height + self.radius
         mouth = min(inner, 0.7 * reach)
@@ -272,7 +300,7 @@ class _Root:
 
 
 def _count(lengths: float) -> int:
-    """Elements for that many element lengths, the same however the last digits were rounded."""
+    """Number of elements for that many element lengths, independent of rounding in the last digits."""
     return max(1, ceil(lengths - 1e-6))
 
 

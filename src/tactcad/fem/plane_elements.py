@@ -47,7 +47,26 @@ def solve_plane(
     plane_strain: bool = False,
     whole: bool = False,
 ) -> PlaneSolution:
-    """Clamped at the body's end, parabolic shear of 1 N on the arm's end; work-conjugate deflection."""
+    """Plane problem of an element: clamped at the body's end, parabolic shear of 1 N on the arm's end.
+
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    density, order, whole
+        Of the mesh, as for `plane_mesh`.
+    plane_strain
+        Instead of plane stress.
+
+    Returns
+    -------
+    PlaneSolution
+        Its compliance is that of the work-conjugate deflection.
+    """
     with making("elements", f"plane, density {density}, order {order}"):
         mesh = plane_mesh(shape, density, whole, order)
         return solved(E, nu, width, mesh, PlaneSpace.of(mesh), plane_strain)
@@ -56,7 +75,7 @@ def solve_plane(
 def solved(
     E: float, nu: float, width: float, mesh: PlaneMesh, space: PlaneSpace, plane_strain: bool
 ) -> PlaneSolution:
-    """`solve_plane` on a mesh and its space."""
+    """`solve_plane` on a given mesh and its space."""
     A = space.stiffness(*elasticity.lame(E, nu, plane_stress=not plane_strain)) * width
     f = np.zeros(A.shape[0])
     end, load = end_load(space, mesh)

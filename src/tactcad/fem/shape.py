@@ -1,7 +1,7 @@
-"""The hinge that a contour encloses: read from the contour's own segments, and drawn again to prove it.
+"""The hinge that a contour encloses, read from the contour's own segments and verified by drawing it again.
 
 A contour in the side plane (x along the arm, z across it), cut at clamp edge and load line, is a
-hinge between two rectangles. `read` finds it; what it cannot describe exactly it refuses.
+hinge between two rectangles. `read` finds it, and refuses a contour that this does not describe exactly.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.plain_numbers import filling_radius
 from tactcad.mechanics.section import HingeSection
 
-ANGLE = 1e-7  # rad: tangents this near to an axis are along it
-SAME_AREA = 1e-9  # relative; what is left of coordinates' rounding when areas are compared
+ANGLE = 1e-7  # rad: tangents closer than this to an axis count as parallel to it
+SAME_AREA = 1e-9  # relative, for areas: the effect of rounded coordinates
 
 
 @dataclass(frozen=True)
@@ -138,10 +138,21 @@ def reference_contour(s: HingeSection) -> Contour:
 
 
 def cut_element(contour: Contour, clamp_x: float, load_x: float) -> ElementShape:
-    """The part's contour between clamp edge and load line (mm), without what stands out of its faces there.
+    """The hinge shape of a part between clamp edge and load line.
 
-    Pad, stop land and the rear body's corner fillet are left out, as in the reference designs. Raises
-    CheckFailure naming what the hinge model cannot follow.
+    Pad, stop land and the rear body's corner fillet are left out, as in the reference designs.
+
+    Parameters
+    ----------
+    contour
+        The part's, in the side plane, mm.
+    clamp_x, load_x
+        Where it is cut, mm.
+
+    Raises
+    ------
+    CheckFailure
+        Where the hinge model does not describe the part; says what does not fit.
     """
     try:
         piece = between(contour, min(clamp_x, load_x), max(clamp_x, load_x), ("end", "end"))
@@ -250,9 +261,9 @@ def _slot_above(arc: Arc) -> bool:
 
 
 def _require_same(outer: Contour, shape: ElementShape) -> None:
-    """The contour must be the shape's outline, but for what stands out of its faces at a cut.
+    """Refuse a contour that is not the shape's outline, apart from what protrudes from its faces at a cut.
 
-    That is pad and stop land at the load line, and the fillet of the rear body's corner at the clamp edge.
+    Those are pad and stop land at the load line, and the fillet of the rear body's corner at the clamp edge.
     """
     middle = shape.arm.slot_corner(upper=shape.arm.high_fillet is not None).wall
     pieces = {"arm": shape.arm, "body": shape.body}
@@ -281,7 +292,9 @@ def _require_same(outer: Contour, shape: ElementShape) -> None:
 def _without_pad(
     contour: Contour, face: float, keep: Literal["below", "above"], end_x: float, name: str
 ) -> Contour:
-    """What lies inside the block's face; beyond it only what stands at the cut itself may be left out."""
+    """The outline within the block's face; beyond it only what protrudes at the cut itself may be left
+    out.
+    """
     beyond = cut(contour, "y", face, "below" if keep == "above" else "above")
     if any(min(abs(c.box[0] - end_x), abs(c.box[2] - end_x)) > ON_LINE_MM for c in beyond):
         raise CheckFailure(f"something stands out of the {name} between slot and cut")

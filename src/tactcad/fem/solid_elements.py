@@ -17,8 +17,9 @@ from .space import AcrossSpace, PlaneSpace, line_load
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Under unit force at the load line: compliance (mm/N), displacements (3, plane's nodes, places across:
-    x, z, y) in mm."""
+    """Under unit force at the load line: compliance (mm/N), and displacements in mm, of shape (3, nodes of
+    the plane, places across) in the order x, z, y.
+    """
 
     compliance: float
     displacement: Array
@@ -51,10 +52,22 @@ def solve_solid(
     order: int = 2,
     order_across: int | None = None,
 ) -> SolidSolution:
-    """Clamped at the body's end, shear of 1 N on the arm's end, parabolic in z and even in y.
+    """Solid problem of an element: clamped at the body's end, shear of 1 N on the arm's end, parabolic in z.
 
-    `across` is the density over the width, by default the same as in the plane; `order` that of the elements
-    both ways.
+    Parameters
+    ----------
+    shape
+        Of the element, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    density, order
+        Of the plane's mesh, as for `plane_mesh`.
+    across
+        Density over the width, by default that of the plane.
+    order_across
+        Of the elements over the width, by default that in the plane.
     """
     across = across or density
     with making("elements", f"solid, density {density} and {across} across, order {order}"):

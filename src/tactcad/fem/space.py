@@ -1,8 +1,8 @@
 """Lagrange elements of any order on a mapped mesh of the plane, and swept over half the width.
 
-A swept mesh's functions are products a(x, z) f(y), so that every integral of two of them is a product of one
-over the plane and one over the width: the solid's matrix is put together from six of the plane's and three of
-the width's.
+A swept mesh's functions are products a(x, z) f(y), so every integral of two of them is a product of one over
+the plane and one over the width: the solid's matrix is assembled from six integrals over the plane and three
+over the width.
 """
 
 from __future__ import annotations
@@ -48,7 +48,9 @@ class PlaneSpace:
 
     @classmethod
     def of(cls, mesh: PlaneMesh) -> PlaneSpace:
-        """The mesh's nodes, each once. Raises RuntimeError where blocks do not share theirs."""
+        """The space of a mesh, each node once. Raises RuntimeError where neighbouring blocks do not share
+        their nodes.
+        """
         count, side = mesh.cells.shape[:2]
         points, index = merged(mesh.cells.reshape(count, side * side, 2))
         elements = index.reshape(count, side, side)
@@ -66,7 +68,9 @@ class PlaneSpace:
 
     @property
     def edges(self) -> NDArray[np.int64]:
-        """(edges, order + 1): nodes along every side of every element; sides that two share stand twice."""
+        """(edges, order + 1): nodes along every side of every element; a side shared by two elements is
+        listed twice.
+        """
         e = self.elements
         return np.concatenate([e[:, :, 0], e[:, :, -1], e[:, 0], e[:, -1]])
 

@@ -1,4 +1,6 @@
-"""The whole part, with pad, stop land and holes, held between its spacers: how much softer than the model."""
+"""Compliance of the whole part, with pad, stop land and holes, held between its spacers: how much softer it
+is than the hinge model.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ from .free_mesh import Fine, triangle_mesh
 from .shape import ElementShape
 from .space import line_load
 
-LARGEST = 0.6  # mm of an element far from anything
+LARGEST = 0.6  # mm: element size away from the hinge
 
 
 def uncut_compliance(
@@ -27,11 +29,26 @@ def uncut_compliance(
     *,
     per_thickness: float = 3.0,
 ) -> float:
-    """Plane-stress compliance (mm/N) of the part under 1 N spread evenly over the pad's face.
+    """Plane-stress compliance of the part under 1 N spread evenly over the pad's face, mm/N.
 
-    shape: the hinge, whose elements are t/per_thickness mm. spacer: x beyond which (away from the
-    arm), and z between which, the sheet is held between spacers. pad: x from, x to and z of its face.
-    Deflection is the mean over the face (work-conjugate).
+    The deflection is the mean over the face (work-conjugate).
+
+    Parameters
+    ----------
+    outer, holes
+        Contours of the part, mm.
+    shape
+        Its hinge, where elements are t/per_thickness mm.
+    spacer
+        x beyond which (away from the arm) the sheet is held between spacers, and from which z to which, mm.
+    pad
+        x from, x to and z of the pad's face, mm.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    per_thickness
+        Elements over the hinge's thickness.
     """
     fillets = [f for b in (shape.arm, shape.body) for f in (b.low_fillet, b.high_fillet) if f]
     walls = sorted({f.wall for f in fillets})
