@@ -41,7 +41,7 @@ NO_FORCE[:, 3] = 0.25
 NO_SIGNAL = rows()
 NO_SIGNAL[:, 4] = -1.5
 FAR_OFF = rows()
-FAR_OFF[3, 3] = 999.0
+FAR_OFF[2, 3] = 999.0
 BAD = {
     "force reversed": (
         text(changed(3, -1)),
@@ -54,7 +54,7 @@ BAD = {
     "no signal": (text(NO_SIGNAL), "element 1: the signal does not change with displacement"),
     "one force far off": (
         text(FAR_OFF),
-        r"element 1: the force falls .* from the other readings: line 5; found '-.*' .*--drop-outliers",
+        r"element 1: the force falls .* from the other readings: line 4; found '-.*--drop-outliers",
     ),
     "another separator": (
         text(rows(), HEADER.replace(",", "|"), "{:g}|{:g}|{:g}|{:g}|{:g}"),
