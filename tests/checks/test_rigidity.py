@@ -99,6 +99,15 @@ def test_what_no_field_helps_says_so():
     assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck)[2].startswith("no value alone")
 
 
+def test_what_helps_is_looked_for_where_no_stop_would_help_too():
+    """A row of 500: the whole range of the overload force is tried, up to where no gap protects the hinge."""
+    design = variant({"array.row_arms": [[4] * 500] * 2})
+    said = [remedy(design, line) for line in deflections(design, ["array"]) if line.too_much]
+    assert said and all(
+        path.split(".")[0] in ("clamp", "rating", "element", "tolerance") for path, _, _ in said
+    )
+
+
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.integers(0, 2**48))
 def test_what_the_rules_accept_passes_the_check(number):

@@ -155,7 +155,7 @@ def interrupted_imports(work: Path, moments: int) -> None:
     before = sorted(p.name for p in work.iterdir())
     for n in range(moments):
         name = list(STATUS)[n % 3]
-        turn = 1 + int((n + chance.random()) / moments * count)
+        turn = 1 + int((n + chance.random()) / moments * 0.98 * count)  # runs differ by a few imports
         assert_ended(at_import(work, name, turn), name)
         assert not (work / "out").exists(), f"seed {SEED}: {name} at import {turn}"
         assert not list((work / "tmp").iterdir())

@@ -40,8 +40,8 @@ NO_FORCE = rows()
 NO_FORCE[:, 3] = 0.25
 NO_SIGNAL = rows()
 NO_SIGNAL[:, 4] = -1.5
-FAR_OFF = rows()
-FAR_OFF[3, 3] = 999.0
+FAR_DOWN, FAR_UP = rows(), rows()
+FAR_DOWN[2, 3] = FAR_UP[5, 3] = 999.0
 BAD = {
     "force reversed": (
         text(changed(3, -1)),
@@ -52,9 +52,13 @@ BAD = {
     "metres": (text(changed(2, 1e-3)), r"the force rises by 1\.\d+e\+04 N/mm, which the load cell of 57.04"),
     "no force": (text(NO_FORCE), "element 1: the force does not change with displacement"),
     "no signal": (text(NO_SIGNAL), "element 1: the signal does not change with displacement"),
-    "one force far off": (
-        text(FAR_OFF),
-        r"element 1: the force falls .* from the other readings: line 5; found '-.*' .*--drop-outliers",
+    "a large force at the last step": (
+        text(FAR_UP),
+        r"element 1: the force rises by more than the load cell can, because .*: line 7; found '",
+    ),
+    "a large force early": (
+        text(FAR_DOWN),
+        r"element 1: the force falls .* from the other readings: line 4; found '-.*--drop-outliers",
     ),
     "another separator": (
         text(rows(), HEADER.replace(",", "|"), "{:g}|{:g}|{:g}|{:g}|{:g}"),

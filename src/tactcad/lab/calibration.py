@@ -276,15 +276,6 @@ def _require_spring(
                 legal=f"{name} in {unit} that {'rises' if unit == 'N' else 'changes'} with displacement",
             )
     k = float(slope[0])
-    far = [str(o.line) for o in outliers if o.quantity == "force"]
-    if k <= 0 < k + half_width and far:  # of noise alone it may be negative
-        raise InputError(
-            where,
-            f"the force falls with displacement, because of what lies far from the other readings: line "
-            f"{', '.join(far)}",
-            value=f"{k:.4g} +-{half_width:.4g} N/mm",
-            legal="force in N that rises with displacement; --drop-outliers leaves those lines out",
-        )
     if k + half_width < 0:
         raise InputError(
             where,
@@ -297,6 +288,15 @@ def _require_spring(
             f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: "
             "another unit of displacement or force, or another load cell",
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
+        )
+    far = [str(o.line) for o in outliers if o.quantity == "force"]
+    if far and not 0 < k < load_cell.ends[1]:  # of noise alone it may be so
+        does = "falls with displacement" if k <= 0 else "rises by more than the load cell can"
+        raise InputError(
+            where,
+            f"the force {does}, because of what lies far from the other readings: line {', '.join(far)}",
+            value=f"{k:.4g} +-{half_width:.4g} N/mm",
+            legal="force in N that rises with displacement; --drop-outliers leaves those lines out",
         )
 
 

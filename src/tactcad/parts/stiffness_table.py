@@ -160,7 +160,8 @@ def _stop_lines(layout: Layout) -> Iterator[Deflection]:
         states = []
         for p in layout.elements:
             force = layout.design.rating.overload_force * p.load_arm / p.arm
-            allowed = 1e3 * SHARE * stop_limit(layout, p, give=0.0).gap
+            gap = max(stop_limit(layout, p, give=0.0).gap, 1e-9)  # of none, any share is passed
+            allowed = 1e3 * SHARE * gap
             states.append((give(layout, p.y) * force * 1e3 / allowed, force, allowed))
         share, force, allowed = max(states)
         yield Deflection(
