@@ -1,4 +1,6 @@
-"""What the array needs and has no solid: gauges, adhesive, terminals, wire, bridge resistors."""
+"""What the array needs and is not modelled as a solid: gauges, adhesive, terminals, wire, bridge
+resistors.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ class Supply:
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """Gauge, wiring and bonding supplies of the array. No maker's data was read: none is verified."""
+    """Gauge, wiring and bonding supplies of the array, none of them verified in a maker's own data."""
     g, material = layout.design.gauge, layout.design.material
     n = len(layout.elements)
     spare_gauges = max(1, ceil(n / 5))  # chosen: one in five is lost in bonding or soldering

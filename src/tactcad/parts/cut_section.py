@@ -23,13 +23,12 @@ def section(part: Part) -> tuple[Contour, tuple[Contour, ...]]:
 
 
 def cut_section(part: Part) -> Extrusion | None:
-    """What a cut file leaves of a part before anything else is done to it: its section, extruded. None where
-    it has none.
+    """The section that a part's cut file describes, extruded; None where the part has no cut file.
 
     Wire-cut parts are cut with all their holes. A part that is milled or ground from plate has a cut file of
-    its blank: the outline, and what may be cut with it to its final or its tap drill's size. Holes with a fit
-    are left to the reamer; counterbores, threads and holes from the edges to the drawing. What has a pocket,
-    or is thicker than it is wide, is milled from a block.
+    its blank: the outline, and the holes that may be cut to their final size or to the tap drill's. Holes
+    with a fit are reamed afterwards; counterbores, threads and holes from the edges are left to the drawing.
+    A part that has a pocket, or is thicker than it is wide, is milled from a block and has no cut file.
     """
     if part.process == "wire-cut":
         outer, openings = section(part)

@@ -19,12 +19,25 @@ from .layout import ElementPlace, Layout
 
 
 def deflected_element(layout: Layout, place: ElementPlace, deflection: float, roller: float) -> Part:
-    """The element while a roller (radius in mm, its axis under the pad's middle) has come up by `deflection`
-    mm.
+    """The element while a roller has pushed its pad up.
 
     The arm turns until the pad's face touches the roller: seen from the turned arm, the roller's centre
-    (u, v) from the hinge has come to the height -(pad height + radius) that touching means, which is
+    (u, v) from the hinge is then at the height -(pad height + radius), which is
     A sin(phi + atan2(v, u)) = w with A = hypot(u, v).
+
+    Parameters
+    ----------
+    layout, place
+        The array, and the element in it.
+    deflection
+        Way of the roller since it touched the pad, mm.
+    roller
+        Its radius, mm; its axis is under the pad's middle.
+
+    Raises
+    ------
+    InputError
+        Where the arm cannot turn so far.
     """
     part = element(layout, place)
     z, w = _heights(layout, place, roller)
@@ -53,11 +66,10 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
 
 
 def deflection_at_pad_edge(layout: Layout, place: ElementPlace, roller: float) -> float:
-    """Deflection, mm, at which the arm has turned the pad's edge towards the hinge under the roller of that
-    radius, mm.
+    """Deflection (mm) at which the arm has turned so far that a roller (radius in mm) meets the pad's edge.
 
     Seen from the turned arm the roller's centre comes nearer to the hinge: to A' with A'^2 + w^2 = A^2 + (w +
-    d)^2, on the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0.
+    d)^2. It is on the pad while A - A' is at most half the pad's length p, so d^2 + 2 w d + A p - p^2/4 = 0.
     Infinite where no deflection moves it that far.
     """
     _, w = _heights(layout, place, roller)
@@ -76,7 +88,7 @@ def _heights(layout: Layout, place: ElementPlace, roller: float) -> tuple[float,
 def _bent(contour: Contour, hinge: Point, angle: float) -> Contour:
     """The contour with everything left of the hinge's centre turned about it.
 
-    Where the contour passes the hinge, a stretch just longer than what the turn closes up becomes a chord.
+    Where the contour passes the hinge, a stretch slightly longer than the rotation shortens becomes a chord.
     """
     pieces: list[Segment] = []
     for s in contour:

@@ -187,7 +187,7 @@ class Material:
 
 @dataclass(frozen=True)
 class Purchase:
-    """How a bought part is ordered. source_verified: its figures were read in the maker's own data."""
+    """How a bought part is ordered. source_verified: its figures were checked in the maker's own data."""
 
     designation: str
     manufacturer: str = ""
@@ -210,7 +210,7 @@ class ModelFile:
 
 @dataclass(frozen=True)
 class Characteristic:
-    """A dimension that matters: its value with limits (mm), and whether it is a key characteristic."""
+    """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic."""
 
     name: str
     nominal: float

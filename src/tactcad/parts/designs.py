@@ -1,4 +1,4 @@
-"""A design that keeps every rule: what commands load."""
+"""Loading a design that keeps every rule."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .rules import refuse_broken
 
 
 def load(source: str | Path) -> Design:
-    """The design in a file, or the one of that name in hardware/, with every rule between fields kept.
+    """The design in a file, or the one of that name in hardware/, checked against every rule between fields.
 
     Raises InputError where the file is missing or not a design, a value is not legal, or a rule is broken.
     """

@@ -21,9 +21,14 @@ BARE_METAL = "#c3c8ce"
 
 
 def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
-    """The element that stands at `place`; equal elements give equal parts with one part number.
+    """The element that stands at a place; equal elements give equal parts with one part number.
 
-    Its stop gap is `gap` mm, if given, instead of the design's.
+    Parameters
+    ----------
+    layout, place
+        The array, and the element in it.
+    gap
+        Stop gap at the arm's tip, mm; by default the design's.
     """
     design = layout.design
     if gap is None:
@@ -78,7 +83,19 @@ def element_number(design: Design, place: ElementPlace) -> str:
 
 
 def outline(layout: Layout, arm: float, hinge: HingeShape, gap: float) -> Contour:
-    """The element's contour in (x, z), counter-clockwise from the pad; mm."""
+    """The element's contour in (x, z), counter-clockwise from the pad, mm.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    arm
+        Arm length from the hinge's centre to the tip, mm.
+    hinge
+        Its dimensions.
+    gap
+        Stop gap at the arm's tip, mm.
+    """
     e = layout.design.element
     x_tip, x_pad = layout.pad_inner, layout.pad_outer
     x_hinge = x_tip + arm
@@ -116,7 +133,8 @@ def outline(layout: Layout, arm: float, hinge: HingeShape, gap: float) -> Contou
 
 
 def rear_corners(layout: Layout, face: float) -> list[Corner]:
-    """The clamped rear body, from the wire recess round to the clamp edge; alike in elements and blanks.
+    """Corners of the clamped rear body, from the wire recess round to the clamp edge; the same in elements
+    and blanks.
 
     `face` is z of the front body's lower face, where the recess begins.
     """
@@ -152,8 +170,9 @@ def sheet_material(design: Design) -> Material:
 
 
 def material_notes(design: Design) -> tuple[str, ...]:
-    """What its material asks of the part: by its data, and by what the design has otherwise than its name
-    says."""
+    """Notes that the material requires: from its data, and on values in which the design differs from
+    them.
+    """
     magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
     return (*magnetic, *(f"designed with other data than its material's: {d}" for d in design.differences))
 

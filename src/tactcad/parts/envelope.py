@@ -10,7 +10,7 @@ DETAILS = ("full", "envelope")
 
 
 def envelope(part: Part) -> Part:
-    """The part without what is cut into it: nothing of the part lies outside it. Its mass stays the part's.
+    """The part without holes and pockets: a shape that contains the part. Its mass stays the part's.
 
     It is a reference shape: no cut file or drawing is made of it.
     """

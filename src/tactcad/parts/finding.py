@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-# Below this, two lengths written in decimals are the same length (mm).
+# Two lengths in decimals that differ by less are equal (mm).
 SAME = 1e-9
 
 Severity = Literal["fail", "flag"]
@@ -17,7 +17,7 @@ class Finding:
     """One finding.
 
     check     name of the rule or the check
-    severity  `fail` must not leave the house; `flag` is for whoever quotes or reviews
+    severity  `fail` blocks the release; `flag` informs whoever quotes or reviews
     part      what it is about: a part's number, a designator, a design; of a rule, the path of the field to
               look at
     place     where on the part, mm in its own frame; empty for the whole part
@@ -42,7 +42,15 @@ class Finding:
 def at_least(
     check: str, part: str, value: float, least: float, message: str, place: tuple[float, ...] = ()
 ) -> Iterator[Finding]:
-    """A failure where the value is under what it must be at least."""
+    """A failure where a value is too small.
+
+    Parameters
+    ----------
+    check, part, message, place
+        Of the finding, see `Finding`.
+    value, least
+        In the unit that the message names; a shortfall of up to SAME is rounding.
+    """
     if value < least - SAME:
         yield Finding(check, "fail", part, place, value, least, message)
 
@@ -50,6 +58,6 @@ def at_least(
 def at_most(
     check: str, part: str, value: float, most: float, message: str, place: tuple[float, ...] = ()
 ) -> Iterator[Finding]:
-    """A failure where the value is over what it may be at most."""
+    """A failure where a value is too large; as `at_least`."""
     if value > most + SAME:
         yield Finding(check, "fail", part, place, value, most, message)

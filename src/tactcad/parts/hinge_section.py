@@ -1,4 +1,4 @@
-"""The array's elements as the mechanics sees them."""
+"""The array's elements as parameters of the mechanics."""
 
 from __future__ import annotations
 
@@ -14,7 +14,20 @@ from .layout import ElementPlace, HingeShape, Layout
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
-    """Section parameters of the elements at `places`, arrays of shape (len(places),); mm, MPa."""
+    """Section parameters of elements of the array, mm and MPa.
+
+    Parameters
+    ----------
+    layout
+        The array.
+    places
+        The elements.
+
+    Returns
+    -------
+    HingeSection
+        Of shape (len(places),).
+    """
     own = [own_parameters(p.hinge, p.load_arm, p.body_length) for p in places]
     return HingeSection.of(
         **{name: [each[name] for each in own] for name in own[0]}, **shared_parameters(layout.design)
@@ -28,7 +41,9 @@ def thickness_elasticity(layout: Layout, place: ElementPlace) -> float:
 
 
 def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> dict[str, float]:
-    """What may differ between the elements of one design, by the names of `HingeSection`'s fields; mm."""
+    """Parameters that may differ between elements of one design, by the names of `HingeSection`'s fields;
+    mm.
+    """
     return {
         "hinge_thickness": hinge.t,
         "hinge_length": hinge.l,
@@ -40,7 +55,7 @@ def own_parameters(hinge: HingeShape, load_arm: float, body_length: float) -> di
 
 
 def shared_parameters(design: Design) -> dict[str, float]:
-    """What all elements of a design have in common, by the names of `HingeSection`'s fields; mm, MPa."""
+    """Parameters that all elements of a design share, by the names of `HingeSection`'s fields; mm, MPa."""
     return {
         "body_height": design.element.body_height,
         "poisson": design.material.poisson,

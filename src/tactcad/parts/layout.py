@@ -16,7 +16,7 @@ from tactcad.design.tree import Design
 from .library.screws import METRIC, SET_SCREW_LENGTHS, counterbore_diameter, tapped_depth
 from .stop_give import derived_pitch, stop_plate_beams
 
-# Least gap between parts that must not meet, in mm; chosen: a hair.
+# Least gap between parts that must not touch, in mm; chosen: about a hair.
 LEAST_GAP = 0.1
 # Least material between a carrier screw's hole and the heads below it; chosen: a third of an M3.
 END_PLATE_WEB = 1.0
@@ -214,7 +214,7 @@ class Layout:
 
     @cached_property
     def hold_down(self) -> HoldDown:
-        """The shortest standard set screw that lets the carrier stand high enough."""
+        """The shortest standard set screw that is long enough for the carrier's height."""
         c = self.design.clamp
         lowest = self.lowest_carrier
         for length in SET_SCREW_LENGTHS[c.screw]:

@@ -1,5 +1,6 @@
-"""What is measured on every numbered element as cut: the part's own characteristics, and what the estimator
-takes in."""
+"""What is measured on every numbered element as cut: the part's own characteristics, and inputs of the
+estimator.
+"""
 
 from __future__ import annotations
 
@@ -51,8 +52,10 @@ AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance 
 
 
 def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurement, ...]]]:
-    """Every element by number: its place, its part number, and what to measure on it: its part's
-    characteristics, then what only the estimator needs."""
+    """Every element by number: its place, its part number, and what to measure on it.
+
+    That is its part's characteristics, then the dimensions that only the estimator needs.
+    """
     known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
     measured = []
     for place in layout.elements:

@@ -1,4 +1,4 @@
-"""What every hinge bears when the overload force stands on one element and its stop has closed."""
+"""Load on every hinge when the overload force acts on its element alone and its stop has closed."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .stop_gap import stop_gap
 
 @dataclass(frozen=True)
 class Overload:
-    """One element under the overload force, its stop's gap as large as the tolerance lets it be.
+    """One element under the overload force, its stop's gap at the upper limit of its tolerance.
 
     gap               mm, tolerance included
-    earliest          N at the pad that close the gap when it is as narrow as the tolerance lets it be
+    earliest          N at the pad that close the gap at the lower limit of its tolerance
     closing_force     N at the pad that close this gap
-    stop_force        N that the stop pushes back under the whole load
-    deflection        mm by which the hinge has then turned, at the load line
-    rated_deflection  mm that no hinge may pass
-    stress            MPa at the fillet
+    stop_force        reaction of the stop under the whole load, N
+    deflection        by which the hinge has then turned, mm at the load line
+    rated_deflection  mm that no hinge may exceed
+    stress            at the fillet, MPa
     yield_factor      yield strength over that stress
-    rated_force       N, in use
-    refused           why the estimator has nothing to say; then the numbers are NaN
+    rated_force       in use, N
+    refused           why the estimator refuses the element; then the numbers are NaN
     """
 
     place: ElementPlace

@@ -1,4 +1,4 @@
-"""Materials that no design names, and the plates' alloy."""
+"""Materials that no field of a design names, and the plates' alloy."""
 
 from __future__ import annotations
 

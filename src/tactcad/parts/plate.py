@@ -1,4 +1,6 @@
-"""What is milled from plate: end plates, carrier and the rigs' plates differ in contour and features only."""
+"""Plates milled from plate stock: end plates, carrier and the rigs' plates, which differ in contour and
+features.
+"""
 
 from __future__ import annotations
 

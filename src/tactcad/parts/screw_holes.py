@@ -24,7 +24,7 @@ def sunk(name: str, thread: str, at: Vector, axis: Vector, thickness: float, und
 def tapped(name: str, thread: str, at: Vector, axis: Vector, thickness: float, engaged: float = 0.0) -> Hole:
     """Drilled through, or blind where the plate is thicker than a drill reaches.
 
-    Threaded from `at` as deep as is of use, and as deep as the screw reaches that is `engaged` mm in.
+    Threaded from `at` as deep as is useful, and at least to the end of the screw, which is `engaged` mm in.
     """
     m = METRIC[thread]
     full = min(thickness, max(DEEPEST_THREAD * m.d, engaged))

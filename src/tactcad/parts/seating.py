@@ -1,6 +1,6 @@
-"""How hard the set screws seat the stop plate: they bow stack and carrier apart between the end plates.
+"""How hard the set screws seat the stop plate; they bend stack and carrier apart between the end plates.
 
-A stop plate that only lies on its ledges, its set screws touching it, is held as well: seating takes their
+A stop plate that only lies on its ledges, touched by its set screws, is held as well: seating takes up their
 play.
 """
 
@@ -15,11 +15,10 @@ from .layout import Layout
 from .library.screws import seating_force, seating_torque
 from .stop_give import carrier_beam
 
-# Of the pads' tolerance, what the stack may bow: it makes the pads' error, in root sum of squares, an eighth
-# larger.
+# Share of the pads' tolerance by which the stack may bow: in root sum of squares it makes the pads' error an
+# eighth larger.
 BOW = 0.5
-# mm within which the rigs' plates and the lid are made flat (`finish`); the carrier under one may bow by as
-# much.
+# mm: flatness of the rigs' plates and the lid (`finish`); the carrier on one may bow by as much.
 FLAT = 0.02
 # N m; chosen: the smallest torque drivers for screws begin there.
 LEAST_TORQUE = 0.02
@@ -34,12 +33,12 @@ def stack_beam(layout: Layout) -> Beam:
 
 
 def stack_bow(layout: Layout) -> float:
-    """mm that the stack bows for each newton of every set screw."""
+    """Deflection of the stack for each newton on every set screw, mm/N."""
     return _bow(layout, stack_beam(layout))
 
 
 def carrier_bow(layout: Layout) -> float:
-    """mm that the carrier bows, likewise."""
+    """Deflection of the carrier for each newton on every set screw, mm/N."""
     return _bow(layout, carrier_beam(layout, 2 * layout.end_plate_y))
 
 
@@ -48,8 +47,11 @@ def _bow(layout: Layout, beam: Beam) -> float:
 
 
 def torque(layout: Layout) -> float:
-    """N m of the set screws, to one digit: the thread's, or less, so that stack and carrier bow no more than
-    they may; 0 where that is too little to be set: then they only touch the plate."""
+    """Torque of the set screws, N m, rounded to one digit.
+
+    The thread's seating torque, or less, so that stack and carrier bow no more than they may. 0 where that is
+    too little to be set: the screws then only touch the plate.
+    """
     thread = layout.design.clamp.screw
     full, force = seating_torque(thread), seating_force(thread)
     bows = force * stack_bow(layout) / (BOW * layout.design.tolerance.pad_height)

@@ -1,5 +1,4 @@
-"""What to change where a part gives way by more than it may: the field, and from where on its value is
-enough."""
+"""Which field to change where a part gives way too much, and to which value."""
 
 from __future__ import annotations
 
@@ -39,8 +38,9 @@ def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
 
 
 def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
-    """The value nearest to `far`, which does not help, that still does, as `near` does; whole, or of four
-    digits."""
+    """The value nearest to `far` (which does not suffice) that still suffices, as `near` does; whole, or of
+    four digits.
+    """
     good, bad = near, far
     for _ in range(STEPS):
         middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2

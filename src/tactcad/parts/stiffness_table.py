@@ -1,8 +1,8 @@
-"""What is taken as rigid, and by how much it bends: a line a part and load, for the array and each of its
+"""Parts that are taken as rigid, and how much they bend: a line for each part and load, of the array and its
 rigs.
 
-Beams and round plates (mechanics/bending.py) on supports that let them turn, where nothing is said; so most
-bend less. Bought parts are not in it: their makers state how stiff they are.
+Beams and round plates (mechanics/bending.py) on supports that let their ends turn, unless a line says
+otherwise; real parts mostly bend less. Bought parts are left out: their makers state their stiffness.
 """
 
 from __future__ import annotations
@@ -18,11 +18,10 @@ from . import seating
 from .layout import Layout
 from .stop_give import SHARE, carrier_beam, carrier_opens
 
-# Of the pads' tolerance, of a calibration step, of the allowed tilt: what a load may take. A tenth adds 0.5 %
-# in root sum of squares, so that a dozen of them together are still less than the tenth part of what they are
-# a share of.
+# Share that one load may take of the pads' tolerance, of a calibration step, of the allowed tilt. A tenth
+# adds 0.5 % in root sum of squares, so that a dozen together add less than a tenth.
 TENTH = 0.1
-# By this share more is the same: sums of the same numbers in another order.
+# Relative excess that is still rounding: sums of the same numbers in another order.
 ROUNDING = 1e-9
 
 
@@ -30,13 +29,13 @@ ROUNDING = 1e-9
 class Deflection:
     """One part under one load.
 
-    scene       where it stands so
-    part, model what bends, and as what
+    scene       where it stands under this load
+    part, model what bends, and the model of it
     load        N, and `origin`, why so much
-    gives       um; below 0 where that closes a gap
+    gives       um; negative where that closes a gap
     allowed     um, and `why`
-    fields      paths of the design's fields that make it bend less, the first to be looked at first
-    severity    `flag`: where the array is well, and whoever builds or holds it has to know
+    fields      paths of the design's fields that make it bend less, the most useful first
+    severity    `flag`: the array works all the same, but whoever builds or holds it has to know
     """
 
     scene: str

@@ -1,14 +1,13 @@
-"""How far the stop plate gives way where an arm presses it off its ledges, from the set screws that hold it
-down.
+"""Compliance of the stop plate where an arm presses it off its ledges, held down by set screws.
 
-Two beams in a row, each on supports that let it turn: across, from one row of set screws to the other, a
-strip as wide as a slab lends to one load (2.4 a (1 - a/span), in the middle 0.6 of the span; BS 8110-1,
-3.5.2.2) carries the arm; along, the whole plate spans from one pair of set screws to the next. To that comes
-the set screw's own length. Ledges, further spans, and the screws' seating, which presses the plate on its
-ledges, only take from it.
+Two beams in series, each on supports that let its ends turn. Across, from one row of set screws to the other,
+a strip carries the arm; it is as wide as a slab contributes to a single load (2.4 a (1 - a/span), in the
+middle 0.6 of the span; BS 8110-1, 3.5.2.2). Along, the whole plate spans from one pair of set screws to the
+next. The set screw's compression is added. Ledges, further spans, and the screws' seating, which presses the
+plate on its ledges, only make it stiffer.
 
-The carrier is not in it: held at its threads in the middle it opens no gap by a hundredth of a micrometre
-(`carrier_opens`; stiffness_table.py holds that, and what it is for an array held by its end plates alone).
+The carrier is left out: held at its threads in the middle it opens no gap by a hundredth of a micrometre
+(`carrier_opens`; stiffness_table.py checks that, and states it for an array held by its end plates alone).
 """
 
 from __future__ import annotations
@@ -28,17 +27,17 @@ if TYPE_CHECKING:
 # 1.4301, EN 10088-1; A2 screws are of the same steel. MPa
 STEEL_MODULUS, STEEL_POISSON = 200000.0, 0.3
 SLAB = 0.6
-# Of its gap, what the plate may give way under an arm. The gap is cut narrower by what is told here; were it
-# a third more, which elements do not find, that were 3 % of the gap, where the rated deflection keeps 5 %
-# (1.2 over 1.14).
+# Share of its gap by which the plate may give way under an arm. The gap is cut narrower by the value computed
+# here. If the true value were a third larger, which finite elements do not find, the error would be 3 % of
+# the gap; the rated deflection has a margin of 5 % (1.2 over 1.14).
 SHARE = 0.1
 
 
 @dataclass(frozen=True)
 class StopPlate:
-    """Its beams between set screws, and the compliance of one set screw (mm/N).
+    """The plate's beams between set screws, and the compliance of one set screw (mm/N).
 
-    One arm under the whole overload force is the worst: there is no more force, and shared it bends the plate
+    The worst case is one arm under the whole overload force: the same force on several arms bends the plate
     less.
     """
 
@@ -48,12 +47,12 @@ class StopPlate:
 
     @property
     def one(self) -> float:
-        """mm/N of one arm alone, wherever it stands."""
+        """Compliance under a single arm, wherever it stands, mm/N."""
         return self.across.supported() + self.along.supported() + self.screw
 
 
 def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
-    """The design's; with set screws `pitch` mm apart, if given, instead."""
+    """The design's plate; `pitch` (mm between set screws) replaces the design's."""
     d = layout.design
     t = d.clamp.stop_plate_thickness
     span = unheld(layout) if pitch is None else pitch
@@ -72,7 +71,7 @@ def stop_plate_beams(layout: Layout, pitch: float | None = None) -> StopPlate:
 
 
 def carrier_beam(layout: Layout, length: float) -> Beam:
-    """That much of the carrier along the row, mm; its holes are not taken off."""
+    """That length (mm) of the carrier along the row as a beam; its holes are neglected."""
     alloy = ALLOYS[layout.design.clamp.plate_alloy]
     width, t = layout.carrier_size[0], layout.design.clamp.carrier_thickness
     return Beam(length, width, t, alloy.youngs_modulus, alloy.poisson)
@@ -104,8 +103,9 @@ def unheld(layout: Layout) -> float:
 
 
 def derived_pitch(layout: Layout) -> float:
-    """Largest whole mm between set screws at which the plate, along the row, gives way by SHARE of the gap's
-    tolerance under the overload force: a gap is always more than its tolerance."""
+    """Largest pitch of the set screws, whole mm, at which the plate's bending along the row is within SHARE
+    of the gap's tolerance under the overload force: a gap always exceeds its tolerance.
+    """
     d = layout.design
     width, t = 2 * layout.stop_plate_half, d.clamp.stop_plate_thickness
     for pitch in range(LONGEST_PITCH, ceil(shortest_pitch(layout)), -1):
@@ -116,7 +116,7 @@ def derived_pitch(layout: Layout) -> float:
 
 
 def shortest_pitch(layout: Layout) -> float:
-    """The shortest at which neighbouring set screws, half of it apart, still have metal between them; mm."""
+    """Shortest pitch at which neighbouring set screws, half of it apart, leave metal between them, mm."""
     return max(5.0, 2 * METRIC[layout.design.clamp.screw].d + 1)
 
 

@@ -9,7 +9,7 @@ from tactcad.contour.nearest import distance_to
 
 from .description import Extrusion, Hole, ModelFile, Part, Pocket, Revolution, drill_point_height
 
-ON_OUTLINE = 1e-9  # mm: a pocket's side nearer than this to the outline is open there
+ON_OUTLINE = 1e-9  # mm: a pocket whose side is nearer than this to the outline is open on that side
 
 
 def surface_area(part: Part) -> float | None:

@@ -1,9 +1,9 @@
-"""Which parts stand where, under which designator, with which meant contacts, and in which order they are
+"""Which parts stand where, under which designator, with which intended contacts, and in which order they are
 put together.
 
 In: a design, and a pose. Out: a scene, which is a list of placements and no geometry; a scene is a module of
-this room with a function of its own name. Which scenes a design has is known without importing them: that
-must cost nothing.
+this room with a function of its own name. Finding out which scenes a design has must be cheap, so it imports
+none of them.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def scene_names(design: Design) -> tuple[str, ...]:
 
 
 def left_out(design: Design) -> list[str]:
-    """Why scenes whose tables the design has are not among its scenes, a line each."""
+    """Why scenes whose tables the design has are not among its scenes, one line for each."""
     lines = []
     for name in _with_tables(design):
         why = _misfit(design, name)
@@ -50,8 +50,9 @@ def left_out(design: Design) -> list[str]:
 
 
 def fitting_rules(scene: str) -> dict[str, Rule]:
-    """Rules that an array must keep to have that scene, by name; what asks for placements stands in this
-    room."""
+    """Rules that an array must keep to have that scene, by name; those that need placements are defined in
+    this room.
+    """
     rules = scene_rules(scene)
     if scene == "grasping":
         from .moving_axis import ballast_trims_moving_weight as trimmed
@@ -71,8 +72,11 @@ def _with_tables(design: Design) -> list[str]:
 
 
 def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
-    """The scenes asked for, each once, in the house's order; all where none is. Raises InputError for an
-    unknown one."""
+    """The scenes asked for, each once, in the order of `NEEDS`; all scenes of the design where none is asked
+    for.
+
+    Raises InputError for a scene that the design does not have.
+    """
     names = scene_names(design)
     for name in wanted or ():
         if name not in names:
@@ -87,10 +91,21 @@ def chosen_scenes(design: Design, wanted: list[str] | None) -> tuple[str, ...]:
 
 
 def make_scene(design: Design, name: str, pose: Pose | None = None) -> Scene:
-    """The scene of that name (one of scene_names) of a design that keeps every rule, in its rest pose or
-    another.
+    """One scene of a design.
 
-    The array has no other pose. Raises InputError where the pose is impossible.
+    Parameters
+    ----------
+    design
+        Must keep every rule, as `tactcad.parts.designs.load` ensures.
+    name
+        One of `scene_names(design)`.
+    pose
+        By default the rest pose; the scene `array` has no other.
+
+    Raises
+    ------
+    InputError
+        Where the pose is impossible.
     """
     own = name.replace("-", "_")
     make = getattr(importlib.import_module(f"tactcad.scenes.{own}"), own)

@@ -41,8 +41,14 @@ HOLD_DOWN = "Hold the stop plate down"
 def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
     """Scene `array` of a design; elements are E1, E2, ... by number.
 
-    `instead` gives other parts by element number, such as one that a rig has pressed. Without `stops` the
-    stop plate and its set screws are not in place yet, as in the calibration.
+    Parameters
+    ----------
+    design
+        Must keep every rule.
+    instead
+        Other parts by element number, such as one that a rig has pressed.
+    stops
+        Whether the stop plate and its set screws are in place; they are not in the calibration.
     """
     layout = Layout(design)
     b = _placed(layout, instead, stops)
@@ -51,7 +57,7 @@ def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), st
 
 
 def without_gaps(design: Design) -> Scene:
-    """The array's placements, its elements without a stop gap and no steps: what needs no estimator."""
+    """The array's placements without steps, its elements without a stop gap: this needs no estimator."""
     layout = Layout(design)
     return _placed(layout, {p.number: element(layout, p, 0.0) for p in layout.elements}, True).scene("array")
 
@@ -70,7 +76,7 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
 
 
 def _cover(b: Builder) -> set[str]:
-    """What is taken off to look inside: every screw and pin too."""
+    """Designators of what is taken off to look inside: screws and pins among them."""
     return {"ST1", "CA1", "EP1"} | {p.designator for p in b.placements if p.part.bought}
 
 

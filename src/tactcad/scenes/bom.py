@@ -1,7 +1,7 @@
-"""Bill of materials of a scene: what is made, what is bought, what is used up.
+"""Bill of materials of a scene: parts made, parts bought, supplies used up.
 
-Placing a part emits its line: rows are read off the scene's placements, never written by hand, and the
-solids of the scene are the sum of `qty` over the rows with `has_solid`.
+Placing a part adds its line: rows are derived from the scene's placements, never written by hand, and the
+number of solids in the scene is the sum of `qty` over the rows with `has_solid`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from tactcad.parts.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 
 SCHEMA = "tactcad-bom-1"
-# Designations that say too little to order by: the standard, and what has to follow.
+# Designations that are incomplete for an order: the standard, and what has to follow.
 ORDERABLE = {
     "ISO 4762": (
         re.compile(r"\b(A[1-5]-\d{2,3}|\d{1,2}\.9|8\.8)\b"),
@@ -67,7 +67,14 @@ COLUMNS = tuple(f.name for f in fields(BomRow))
 def bom_rows(scene: Scene, revision: str, files: Mapping[str, tuple[str, str]]) -> tuple[BomRow, ...]:
     """The lines of a scene: made parts, then bought ones, then supplies; each in order of first placement.
 
-    `files` gives path and SHA-256 of the file that a part (by number) is made from.
+    Parameters
+    ----------
+    scene
+        Its placements and supplies.
+    revision
+        Of the design, for made parts.
+    files
+        By part number: path and SHA-256 of the file that the part is made from.
     """
     parts = sorted(scene.parts, key=lambda part: part.bought)
     rows = [
@@ -197,7 +204,7 @@ def rows_from_json(data: bytes) -> tuple[BomRow, ...]:
 
 
 def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
-    """What is wrong with the written bills against the scene; empty where nothing is."""
+    """Differences between the written bills and the scene, one line for each; empty where they agree."""
     try:
         rows, same = rows_from_json(as_json), rows_from_csv(as_csv)
     except (ValueError, TypeError, KeyError) as error:
@@ -220,7 +227,7 @@ def check_bom(scene: Scene, as_csv: bytes, as_json: bytes) -> list[str]:
 
 
 def incomplete(row: BomRow) -> list[str]:
-    """What a buyer would have to ask back about a line."""
+    """What is missing from a line for a buyer to order by it."""
     if row.make_buy == "make":
         return [f"{row.part_no}: no {name}" for name in ("material", "rev") if not getattr(row, name)]
     if not row.standard_designation and not row.mpn:

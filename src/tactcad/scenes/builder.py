@@ -32,8 +32,9 @@ POINTING: dict[Vector, Rotation] = {
 
 
 class Builder:
-    """Placements in order. A group or a step takes what is placed while it is open; `placed_in` keeps what
-    was placed for a step that is named where the part is."""
+    """Collects placements in order. A group or a step takes what is placed while it is open; `placed_in`
+    keeps what was placed for a step whose title was given with the part.
+    """
 
     def __init__(self) -> None:
         self.placements: list[Placement] = []
@@ -50,7 +51,7 @@ class Builder:
         self._unit = ""
 
     def group(self, name: str | None) -> None:
-        """What is placed from here on moves with the group `name` (None: stands still)."""
+        """Parts placed from here on move with the group `name` (None: they stand still)."""
         self._group = name
 
     def unit(self, name: str) -> None:

@@ -169,7 +169,7 @@ def _series(design: Design) -> str:
 
 
 def _limits(design: Design) -> str:
-    """What the calibration asks of each arm, and where it would do harm."""
+    """Load that the calibration puts on each arm, and the travel at which it would do damage."""
     c = present(design.calibration)
     lines, seen = [], set()
     for load in sorted(calibration_loads(design), key=lambda load: load.place.arm):

@@ -1,8 +1,7 @@
-"""What moves with the array in the grasping set-up: its parts, what they weigh, and the ballast that trims
-them.
+"""Parts that move with the array in the grasping set-up, their weight, and the ballast that trims it.
 
 The weight is that of the parts placed. The rule on the ballast places them too, with elements that have no
-stop gap: which scenes a design has must be known without the estimator.
+stop gap, because the scenes of a design must be known without the estimator.
 """
 
 from __future__ import annotations
@@ -88,10 +87,10 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
 
 
 def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
-    """Thickness (mm) and mass (g) of the ballast for what else moves, without its pin; no mass where that is
-    too heavy.
+    """Thickness (mm) and mass (g) of the ballast, from everything else that moves; no mass where that is too
+    heavy.
 
-    A pin that is longer for the ballast's sake weighs a little more itself.
+    A pin that is longer because of the ballast weighs slightly more itself, which is taken into account.
     """
     room = rig.grasping.moving_weight / NEWTON - mass - cap_screw(*PIN_SCREW).mass
     thick = ballast_thickness(rig, max(room - rigs.pin(rig).mass, 0.0))
@@ -99,10 +98,10 @@ def _trim(rig: GuideLayout, mass: float) -> tuple[float, float]:
 
 
 def ballast_range(rig: GuideLayout) -> tuple[float, float]:
-    """Least and largest moving weight (N) that a ballast under the weights trims to.
+    """Smallest and largest moving weight (N) that a ballast under the weights can trim to.
 
-    Without the estimator: elements are taken without a stop gap, and all that a gap could take off them is
-    allowed for.
+    Computed without the estimator: elements are taken without a stop gap, with an allowance for the material
+    that a gap could remove.
     """
     layout, d = rig.array, rig.design
     b = Builder()

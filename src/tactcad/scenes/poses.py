@@ -14,14 +14,17 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 from .scene import Pose
 
-LEAST = 1e-3  # mm; less is more likely a slip, and edges so short are none for the CAD kernel
+LEAST = 1e-3  # mm; less is more likely a typing error, and the CAD kernel drops edges that short
 
 
 def poses(design: Design, name: str) -> tuple[Pose, ...]:
-    """Every element under the sensor, at the deflection that its stage's whole travel gives; the tip half
-    and all the way into the sample; the array lifted, without weights, and pressed in."""
+    """Every pose of a scene that is checked, apart from its rest pose.
+
+    Calibration: every element under the sensor, deflected by its stage's whole travel. Sample stiffness: the
+    tip half and all the way into the sample. Grasping: the array lifted, without weights, and pressed in.
+    """
     if name == "calibration":
-        # to a micrometre: what a check tells apart; one that the estimator does not reach as if it had no
+        # to a micrometre, which a check can resolve; an element that the estimator refuses, as if it had no
         # stiffness
         free = [
             present(design.calibration).travel if load.refused else load.deflection
@@ -53,8 +56,9 @@ def _pressed_in(design: Design) -> tuple[Pose, ...]:
 
 
 def pose_of(given: Sequence[str], design: Design) -> Pose | None:
-    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError for what is no
-    pose."""
+    """The pose that KEY=VALUE texts describe; None where there are none. Raises InputError where they
+    describe none.
+    """
     limits = {
         "element": (1, sum(len(row) for row in design.array.row_arms)),
         "deflection": (0.0, 5.0),

@@ -64,9 +64,10 @@ class Motion:
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
-    `fan` spreads the step's parts over the outer half of that way, in their order. `bench` is done apart from
-    what stands already; `aside` is driven or taken out of the way meanwhile; `ready` was put together before.
-    `unit` names the sub-assembly of the scene that the step belongs to; none where the scene is one.
+    `fan` spreads the step's parts over the outer half of that way, in their order. A `bench` step is done
+    away from what stands already. `aside` parts are driven or taken out of the way during the step; `ready`
+    ones were put together before. `unit` names the sub-assembly of the scene that the step belongs to; empty
+    where the scene is one.
     """
 
     title: str

@@ -104,8 +104,22 @@ def counterbore_diameter(thread: str) -> float:
 
 
 def cap_screw(thread: str, length: float) -> Part:
-    """ISO 4762 socket head cap screw. Raises KeyError for a size or ValueError for a length not in the
-    standard."""
+    """ISO 4762 socket head cap screw.
+
+    Parameters
+    ----------
+    thread
+        Such as "M3".
+    length
+        mm, a length of the standard.
+
+    Raises
+    ------
+    KeyError
+        Where the table has no such thread.
+    ValueError
+        Where the standard has no such length.
+    """
     m = METRIC[thread]
     if length not in CAP_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4762 {thread} has no length {length:g}; it has {CAP_SCREW_LENGTHS[thread]}")
@@ -134,7 +148,10 @@ def cap_screw(thread: str, length: float) -> Part:
 
 
 def set_screw(thread: str, length: float) -> Part:
-    """ISO 4026 set screw with flat point: z = 0 is the driven end, the point at z = length."""
+    """ISO 4026 set screw with flat point: z = 0 is the driven end, the point at z = length (mm).
+
+    Raises KeyError for a thread and ValueError for a length that the standard does not have.
+    """
     m = METRIC[thread]
     if length not in SET_SCREW_LENGTHS[thread]:
         raise ValueError(f"ISO 4026 {thread} has no length {length:g}; it has {SET_SCREW_LENGTHS[thread]}")
@@ -158,10 +175,10 @@ def set_screw(thread: str, length: float) -> Part:
 
 
 def for_pictures(part: Part) -> Part:
-    """A screw or rod as thin as its tapped hole, a hair less; any other part as it is.
+    """A screw or rod made slightly thinner than its tapped hole; any other part as it is.
 
-    Hidden-line removal takes parts as not meeting: a thread that reaches into the material around its hole
-    leaves ticks on the faces that it pierces.
+    Hidden-line removal assumes that parts do not overlap: a thread that reaches into the material around its
+    hole leaves marks on the faces that it pierces.
     """
     match = _THREADED.match(part.part_no)
     if not match or isinstance(part.body, ModelFile):

@@ -13,6 +13,7 @@ def rows(name: str) -> list[dict[str, str]]:
 
 
 def number(text: str) -> float:
-    """A cell's number, mm where its table says nothing else; a whole one stays whole, as part numbers print
-    it."""
+    """A cell's number, in mm unless its table says otherwise; an integer stays an integer, as in part
+    numbers.
+    """
     return float(text) if "." in text else int(text)

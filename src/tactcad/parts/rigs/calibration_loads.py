@@ -1,4 +1,4 @@
-"""What the calibration's whole travel asks of every element, the stop plate off."""
+"""Load on every element at the end of the calibration's travel, without the stop plate."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class CalibrationLoad:
     rated_deflection  mm that the hinge may give way
     travel_at_rated   mm of the micrometer that reach it
     travel_at_yield   mm of the micrometer at which the fillet yields
-    refused           why the estimator has nothing to say; then the numbers are NaN
+    refused           why the estimator refuses the element; then the numbers are NaN
     """
 
     place: ElementPlace

@@ -28,7 +28,7 @@ from .guide_layout import guide_layout
 
 @dataclass(frozen=True)
 class StandLayout:
-    """Derived dimensions (mm) of the stand, which is as large as the design's set-ups need it."""
+    """Derived dimensions (mm) of the stand, which is sized for the set-ups that the design has."""
 
     design: Design
 

@@ -44,13 +44,14 @@ THREAD_COLUMN = 4.0  # mm of the post's width that a column of M4 threads takes
 BACK = 35.0  # mm, half the height of gauge plate and axis plate
 SEAT = 10.0  # mm, the roller's seat (roller_tip.py)
 LID = "holder.lid_thickness"
-# Scene, N, where that is from, um allowed and why, fields that change one of both.
+# Scene, load (N) and its origin, what is allowed (um) and why, fields that change the load or the allowance.
 Load = tuple[str, float, str, float, str, tuple[str, ...]]
 
 
 def calibration_lines(design: Design) -> Iterator[Deflection]:
-    """In series with the gauge, one by one and together: what gives way there is read as the element's own
-    deflection."""
+    """Parts in series with the gauge, each by itself and all together: their deflection is read as the
+    element's.
+    """
     lines = tuple(_in_series(design))
     yield from lines
     one, own = lines[0], 1e3 * lines[0].load / present(design.calibration).load_cell_stiffness
@@ -69,7 +70,7 @@ def calibration_lines(design: Design) -> Iterator[Deflection]:
 
 
 def series_give(design: Design) -> float:
-    """What stand and mount of the calibration add to the gauge's own compliance, mm/N."""
+    """Compliance that stand and mount of the calibration add to the gauge's own, mm/N."""
     return sum(1e-3 * line.gives / line.load for line in _in_series(design))
 
 
@@ -127,7 +128,7 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
     pressed = _lid(rig.cart)[1] / (pi * radius**2)
     yield _line(vacuum, "holder's lid", "round plate on its rim, pierced, evenly pressed", pressed, LID)
 
-    # What turns foot or bar tilts the array: told where it shows, between the ends of a row.
+    # What turns foot or bar tilts the array: stated as the difference between the ends of a row.
     row = max(layout.positions - 1, 1) * design.array.pitch
     tilt = (
         "grasping",
@@ -160,7 +161,7 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
 
 
 def _stand_lines(rig: StandLayout, touch: float, load: Load) -> Iterator[Deflection]:
-    """Base plate, post and the gauge's plates: a frame that the force at the gauge's axis opens."""
+    """Base plate, post and the gauge's plates: a C-frame that the force on the gauge's axis opens."""
     design = rig.design
     base = _plate(design, LEVER, POST[0], BASE[1])
     yield _line(load, "base plate", "held under the post, as wide as it", base.cantilever())

@@ -123,7 +123,7 @@ def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
 
 
 def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:
-    """The carrier's pattern of threads against M4 screws at (x, y): a web between their counterbores."""
+    """The carrier's threads stand clear of M4 screws at (x, y): with a web between their counterbores."""
     c = layout.design.clamp
     apart = hypot(layout.mount_x - x, c.mount_pitch_y / 2 - y)
     least = (counterbore_diameter("M4") + counterbore_diameter(c.mount_thread)) / 2 + HOLE_WEB

@@ -20,7 +20,7 @@ LEAST_AIR = 0.5  # between things that pass each other, mm
 
 
 def on_cart(find: Callable[[CartLayout], Iterable[Finding]]) -> Find:
-    """A rule on cart, holder and sample: it says nothing where the design has none."""
+    """Make a function of the cart's layout a rule; a design without a cart keeps it."""
 
     @wraps(find)
     def where_present(layout: Layout) -> Iterable[Finding]:

@@ -59,8 +59,9 @@ def gauge_fits_width(layout: Layout) -> Iterator[Finding]:
 
 
 def neighbours_take(layout: Layout) -> float:
-    """By how much tolerances bring an arm nearer to what stands a spacer beside it (mm): half of both
-    sheets', and the spacer's own."""
+    """How much nearer tolerances bring an arm to its neighbour, a spacer away, mm: half of both sheets' and
+    the spacer's own.
+    """
     return layout.design.tolerance.sheet_thickness + SPACER_TOLERANCE
 
 
@@ -79,8 +80,9 @@ def arms_clear_neighbours(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="override_names_element")
 def leads_have_room(layout: Layout) -> Iterator[Finding]:
-    """Leads run in the wire recess, as wide as element and spacer; before it under the face, beside the
-    gauge."""
+    """The leads fit: in the wire recess, as wide as element and spacer; in front of it under the face, beside
+    the gauge.
+    """
     d, e = layout.design, layout.design.element
     if leads_that_fit(layout) < LEADS:
         rows = -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME)))

@@ -1,4 +1,4 @@
-"""Rules on pressed arms, and on the contour that all rules before have made sure of."""
+"""Rules on pressed arms, and on the final contour, which the rules before these make possible."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ from .rule import rule, wrong
 
 
 def turns(layout: Layout) -> list[float]:
-    """Angle by which each arm turns at most, by number: onto its stop at its gap and tolerance, and with
-    the stop plate as far as that gives way; in the calibration, which has none, by what its travel gives."""
+    """Largest angle by which each arm turns, by number.
+
+    Onto its stop, at the stop's gap, tolerance and compliance; in the calibration, which has no stop plate,
+    by the deflection at the end of its travel.
+    """
     design = layout.design
     gives = layout.stop_give * design.rating.overload_force
     tips = [stop_gap(layout, p) + design.stop.tolerance + gives * p.load_arm / p.arm for p in layout.elements]
@@ -36,8 +39,7 @@ def hinge_centre(layout: Layout, place: ElementPlace) -> float:
 
 @rule(after="stop_land_above_arm")
 def land_stands_over_arm(layout: Layout) -> Iterator[Finding]:
-    """On the closed stop the arm's back is a land's height under the stop plate, which its tolerance may
-    take."""
+    """On the closed stop the arm's back stays a land's height, less its tolerance, under the stop plate."""
     taken = layout.design.tolerance.arm_height
     for p in layout.elements:
         high = layout.ledge_of(p.hinge) - stop_gap(layout, p) - p.hinge.h
@@ -119,8 +121,9 @@ _FIELD = {
 
 @rule(after="pressed_arms_clear_opposite_row")
 def no_slivers(layout: Layout) -> Iterator[Finding]:
-    """Every piece of every element's contour is LEAST_EDGE long, or not there at all: neither wire nor kernel
-    makes a shorter one."""
+    """Every piece of every element's contour is at least LEAST_EDGE long: neither wire nor kernel makes a
+    shorter one.
+    """
     seen = set()
     for p in layout.elements:
         gap = stop_gap(layout, p)

@@ -1,4 +1,4 @@
-"""A rule between fields, and helpers that word what it finds."""
+"""A rule between fields, and helpers that word its findings."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ Find = Callable[[Layout], Iterable[Finding]]
 
 @dataclass(frozen=True)
 class Rule:
-    """A function that says what is wrong, the first thing first.
+    """A function from a layout to findings, the most important first.
 
     after   name of an earlier rule: this one is tried only where that one and all before it are kept, because
-            it
-            would only repeat what they say, or could not be computed
-    scenes  scenes whose rig needs it: a design that breaks it loses these and is not refused
+    it
+            would only repeat their findings, or could not be computed
+    scenes  scenes whose rig needs it: a design that breaks it loses these scenes and is not refused
     """
 
     find: Find
@@ -36,7 +36,7 @@ class Rule:
 
 
 def rule(after: str = "") -> Callable[[Find], Rule]:
-    """Makes a function a rule that every design must keep."""
+    """Makes a function a rule that every design must keep; `after` as in `Rule`."""
     return lambda find: Rule(find, after)
 
 
@@ -46,17 +46,27 @@ def fits(*scenes: str) -> Callable[[Find], Rule]:
 
 
 def wrong(path: str, what: str, value: object, legal: str) -> Finding:
-    """A finding on the field at `path`; the rule's name is added where the rule is tried."""
+    """A finding on a field; the rule's name is added where the rule is tried.
+
+    Parameters
+    ----------
+    path
+        Of the field, such as "element.hinge_thickness".
+    what
+        Is wrong: one clause.
+    value, legal
+        The field's value, and in words what would be accepted.
+    """
     return Finding("", "fail", path, (), value, legal, what)
 
 
 def at_least(path: str, what: str, value: float, least: float, legal: str = "") -> Iterator[Finding]:
-    """A finding where the value is under what it must be at least, mm if `legal` says nothing else."""
+    """A finding where the value is below `least`; `legal` words the limit, by default in mm."""
     if value < least - SAME:
         yield wrong(path, what, value, legal or f"at least {least:g} mm")
 
 
 def at_most(path: str, what: str, value: float, most: float, legal: str = "") -> Iterator[Finding]:
-    """A finding where the value is over what it may be at most, mm if `legal` says nothing else."""
+    """A finding where the value is above `most`; `legal` words the limit, by default in mm."""
     if value > most + SAME:
         yield wrong(path, what, value, legal or f"at most {most:g} mm")

@@ -1,6 +1,7 @@
-"""Rules on the rigs' parts that are taken as rigid: tactcad check has the same lines (checks/rigidity.py).
+"""Rules on the rigs' parts that are taken as rigid, by the lines of `tactcad check` (checks/rigidity.py).
 
-The array's need none: `stop_plate_stays` and `stop_gap_above_tolerance` refuse first what bends there."""
+The array needs none: `stop_plate_stays` and `stop_gap_above_tolerance` refuse its deflections first.
+"""
 
 from __future__ import annotations
 

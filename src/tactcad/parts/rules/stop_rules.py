@@ -103,10 +103,9 @@ def stop_land_above_arm(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_land_above_arm")
 def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
-    """Under an arm that the overload force presses on it the stop plate gives way by SHARE of the gap at
-    most.
+    """Under an arm pressed on it by the overload force the stop plate gives way by at most SHARE of the gap.
 
-    The gap is that of a stop that gives no way: what it protects does not depend on the plate.
+    The gap is taken for a rigid stop, so that the allowance does not depend on the plate.
     """
     d, give = layout.design, layout.stop_give
     for p in layout.elements:
@@ -125,7 +124,8 @@ def stop_plate_stays(layout: Layout) -> Iterator[Finding]:
 
 def _what_helps(layout: Layout, what: str, allowed: float) -> Finding:
     """The field that brings the plate's compliance (mm/N) down to what is allowed: the pitch if it is given
-    and enough, else a thicker plate, else less force."""
+    and suffices, else a thicker plate, else less force.
+    """
     d, c = layout.design, layout.design.clamp
     if c.hold_down_pitch is not None:
         pitch = _largest_pitch(layout, allowed)
@@ -154,7 +154,7 @@ def _largest_pitch(layout: Layout, allowed: float) -> float | None:
 
 @rule(after="stop_plate_stays")
 def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
-    """A gap that the design gives is no wider than the hinge bears; a derived one is made so."""
+    """A gap given in the design is not wider than the hinge bears; a derived one is so by construction."""
     stop = layout.design.stop
     for p in layout.elements:
         given = stop.gaps.get(p.arm) if stop.gaps else None
