@@ -47,6 +47,7 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
     if len(step) > MOST:
         group = np.arange(len(step)) * MOST // len(step)
         step, index = step[np.searchsorted(group, np.arange(MOST))], group[index]
+    run = np.unique(run, return_inverse=True)[1]
     start = len(step) - max(ceil(IN_CONTACT * len(step)), 3)
     for i in range(start - 1, 0, -1):
         beyond = index > i
@@ -57,21 +58,22 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
 
 def _on_line(x: np.ndarray, force: np.ndarray, run: np.ndarray, beyond: np.ndarray, at: np.ndarray) -> bool:
     """Whether the readings `at` one step lie on, or below, the line through those `beyond` it, in every
-    run."""
-    runs = [r for r in np.unique(run[at]) if (run[beyond] == r).any()]
-    if not runs or spare_steps(x[beyond], run[beyond]) < 1:
+    run; runs are numbered from 0."""
+    here, known = (np.bincount(run[rows], minlength=run.max() + 1) for rows in (at, beyond))
+    both = (here > 0) & (known > 0)
+    if not both.any() or spare_steps(x[beyond], run[beyond]) < 1:
         return True
     lines = fit_lines(x[beyond], force[beyond, None], run[beyond])
     noise = float((lines.residual[:, 0] ** 2).sum()) / lines.dof  # variance of one reading about the lines
-    slope_variance = float(lines.covariance[0, 0])
-    smallest = 1e-12 * float(np.abs(force).max())  # readings without noise lie on the line to rounding
-    for r in runs:
-        known, here = beyond & (run == r), at & (run == r)
-        away = float(x[here].mean() - x[known].mean())
-        excess = float(force[here].mean() - force[known].mean()) - float(lines.slope[0]) * away
-        spread = (noise * (1 / here.sum() + 1 / known.sum()) + slope_variance * away**2) ** 0.5
-        if excess > smallest and (
-            spread <= 0 or float(stdtr(lines.dof, -excess / spread)) < BEFORE / len(runs)
-        ):
-            return False
-    return True
+
+    def apart(v: np.ndarray) -> np.ndarray:
+        """Mean at the step less that beyond it, by run."""
+        means = [np.bincount(run[rows], v[rows], len(both))[both] for rows in (at, beyond)]
+        return means[0] / here[both] - means[1] / known[both]
+
+    away = apart(x)
+    excess = apart(force) - lines.slope[0] * away
+    spread = (noise * (1 / here[both] + 1 / known[both]) + lines.covariance[0, 0] * away**2) ** 0.5
+    above = excess > 1e-12 * np.abs(force).max()  # readings without noise lie on the line to rounding
+    chance = stdtr(lines.dof, -excess / np.maximum(spread, 1e-300))
+    return not (above & (chance < BEFORE / both.sum())).any()
