@@ -1,4 +1,4 @@
-"""What must be true of geometry, strength and assembly before it leaves the house.
+"""What must be true of geometry, strength and assembly before anything is released.
 
 In: a design that keeps its rules, and its scenes. Out: a report of findings; a failing one makes the exit
 status 1.

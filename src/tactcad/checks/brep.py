@@ -1,5 +1,6 @@
-"""Is the kernel's solid a good one: valid, one solid, one closed shell, the description's volume, no slivers,
-no surface through another one; and is it still, written as STEP and read back?"""
+"""Whether the kernel's solid is sound: valid, one solid, one closed shell, the description's volume, no
+slivers, no surface through another one; and whether it still is when written as STEP and read back.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +25,8 @@ from tactcad.solids.occt import as_edge
 from tactcad.solids.step import read_step, write_step
 
 VOLUME_AGREES = 1e-6
-# What comes back from a STEP file is what went in, but for the last of its 15 digits: shares of volume and
-# area, and mm.
+# A solid read back from STEP agrees with the one written up to the last of the file's 15 digits: shares of
+# volume and area, and mm.
 STEP_AGREES, STEP_AGREES_MM = 1e-9, 1e-6
 LEAST_FACE = LEAST_EDGE**2  # mm2
 
@@ -65,8 +66,7 @@ def check_brep(part: Part, shape: TopoDS_Shape) -> list[Finding]:
 
 
 def check_step(part: Part, shape: TopoDS_Shape) -> list[Finding]:
-    """The same findings on what the part's STEP file holds, and where that is not the shape that was
-    written."""
+    """The same findings on the part's STEP file, and where its solid is not the shape that was written."""
     try:
         return check_step_file(part, shape, write_step(shape))
     except ValueError as error:
@@ -106,8 +106,9 @@ def _tiny(part: Part, shape: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> Iterator[F
 
 
 def _size(sub: TopoDS_Shape, kind: TopAbs_ShapeEnum) -> tuple[float, tuple[float, float, float]]:
-    """Length (mm) of an edge or area (mm2) of a face, and its centre; a cone's tip has an edge without
-    extent."""
+    """Length (mm) of an edge or area (mm2) of a face, and its centre; the edge at a cone's tip has no
+    length.
+    """
     sums = GProp_GProps()
     if kind == TopAbs_FACE:
         BRepGProp.SurfaceProperties_s(sub, sums)

@@ -1,4 +1,6 @@
-"""The calibration has no stop plate: does any hinge pass its rated deflection at the end of the travel?"""
+"""Whether a hinge passes its rated deflection at the end of the calibration's travel, which no stop
+limits.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,10 @@ from tactcad.parts.rigs.calibration_loads import calibration_loads
 
 
 def check_calibration(design: Design) -> list[Finding]:
-    """Fail where the travel would make a hinge yield, flag where it passes the rated deflection, with the
+    """Fail where the travel makes a hinge yield, flag where it passes the rated deflection; each with the
     travel that does not.
 
-    An element whose strength the estimator cannot tell is flagged by the strength check.
+    An element whose strength the estimator cannot compute is flagged by the strength check.
     """
     findings = []
     travel = present(design.calibration).travel

@@ -1,4 +1,4 @@
-"""What the checks of a design found, and as files for machines: JSON and JUnit XML."""
+"""The findings of a design's checks, and as files for machines: JSON and JUnit XML."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tactcad.parts.stiffness_table import Deflection
 
 @dataclass(frozen=True)
 class Case:
-    """One check on one thing: which, on what (a part, a scene or the design), how long (s), what it found."""
+    """One check of one thing: a part, a scene or the design; its time (s) and findings."""
 
     check: str
     subject: str
@@ -58,14 +58,14 @@ class Report:
         return grouped
 
     def run(self, name: str, check: Callable[..., Iterable[Finding]], *args: Any) -> None:
-        """Run one check on its first argument (something with a part number or a name); keep what it says.
+        """Run one check on its first argument (something with a part number or a name) and keep its findings.
 
-        Where the estimator does not reach a design, what rests on it is flagged as not checked.
+        Where the estimator does not reach a design, what depends on it is flagged as not checked.
         """
         subject = getattr(args[0], "part_no", None) or args[0].name
         start = time.perf_counter()
         try:
-            findings = list(check(*args))  # one that yields does its work here
+            findings = list(check(*args))  # a generator does its work here
         except CheckFailure as error:
             findings = [Finding(name, "flag", subject, (), 0, 0, f"not checked: {error}")]
         seconds = time.perf_counter() - start

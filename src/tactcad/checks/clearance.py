@@ -1,12 +1,13 @@
-"""Do pressed arms stay clear of their own body, the stop plate and the opposite row?
+"""Whether pressed arms stay clear of their own body, the stop plate and the opposite row.
 
 Exact on the contours, no kernel. A pressed arm is turned rigidly about the hinge's centre: to its stop's gap
-and tolerance at the tip, or by what the calibration's travel gives, where there is no stop plate.
+and tolerance at the tip, or by the deflection at the end of the calibration's travel, where there is no stop
+plate.
 
 The rules on pressed arms (`parts/rules/pressed_rules.py`) say in closed form which corner meets which wall
-first. This asks every piece of the contour, and so alone finds a shape of arm, fillet or land of which that
-is no longer true. Of thousands of designs that keep the rules none has had a finding here. What lies beside
-an arm, and the room of gauges and leads, are the rules' alone: there is no contour to ask.
+first. This check tests every piece of the contour, and so covers shapes of arm, fillet or land to which those
+formulas do not apply. Of thousands of designs that keep the rules none has had a finding here. The space
+beside an arm, and the room of gauges and leads, are covered by the rules alone: no contour describes them.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ class _Arms:
 
 
 def _left_of(contour: Contour, x: float) -> Iterable[Segment]:
-    """Segments wholly on the arm's side; what bends with the hinge itself is left out."""
+    """Segments wholly on the arm's side; the bending hinge itself is left out."""
     hinge = ("slot_floor", "hinge_face", "slot_arm_fillet", "front_slot_arm_fillet")
     return (s for s in contour if s.start[0] < x and s.end[0] < x and s.name not in hinge)
 
@@ -103,7 +104,7 @@ LAND = frozenset({"stop_land", "tip", "land_ramp", "land_root"})
 
 
 def _stop_plate(layout: Layout, arms: _Arms) -> Iterator[Finding]:
-    """On its closed stop the land touches the plate; no other piece of the arm comes as high."""
+    """On its closed stop the land touches the plate; no other piece of the arm reaches that height."""
     seen: dict[tuple, float] = {}
     for place in layout.elements:
         key = (place.arm, place.hinge)

@@ -1,5 +1,6 @@
-"""The overload stop: no hinge passes its rated deflection, nor its stress, when the whole load comes down on
-one element."""
+"""The overload stop: no hinge passes its rated deflection or stress when the whole load acts on one
+element.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
 from tactcad.parts.overload import Overload, overloads
 
-# Relative, of a hinge that is exactly at its limit.
+# Relative excess that is still rounding, for a hinge exactly at its limit.
 ROUNDING = 1e-9
 
 

@@ -1,8 +1,8 @@
-"""Do placed parts overlap, and where they meet, was it meant?
+"""Whether placed parts overlap, and whether those that meet are meant to.
 
-Pairs whose boxes are apart are passed over. Of the rest only different situations reach the kernel: two parts
-that stand to each other as another pair of the same parts does have the same verdict, and so have two places
-of a part along another one that looks the same there (`sliding`), which is what makes long rows cheap.
+Pairs whose boxes are apart are skipped. Of the rest only distinct situations reach the kernel. Two parts that
+stand to each other as another pair of the same parts does have the same verdict; so have two places of a part
+along another one that looks the same there (`sliding`). That keeps long rows cheap.
 """
 
 from __future__ import annotations
@@ -45,9 +45,16 @@ class Meeting:
 def check_interference(
     scene: Scene, shapes: Mapping[str, TopoDS_Shape], known: dict[tuple, Meeting] | None = None
 ) -> list[Finding]:
-    """Findings on every pair of placed leaves of the scene; shapes by part number, each in its own frame.
+    """Findings on every pair of placed parts of a scene that overlap, or touch without being meant to.
 
-    `known` keeps verdicts from scene to scene of one design: an array in a rig is not looked at again.
+    Parameters
+    ----------
+    scene
+        Placements and intended contacts.
+    shapes
+        By part number, each in its own frame, mm.
+    known
+        Verdicts from other scenes of the design, extended here: an array in a rig is not measured again.
     """
     meant = {frozenset((c.first, c.second)): c for c in scene.contacts}
     local = {part.part_no: bounding_box(shapes[part.part_no]) for part in scene.parts}
@@ -98,8 +105,8 @@ def relative(first: Placement, second: Placement) -> tuple[float, ...]:
 def _situation(
     first: Placement, second: Placement, local: Mapping[str, list], changing: Mapping[str, tuple | None]
 ) -> tuple[tuple, int]:
-    """A key that pairs have in common only where they have one verdict, and which part it is seen from (0,
-    1).
+    """A key that two pairs share only where they have the same verdict, and the part (0, 1) that it is seen
+    from.
 
     Where one part looks the same along an axis around the other one, the place along that axis is left out.
     """
@@ -124,8 +131,11 @@ def meeting(
     faces: dict[str, Faces],
     anchor: int = 0,
 ) -> Meeting:
-    """What the kernel says. Surfaces that touch do so in faces that reach the other part's box: only these
-    are measured. One part may hold the other without touching it only where its box holds the other's."""
+    """The kernel's verdict on a pair of placed parts.
+
+    Surfaces that touch do so in faces that reach the other part's box: only these are measured. One part can
+    contain the other without touching it only where its box contains the other's.
+    """
     reach = [
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))
     ]

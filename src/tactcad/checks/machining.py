@@ -1,5 +1,4 @@
-"""Can the milled, turned and ground parts be made by their process: cutters, drills, taps, walls, slender
-shafts."""
+"""Whether milled, turned and ground parts can be made: cutters, drills, taps, walls, slender shafts."""
 
 from __future__ import annotations
 
@@ -28,7 +27,7 @@ from tactcad.parts.library.screws import METRIC
 from .shop import Machining
 
 MACHINED = ("milled", "turned", "ground")
-# Coarse pitches that are no screws of the array (ISO 261), mm.
+# Coarse pitches of threads that the array's screws do not have (ISO 261), mm.
 PITCH = {name: m.pitch for name, m in METRIC.items()} | {"M6": 1.0}
 
 
@@ -43,7 +42,7 @@ def check_machining(part: Part, limit: Machining) -> list[Finding]:
 def _thin(
     check: str, part: Part, at: Vector, wall: float, limit: Machining, message: str
 ) -> Iterator[Finding]:
-    """A wall is flagged where it is thinner than advised, and fails where no workshop would leave it."""
+    """A wall is flagged where it is thinner than advised, and fails where no workshop would make it."""
     for finding in at_least(check, part.part_no, wall, limit.wall, message, at):
         yield finding if wall < limit.wall_least - SAME else replace(finding, severity="flag")
 

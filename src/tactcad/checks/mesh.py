@@ -1,4 +1,4 @@
-"""Is the part's mesh a closed surface, and as large as the solid: what printers and simulators ask for."""
+"""Whether the part's mesh is a closed surface of the solid's size, as printers and simulators require."""
 
 from __future__ import annotations
 

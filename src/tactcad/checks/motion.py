@@ -1,9 +1,10 @@
-"""Does anything collide while a scene moves: every stated motion, over its whole way and not only in poses.
+"""Whether anything collides while a scene moves: along the whole way of every stated motion, not only in
+poses.
 
-A pair that moves against each other is passed over while its boxes stay apart. For the rest the kernel gives
-the distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
-prove the whole way, however thin the parts are. Distances are first taken between envelopes (parts without
-their holes and pockets), which only come out smaller.
+A pair that moves against each other is skipped while its boxes stay apart. For the rest the kernel gives the
+distance d at a place of the way, and the pair cannot meet before it has moved by d: steps of that length
+cover the whole way without gaps, however thin the parts are. Distances are first taken between envelopes
+(parts without their holes and pockets), which can only be smaller.
 """
 
 from __future__ import annotations
@@ -115,7 +116,7 @@ def _span(a: np.ndarray, b: np.ndarray, pair: _Meeting) -> tuple[float, float] |
 def _meets(
     pair: _Meeting, span: tuple[float, float], full: Shapes, envelope: Shapes
 ) -> tuple[float, str] | None:
-    """Where on the way the pair meets without being meant to; None where it is shown not to."""
+    """Where on the way the pair meets without being meant to; None where it is shown not to meet."""
     t, end = span
     for _ in range(MOST_STEPS):
         free = _distance(pair, t, envelope)

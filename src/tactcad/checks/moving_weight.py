@@ -9,7 +9,8 @@ from tactcad.parts.finding import Finding
 from tactcad.scenes.moving_axis import moving_weight
 from tactcad.scenes.scene import Scene
 
-# Share by which the parts' weight may miss the design's: the ballast is turned to a balance's reading anyway.
+# Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
+# anyway.
 AGREES = 0.005
 
 

@@ -1,7 +1,7 @@
-"""What is taken as rigid: does every part of the array and its rigs bend as little as it may?
+"""Whether every part of the array and its rigs that is taken as rigid bends as little as it may.
 
-Rules (parts/rules/stiffness_rules.py) refuse by the same lines what fails here, or leave its scene out; what
-is left for a design that keeps them is what is only flagged.
+Rules (parts/rules/stiffness_rules.py) use the same lines: they refuse a design that fails here, or leave the
+scene out. For a design that keeps them only flags remain.
 """
 
 from __future__ import annotations

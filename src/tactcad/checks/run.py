@@ -38,10 +38,25 @@ def run_checks(
     shop_file: Path = DEFAULT,
     say: Callable[[int, int, str], None] = lambda done, total, text: None,
 ) -> Report:
-    """Every check on every part and scene of a design that keeps its rules; `say` hears how far it is.
+    """Every check on every part and scene of a design.
 
     A part that cannot be built is a finding, and its scenes are then not checked for interference.
-    Raises InputError where the shop file cannot be used.
+
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to check.
+    shop_file
+        Limits of the workshop.
+    say
+        Receives (done, total, text) before each part and scene.
+
+    Raises
+    ------
+    InputError
+        Where the shop file cannot be used.
     """
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)

@@ -1,7 +1,8 @@
 """Where a part looks the same from one place to the next: along a rod, a plate's edge, a bar.
 
-If everything of part A near part B is the same wherever B is moved along one of A's axes, all these places
-have one verdict: a long array then asks the kernel as little as a short one. Read from the descriptions.
+If everything of part A near part B stays the same while B moves along one of A's axes, all these places
+have one verdict: a long array then needs as few verdicts of the kernel as a short one. Read from the
+descriptions.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import numpy as np
 from tactcad.contour import Contour, Line
 from tactcad.parts.description import Extrusion, Feature, Hole, Part, Revolution, drill_point_height
 
-# What lies this far (mm) around the other part still counts as near: far more than what counts as touching.
+# What lies within this distance (mm) of the other part counts as near it: far more than what counts as
+# touching.
 NEAR_MM = 0.1
 
 Zones = tuple[tuple[float, float], ...]

@@ -1,5 +1,6 @@
-"""How much a screw may overlap the part that it is screwed into: the thread's ring, as long as both are
-engaged."""
+"""How much a screw may overlap the part that it is screwed into: by the thread's ring over the engaged
+length.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Can a key or a socket get at every screw and nut at the moment when the assembly's steps put them in?
+"""Whether a key or a socket reaches every screw and nut when the assembly's steps put them in.
 
-A tool is a cylinder out of the screw's socket, or over the nut, as long as what a hand holds. In its way may
-be what stands after the screw's own step: not what the step says is on the bench or driven aside.
+A tool is a cylinder out of the screw's socket, or over the nut, as long as a hand needs. Obstacles are the
+parts that stand after the screw's own step, except those that the step says are on the bench or driven aside.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .interference import TOUCH_MM
 # A key's long arm or a bit with its handle reaches this far from the screw (mm); chosen: a hand needs no
 # less.
 REACH = 40.0
-# The tool begins this far off the faces that it turns (mm), so that it does not count as touching them.
+# The tool begins this far off the faces of its fastener (mm), so that it does not count as touching them.
 OFF = 0.05
 
 Known = Callable[[str], tuple[Faces, list[list[float]]]]

@@ -1,6 +1,6 @@
 """Whether a wire-EDM shop can cut a part: rules on its exact contour, with limits from the shop's own file.
 
-A hinge is thinner than any general wall on purpose: that is a flag for the quotation, not a failure.
+A hinge is intentionally thinner than any general wall: that is a flag for the quotation, not a failure.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tactcad.parts.finding import Finding
 
 from .shop import Shop
 
-# The CAD kernel fuses what is nearer (measured), and no shop resolves it.
+# The CAD kernel fuses points closer than this (measured), and no shop resolves it.
 TOUCHING_MM = 1e-6
 # Contour pieces that bound a hinge, as the element names them.
 _HINGE_FACE = re.compile(r"(front_)?slot_(floor|(arm|body)_fillet)|hinge_face")
@@ -136,7 +136,7 @@ def slots(cut: _Cut) -> Iterator[Finding]:
 
 
 def walls(cut: _Cut) -> Iterator[Finding]:
-    """Walls stand by themselves; a hinge is flagged with what its quotation must say."""
+    """Free-standing walls are thick enough; a hinge is flagged with what its quotation must say."""
     limits, source = cut.shop.limits, cut.shop.source
     field = "wall_aluminium" if family(cut.part.material.density) == "aluminium" else "wall"
     limit = getattr(limits, field)

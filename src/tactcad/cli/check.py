@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     shop = Path(args.shop) if args.shop else DEFAULT
     if args.report:
         _refuse_overwriting(Path(args.report), [*args.design, shop])
-    load_shop(shop)  # a shop file that cannot be used is refused before the kernel is waited for
+    load_shop(shop)  # a shop file that cannot be used is refused before the kernel is loaded
     reports = [_checked(source, args.scene, shop, alone=len(args.design) == 1) for source in args.design]
     if args.report:
         _write(Path(args.report), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
@@ -62,8 +62,9 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
-    """The design's report. Of several designs one that is refused fails, and the others are checked all the
-    same."""
+    """The design's report. Where several designs are checked, one that is refused counts as failed and the
+    others go on.
+    """
     from tactcad.checks.check_report import Case, Report
     from tactcad.design.load import find
     from tactcad.design.messages import InputError
@@ -99,7 +100,7 @@ def _refuse_overwriting(folder: Path, sources: list[str | Path]) -> None:
 
     inputs = []
     for source in sources:
-        with suppress(InputError):  # one of several that is not there is a failed check, told in its turn
+        with suppress(InputError):  # where several designs are checked, a missing one is a failed check
             inputs.append(find(source))
     for name in ("check.json", "junit.xml"):
         refuse_overwriting(folder / name, *inputs, option="--report")

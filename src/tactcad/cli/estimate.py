@@ -203,7 +203,7 @@ def _as_made(args: argparse.Namespace) -> int:
 
 
 def _worst(rows: list[dict]) -> float | None:
-    """The largest expected error of the elements; None where one's was not measured."""
+    """Largest expected error of the elements; None where one element's was not measured."""
     errors = [row["expected_error"] for row in rows]
     return None if None in errors else max(errors)
 
@@ -263,7 +263,7 @@ def _report(design: Design, model: str, rows: list[dict], uncut: dict | None, sh
 
 
 def _errors(rows: list[dict]) -> str:
-    """What is stated of strain and stress against refined solid elements, worst element."""
+    """Stated errors of strain and stress against refined solid elements, of the worst element."""
 
     def worst(field: str) -> str:
         known = [row[field] for row in rows if row[field] is not None]
@@ -300,7 +300,9 @@ def _cell(row: dict, field: str, spec: str) -> str:
 
 
 def _spread(tolerance: Tolerance, shares: dict) -> list[str]:
-    """What the hinge's tolerance does to these numbers, and what all of [tolerance] does, worst element."""
+    """Spread of these numbers by the hinge's tolerance alone and by all of [tolerance], of the worst
+    element.
+    """
     from tactcad.mechanics.as_built import together
 
     alone = shares["hinge_thickness"]

@@ -39,7 +39,7 @@ COMMANDS = {
     "schema": "print every field of a design file with unit, range, default and meaning",
 }
 
-# Refused before they begin where the kernel is not installed; others are where they first ask for it.
+# Commands refused at once where the kernel is not installed; others are when they first need it.
 NEED_KERNEL = ("export", "check", "release", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
@@ -48,8 +48,8 @@ DONE, FAILED, BAD_INPUT = 0, 1, 2
 def main(argv: list[str] | None = None) -> int:
     """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input.
 
-    Without ARGV it is this process that is the command: its own arguments are taken, its streams may lose
-    their readers, and signals end it.
+    Without ARGV this process is the command itself: it takes its own arguments, survives closed output
+    streams, and is ended by signals.
     """
     if argv is None:
         return _own_process()
@@ -90,7 +90,7 @@ def _refused(why: object, status: int) -> int:
 
 
 def _no_kernel(error: ImportError | None = None) -> str:
-    """What to install: the kernel, or what of the system it does not find."""
+    """What to install: the kernel, or the system library that it lacks."""
     if error is None or isinstance(error, ModuleNotFoundError):
         return "this needs the CAD kernel, which is not installed: pip install 'tactcad[cad]'"
     return f"the CAD kernel cannot be loaded: {error}; on Debian or Ubuntu: apt-get install libgl1 libx11-6"

@@ -12,7 +12,9 @@ from tactcad.design.plain_numbers import as_number, as_whole
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse's parser without its page of usage before the message, and with the word that was meant."""
+    """argparse's parser without the usage page before the message, and with a suggestion for a mistyped
+    word.
+    """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -20,7 +22,7 @@ class Parser(argparse.ArgumentParser):
         self.register("type", int, as_whole)
 
     def parse(self, args: Sequence[str]) -> argparse.Namespace:
-        """The arguments; what is not understood ends the program with exit status 2."""
+        """The parsed arguments; ends the program with exit status 2 where they are wrong."""
         if args and args[-1] == "--":
             self._refuse("--", "nothing follows it", legal="leave it out, or name what it is for")
         parsed, unknown = super().parse_known_args(args)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
-SILENT = 2.0  # s; what takes no longer needs no progress
+SILENT = 2.0  # s; shorter work shows no progress
 
 
 class Terminal:
@@ -42,7 +42,7 @@ class Log:
 
 
 def progress(stream: TextIO) -> Terminal | Log:
-    """What suits the stream."""
+    """The kind of progress that suits the stream."""
     return Terminal(stream) if stream.isatty() else Log(stream)
 
 

@@ -1,4 +1,4 @@
-"""Standard output and standard error: whatever becomes of their readers, the work goes on."""
+"""Standard output and standard error that let the work go on when their readers are gone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any, TextIO
 
 
 class Lossy(io.FileIO):
-    """A stream's file. What cannot be written to it is lost, and `error` says why."""
+    """A stream's file that drops what cannot be written; `error` says why."""
 
     error: OSError | None = None
 
@@ -35,8 +35,9 @@ class Lossy(io.FileIO):
 
 
 def mend() -> None:
-    """No text is too strange to be printed; and where a stream was closed, no file of ours takes its
-    number."""
+    """Make every text printable, and reserve the number of a closed stream, so that no file of ours takes
+    it.
+    """
     if None in (sys.stdin, sys.stdout, sys.stderr):
         while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
             os.set_inheritable(handle, True)
@@ -49,7 +50,7 @@ def mend() -> None:
 
 
 def own() -> Lossy:
-    """Let this process's output and messages go through such files; returns that of standard output."""
+    """Send this process's output and messages through such files; returns that of standard output."""
     mend()
     sys.stdout, output = _lossy(sys.stdout)
     sys.stderr, _ = _lossy(sys.stderr)

@@ -1,10 +1,10 @@
 """Exploded views by calculation: how far each piece of a sub-assembly moves so that all stand clear of each
 other.
 
-Along each axis the pieces' shifts u solve a linear program. A joint asks u[upper] - u[lower] >= length of the
-way out + gap; across its axis its pieces want to stay together. Minimised is the sum of what joints have too
-much, and, far more dearly, of what tears pieces apart sideways. Pieces whose boxes overlap thereafter get a
-joint of their own, and it is solved again.
+Along each axis the pieces' shifts u solve a linear program. A joint demands u[upper] - u[lower] >= length of
+the way out + gap; across its axis its pieces should stay together. The objective is the sum of the joints'
+excess lengths and, with a much larger weight, of the sideways separations. Pieces whose boxes overlap in the
+solution get a joint of their own, and the program is solved again.
 """
 
 from __future__ import annotations
@@ -20,15 +20,16 @@ from tactcad.scenes.scene import Placement, Scene
 from .extent import moved_by
 from .joints import TOUCH, Extent, Joint, axis_of, box_of, joints_of, way_off
 
-ROUNDS = 40  # of finding overlaps and solving again
-# cost of a millimetre: too much in a joint, torn sideways, too little in a joint
+ROUNDS = 40  # rounds of finding overlaps and solving again
+# cost of a millimetre: excess in a joint, sideways separation, deficit in a joint
 SLACK, TORN, BROKEN = 1.0, 30.0, 1e4
 
 
 @dataclass(frozen=True)
 class Piece:
-    """What stays together in a view: a part, equal parts that lie on each other, or a sub-assembly under the
-    letter of its own view."""
+    """What moves as one in a view: a part, equal parts that lie on each other, or a sub-assembly under the
+    letter of its own view.
+    """
 
     placements: tuple[Placement, ...]
     letter: str = ""
@@ -60,8 +61,9 @@ def pieces_of(scene: Scene, placements: Sequence[Placement]) -> list[Piece]:
 
 
 def pulled_apart(scene: Scene, pieces: Sequence[Piece], gap: float, more: Mapping[int, float]) -> list[Piece]:
-    """The pieces of a scene moved apart by `gap` mm at least along their joints; by `more` (by a piece's
-    index) in its own."""
+    """The pieces of a scene moved apart along their joints by at least `gap` mm, or by `more` for a piece
+    (by index).
+    """
     owner = {p.designator: n for n, piece in enumerate(pieces) for p in piece.placements}
     boxes = {p.designator: box_of(p) for p in scene.placements}
     joints = joints_of(scene.placements, scene.contacts)
@@ -92,7 +94,7 @@ def pulled_apart(scene: Scene, pieces: Sequence[Piece], gap: float, more: Mappin
 def _kept_together(
     scene: Scene, pieces: Sequence[Piece], owner: Mapping[str, int], joints: Sequence[Joint]
 ) -> list[tuple[int, int, int]]:
-    """Pieces that move alike along an axis: equal parts of a step that leave alike."""
+    """Groups of pieces that move by the same along an axis: equal parts of a step that leave the same way."""
     at = {p.designator: p for p in scene.placements}
     pairs = []
     step = {d: n for n, s in enumerate(scene.steps) for d in s.designators}
@@ -121,7 +123,7 @@ def _solved(
     tied = {(p.lower, p.upper) for p in limits if p.axis != axis} - set(along)
     tied |= {(i, k) for i, k, a in kept if a == axis}
     ties = sorted({(min(t), max(t)) for t in tied})
-    # unknowns: the shifts; each joint's deficit; each tie's two-sided tear
+    # unknowns: the shifts; each joint's deficit; each tie's separation, in both directions
     n, m, q = count, len(along), len(ties)
     cost = np.zeros(n + m + q)
     rows = np.zeros((m + 2 * q, n + m + q))
@@ -145,8 +147,9 @@ def _solved(
 def _overlapping(
     pieces: Sequence[Piece], boxes: Mapping[str, Extent], shifts: np.ndarray
 ) -> list[tuple[Placement, Placement]]:
-    """A pair of parts for each two pieces of which boxes overlap where they stand now, the earlier part
-    first."""
+    """One pair of parts for every two pieces whose boxes overlap where they stand now, the earlier part
+    first.
+    """
     overlaps = []
     for i, k in combinations(range(len(pieces)), 2):
         for a in pieces[i].placements:
@@ -166,10 +169,12 @@ def _overlapping(
 def _sorted_out(
     a: Placement, b: Placement, boxes: Mapping[str, Extent], joints: Sequence[Joint], owner: Mapping[str, int]
 ) -> tuple[Placement, Placement, int]:
-    """Which of two parts is the lower one and along which axis: as a joint of their pieces has it; else as
-    they are assembled, where one lies beyond the other along an axis that either comes off along (aside of
-    it, what holds a piece would stay behind); else the later one goes on along its own axis, the way that it
-    came off."""
+    """Which of two parts is the lower one, and along which axis.
+
+    As a joint of their pieces says; else as they are assembled, where one lies beyond the other along an axis
+    along which either comes off (sideways it would leave behind what holds a piece); else the later one
+    leaves along its own axis, the way that it came off.
+    """
     ends = owner[a.designator], owner[b.designator]
     for j in joints:
         if (owner[j.lower], owner[j.upper]) in (ends, ends[::-1]):

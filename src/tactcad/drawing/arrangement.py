@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 APART = 14.0  # between views
 LEAST = 1 / 50  # scale: larger paper before a smaller scale
-AROUND = 20.0  # left of and over the views, for overall dimensions
+AROUND = 20.0  # left of and above the views, for overall dimensions
 
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
@@ -71,9 +71,11 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
 def _largest(
     wide: float, high: float, spare: float, lines: Sequence[str], block: TitleBlock
 ) -> tuple[Scale, Paper, list[Item], Box]:
-    """Scale, paper, the notes on it and where views of that size in all (mm of the assembly, and `spare` mm
-    of paper) may stand: the largest scale on A3, or the smallest larger paper on which it is at least
-    LEAST."""
+    """The largest scale on A3, or the smallest larger paper on which the scale is at least LEAST.
+
+    Returns scale, paper, the notes on it, and the area for the views, whose size in all is given (mm of the
+    assembly, and `spare` mm of paper).
+    """
     best: tuple[Scale, Paper, list[Item], Box] | None = None
     for papers in ((A3, A3_UPRIGHT), (A2,), (A1,), (A0,)):
         for paper in papers:
@@ -93,8 +95,10 @@ def _largest(
 
 
 def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[list[Item], Box]:
-    """The notes, on a lying sheet over the title block, on an upright one over its whole width; and where
-    views may stand."""
+    """The notes, and the area that they leave for the views.
+
+    On a landscape sheet they stand over the title block, on a portrait one over its whole width.
+    """
     x0, y0, x1, y1 = paper.area
     lying = paper.width > paper.height
     room = (WIDTH if lying else x1 - x0) - 2 * MARGIN

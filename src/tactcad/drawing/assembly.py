@@ -76,13 +76,13 @@ def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> DrawnSheet
 
 
 def _fits_beside(list_: parts_list.Laid) -> bool:
-    """Whether the whole list stands over the title block of an A3 sheet."""
+    """Whether the whole list fits above the title block of an A3 sheet."""
     _, y0, _, y1 = A3.area
     return list_.total + parts_list.heading(list_.size) <= y1 - y0 - HEIGHT
 
 
 def _list_pages(list_: parts_list.Laid) -> list[Page]:
-    """On one A4 sheet where that is enough; else on A3 in two columns, the right one over the title block."""
+    """One A4 page where that suffices; else A3 pages in two columns, the right one above the title block."""
     for paper, lefts in ((A4, [A4.area[2] - WIDTH]), (A3, [A3.area[0], A3.area[2] - WIDTH])):
         high = paper.area[3] - paper.area[1]
         columns = parts_list.columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])

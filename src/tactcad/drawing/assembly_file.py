@@ -41,8 +41,10 @@ class AssemblyOrder:
 
 
 def assembly_written(order: AssemblyOrder) -> Written:
-    """All sheets of the scene. Raises CheckFailure where they cannot be drawn, or do not hold when read
-    back."""
+    """All sheets of the scene as PDF and SVG.
+
+    Raises CheckFailure where they cannot be drawn, or differ from the scene when read back.
+    """
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
     from .pdf import pdf_bytes
@@ -124,7 +126,7 @@ def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRo
 
 
 def _ballooned(pdf: bytes) -> list[int]:
-    """Numbers that stand in balloons, told from others by the size of their letters."""
+    """Numbers in balloons, recognised by the height of their letters."""
     from pypdf import PdfReader
 
     numbers: list[int] = []
@@ -140,5 +142,5 @@ def _ballooned(pdf: bytes) -> list[int]:
 
 
 def _without_spaces(text: str) -> str:
-    """Texts are broken into lines on the sheet."""
+    """The text without spaces, since the sheet breaks texts into lines."""
     return re.sub(r"\s", "", text)

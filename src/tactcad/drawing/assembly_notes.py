@@ -1,4 +1,4 @@
-"""What an assembly sheet says in words."""
+"""The notes on an assembly sheet."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
 
 
 def _rows(design: Design, scene: Scene) -> list[str]:
-    """Which element stands where; left to the bill's designators where the rows are long."""
+    """Which element stands where; for long rows only the bill's designators."""
     layout = Layout(design)
     placed = {p.designator for p in scene.placements}
     lines = []

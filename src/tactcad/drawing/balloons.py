@@ -1,9 +1,9 @@
 """Item numbers in balloons around a view (ISO 6433:2012): where each stands and where its leader ends.
 
-Each balloon takes a place of a square grid, outside the parts' outlines and clear of every line. The places
-and the leaders' ends are those whose leaders are shortest in all: of such leaders no two cross, for
-exchanging their places would shorten them (the assignment problem, by scipy). What the shortest solution
-still has against it, such as a leader close to another balloon, is forbidden and the next best is tried.
+Each balloon takes a place of a square grid, outside the parts' outlines and clear of every line. Places and
+leader ends are chosen for the least total length of the leaders: then no two leaders cross, for exchanging
+their places would shorten them (the assignment problem, by scipy). A fault of the shortest solution, such as
+a leader close to another balloon, is forbidden and the next best solution is tried.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ CELL = 0.5  # of the raster on which outlines are filled
 SHORTEST = 4.0  # leader outside its balloon
 APART = 1.2  # between leaders, and from a leader to another balloon or another leader's end
 TIPS = 60  # places tried for the end of an item's leader
-ROUNDS = 120  # of forbidding and trying again
+ROUNDS = 120  # rounds of forbidding and trying again
 FORBIDDEN = 1e6
 
 
@@ -129,8 +129,9 @@ def _without_faults(
     tips: Sequence[Sequence[Point]],
     places: Sequence[Point],
 ) -> list[Balloon] | None:
-    """The shortest solution that has no faults; of two leaders that disturb each other the longer may not be
-    used again."""
+    """The shortest solution without faults; of two leaders that disturb each other the longer one is
+    forbidden.
+    """
     from scipy.optimize import linear_sum_assignment
 
     cost = np.array([own.min(axis=1) for own in lengths])

@@ -1,4 +1,6 @@
-"""A sheet while it is composed: what stands on it, and where a text with its leader still finds a place."""
+"""A sheet while it is composed: the items on it, and the search for a free place for a text with its
+leader.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ SHELF = 3.0  # of the leader beside the text
 # Lengths of leaders tried, mm.
 REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 66.0, 75.0, 85.0, 95.0)
 MOST_TARGETS = 12  # of equal features tried for the leader
-# What a leader pays for crossing: it may pass extension and centre lines, hardly the part, no dimension line.
+# Cost of a leader's crossings: low for extension and centre lines, high for the part, highest for dimension
+# lines.
 CROSSING = {
     "outline": 12.0,
     "hidden": 4.0,
@@ -30,10 +33,10 @@ CROSSING = {
     "extension": 6.0,
     "table": 500.0,
 }
-ALONG = 40.0  # what a leader pays for running along another line, where one is read for the other
-AT_END = 12.0  # what a leader pays at an arc's very end
+ALONG = 40.0  # cost of a leader that runs along another line and may be mistaken for it
+AT_END = 12.0  # cost of a leader at the very end of an arc
 NEAR, PARALLEL = 0.7, 0.03  # mm between such lines, and the sine of the angle between them
-FORBIDDEN = 80.0  # of the costs above: what a datum's stem never crosses
+FORBIDDEN = 80.0  # of the costs above: lines that a datum's stem never crosses
 AROUND_LETTER = 3.2  # mm kept free from the middle of a datum's letter, each way
 AROUND = 0.9  # white kept around a callout's texts beyond what the check asks, mm
 
@@ -65,7 +68,7 @@ class Board:
         self._array = None
 
     def keep_out(self, box: Box) -> None:
-        """No callout's text goes there."""
+        """Reserve an area: no callout's text is placed there."""
         self.kept.append(box)
 
     def _keep_clear(self, quad: Quad) -> None:
@@ -82,8 +85,10 @@ class Board:
         ]
 
     def callout(self, c: Callout, scale: float, origin: Point) -> bool:
-        """Place a callout of a view at the cheapest free place, its leader at whichever of the targets; False
-        where there is none."""
+        """Place a callout of a view at the cheapest free place, its leader to any of its targets.
+
+        Returns False where there is no free place.
+        """
         best: tuple[float, list[Item]] | None = None
         ways = [way for n in range(min(len(c.targets), MOST_TARGETS)) for way in _ways(c, n, scale, origin)]
         for reach in REACHES:
@@ -148,7 +153,7 @@ class Board:
         return [*lines, arrow(tip, elbow, ARROW, "leader"), *texts, *extras], cost
 
     def free(self, quads: Sequence[Quad]) -> bool:
-        """Whether texts may stand there: inside the area, on no view, over nothing."""
+        """Whether texts may stand there: inside the area, outside every view, over nothing."""
         x0, y0, x1, y1 = box = bounds([p for quad in quads for p in quad])
         ax0, ay0, ax1, ay1 = self.area
         if x0 < ax0 + 2 or y0 < ay0 + 2 or x1 > ax1 - 2 or y1 > ay1 - 2:
@@ -156,7 +161,7 @@ class Board:
         return not any(overlap(box, kept) for kept in self.kept) and not self.hit(quads, box)
 
     def passed(self, leg: Chord) -> float | None:
-        """What a line pays for what it crosses; None where it would run through a text."""
+        """Cost of what a line crosses; None where it would run through a text."""
         through = any(chord_meets(leg, quad) for quad in self._near(bounds(leg)))
         return None if through else self._crossings(leg)
 

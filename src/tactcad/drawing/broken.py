@@ -1,4 +1,4 @@
-"""Broken views (ISO 128-3) of long parts: what is left out of them, and a plan's views and curves without it.
+"""Broken views (ISO 128-3) of long parts: what they leave out, and a plan's views and curves without it.
 
 Dimensions keep the whole part's values, and their lines run unbroken (ISO 129-1): only places on the paper
 move.
@@ -100,7 +100,7 @@ def broken(
 
 
 class _Squeezed:
-    """One view, moved together over what is left out."""
+    """One view, shortened by what is left out."""
 
     def __init__(self, whole: View, breaks: Breaks) -> None:
         self.whole, self.breaks = whole, breaks

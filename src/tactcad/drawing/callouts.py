@@ -32,8 +32,9 @@ def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
 
 
 def _to_outside(view: View, p: Point) -> float:
-    """Way from a point of the view to the nearest side of its box, mm: leaders are shortest from where it is
-    small."""
+    """Distance from a point of the view to the nearest side of its box, mm; leaders are shortest where it
+    is small.
+    """
     u0, v0, u1, v1 = view.box
     return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
 
@@ -80,9 +81,11 @@ def _edge_targets(view: View, contour: Contour) -> tuple[tuple[Point, float], ..
 
 
 def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension | None:
-    """Width across flats of a regular polygon in the middle of the outline; None where the contour is none.
+    """Width across flats of a regular polygon in the middle of the outline; None where the contour is not
+    one.
 
-    Drawn as regular: equal distances of all sides from the outline's middle, and equal angles between them.
+    What is drawn as regular counts as such: sides at equal distances from the outline's middle, at equal
+    angles.
     """
     sides = [i for i, s in enumerate(contour) if isinstance(s, Line)]
     if len(sides) < 6 or len(sides) % 2:

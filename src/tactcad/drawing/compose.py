@@ -1,5 +1,6 @@
-"""From a plan to a finished sheet: paper and scale are the first of the preferred ones at which everything
-fits."""
+"""From a plan to a finished sheet: on the first of the preferred papers and scales on which everything
+fits.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +36,7 @@ from .sheet_plan import Callout, SectionPlane, SheetPlan, View, seen
 from .title import HEIGHT, WIDTH, TitleBlock, notes, title_block
 from .window import windowed
 
-MARGIN = 4.0  # from the frame to anything
+MARGIN = 4.0  # distance of anything from the frame
 APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
@@ -46,7 +47,7 @@ SHRUNK = (1.0, 0.6, 0.35)
 
 
 class NoPlace(CheckFailure):
-    """A plan that finds no place at any scale."""
+    """Raised for a plan that fits at no scale."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +164,7 @@ def _attempt(
                 lettered[edge.letter] = board.datum(edge, factor(d.scale), places[d.view.name])
     for d in drawn:
         for edge in d.view.datums:
-            if not lettered[edge.letter]:  # by words at the end of a leader
+            if not lettered[edge.letter]:  # stated in words at the end of a leader
                 spots = tuple((edge.at(share), 0.0) for share in (0.5, 0.25, 0.75))
                 said = Callout((f"datum {edge.letter}",), spots)
                 lettered[edge.letter] = board.callout(said, factor(d.scale), places[d.view.name])

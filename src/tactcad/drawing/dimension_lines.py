@@ -119,7 +119,9 @@ def stacked(
 
 
 def _interval(a: float, b: float, t0: float, length: float, inside: bool) -> tuple[float, float]:
-    """What a dimension takes up along its line; two that end at one extension line may share the line."""
+    """The stretch that a dimension occupies along its line; two that end at one extension line may share
+    the line.
+    """
     low, high = (a, b) if inside else (a - TAIL, b + TAIL)
     return (min(low, t0 - 1.5) if t0 < a else low, max(high, t0 + length + 1.5) if t0 + length > b else high)
 
@@ -243,8 +245,9 @@ def _label(on_paper: Callable[[float, float], Point], side: Side, s: float, o: f
 
 
 def _spread(wanted: Sequence[float], least: float) -> list[float]:
-    """Places nearest to the wanted ones (ascending) that keep their distance: groups that touch move as
-    one."""
+    """Places nearest to the wanted ones (ascending) at least the given distance apart; places that touch move
+    as a group.
+    """
     groups: list[list[float]] = []  # sum of (wanted - own offset), count
     for n, s in enumerate(wanted):
         groups.append([s - n * least, 1.0])

@@ -2,8 +2,7 @@
 edge.
 
 Heights count from the flat face (datum A) and, for the clamp, from the dowel hole (datum B), which is also
-where lengths of the rear body count from; lengths of the arm count from its tip, as the arm length itself
-does.
+the origin of lengths of the rear body; lengths of the arm count from its tip, as the arm length itself does.
 """
 
 from __future__ import annotations
@@ -108,7 +107,7 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
 
 
 def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
-    """A dimension with the tolerance that the uncertainty budget counts on."""
+    """A dimension with the tolerance that the uncertainty budget assumes."""
     return Dimension(name, rows, limits=(tolerance, -tolerance))
 
 
@@ -158,7 +157,8 @@ def _radii(
     sketch: Sketch, view: View, o: Outline, names: Sequence[str], tolerance: float | None = None
 ) -> list[Callout]:
     """Fillets by name, equal ones together, with a tolerance of their own or the general one; none for a full
-    round, whose width says it."""
+    round, whose width defines it.
+    """
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
     arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
     return equal_radii(sketch, view, arcs, tolerance)
@@ -172,8 +172,11 @@ def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
 def _hinge_view(
     sketch: Sketch, part: Part, design: Design, o: Outline, tall: bool
 ) -> tuple[View, tuple[list[Linear], list[Callout]]]:
-    """The hinge: thickness, slot, fillets, and the heights beside it. Of a tall element it shows the
-    thickness alone, and leaves the other dimensions and callouts, which are returned, to the arm's view."""
+    """The hinge: thickness, slot, fillets, and the heights beside it.
+
+    For a tall element the view shows the thickness alone; the other dimensions and callouts are returned, for
+    the arm's view.
+    """
     arm, body = _slot(o)
     (xa, back), (xb, ledge) = arm.at, body.at
     t = design.tolerance
@@ -284,7 +287,7 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
 def _arm_view(
     sketch: Sketch, part: Part, design: Design, o: Outline, more: Sequence[Linear], called: Sequence[Callout]
 ) -> View:
-    """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view has left to it."""
+    """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view leaves to it."""
     slot, body = _slot(o)
     (xa, back), (xb, ledge) = slot.at, body.at
     t = design.tolerance

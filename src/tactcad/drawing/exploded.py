@@ -1,4 +1,4 @@
-"""One exploded view: what is seen of its pieces, and its page with balloons."""
+"""One exploded view: the visible lines of its pieces, and its page with balloons."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def seen_of_pieces(
 
 
 def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint) -> list[float]:
-    """What is seen of each piece where nothing stands before it: length of its lines, mm."""
+    """Length (mm) of each piece's visible lines where nothing stands before it."""
     from .assembly_lines import seen_of_each
 
     known: dict[tuple, float] = {}
@@ -66,7 +66,7 @@ def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], e
 
 
 def alike(piece: Piece) -> tuple:
-    """Equal for pieces that look alike from one eye, wherever they stand."""
+    """A key that is equal for pieces that look the same from one eye, wherever they stand."""
     first = piece.placements[0]
     return first.part.part_no, first.rotation, len(piece.placements), piece.letter
 
@@ -86,8 +86,9 @@ def exploded_view(
     item: Mapping[str, int],
     well: Container[int] | None = None,
 ) -> Exploded:
-    """All that is seen, labelled: sub-assemblies by letter first, then items by number. Leaders go to all
-    pieces, or to those (by index) that are seen `well`."""
+    """All visible lines, labelled: sub-assemblies by letter first, then items by number. Leaders go to all
+    pieces, or only to those (by index) that are seen `well`.
+    """
     own: dict[Label, list[Polyline]] = {}
     for n, (piece, some) in enumerate(zip(pieces, seen)):
         if some and (well is None or n in well):
@@ -105,8 +106,11 @@ def exploded_page(
     view: Exploded, heading: Sequence[str], list_: parts_list.Laid | None, small: bool = False
 ) -> tuple[Page, bool] | None:
     """The view at the largest scale at which its balloons find places, and whether the parts list stands
-    beside it, which it does where that costs no scale. Where A4 is allowed (`small`) it is taken if that
-    costs none either. None where the balloons find no place."""
+    beside it.
+
+    The list stands beside the view where that does not reduce the scale; likewise the paper is A4 where that
+    is allowed (`small`). None where the balloons find no place.
+    """
     bx0, by0, bx1, by1 = view.box
     choices: list[tuple[Paper, parts_list.Laid | None]] = [(A3, list_)] if list_ else []
     choices += [(paper, None) for paper in ((A4, A4_LYING) if small else ()) + (A3, A3_UPRIGHT)]
@@ -136,8 +140,9 @@ def exploded_page(
 
 
 def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
-    """The view's title, and smaller below it what is to be known, in the upper left corner; and the room that
-    they take."""
+    """The view's title, with smaller remarks below it, in the upper left corner; and the room that they
+    take.
+    """
     x, y = area[0] + MARGIN, area[3] - MARGIN - 3.5
     sizes = [3.5] + [2.5] * (len(lines) - 1)
     texts: list[Item] = [

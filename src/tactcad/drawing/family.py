@@ -1,6 +1,7 @@
-"""One of each part beside the next, each at a scale of its own that fills the sheet: the last resort, where
-an exploded view would be too large or too crowded. Its item number stands above a part, its scale below
-it."""
+"""Parts side by side, one of each, each at a scale of its own that fills the sheet: the last resort, where
+an exploded view would be too large or too crowded. A part's item number stands above it, its scale below
+it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The one font of all sheets, DejaVu Sans as the pinned matplotlib carries it, and what its letters measure.
+"""The font of all sheets, DejaVu Sans from the pinned matplotlib, and the widths of its letters.
 
 Heights are those of ISO 3098-1: the height h of capital letters, in mm.
 """

@@ -1,5 +1,6 @@
-"""Assembly guide of a scene: an exploded view, the steps with their parts and torques. All of it read off the
-scene."""
+"""Assembly guide of a scene: an exploded view, the steps with their parts and torques, all read off the
+scene.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ def exploded(scene: Scene) -> tuple[Placement, ...]:
 
 
 def at_step(scene: Scene, number: int) -> tuple[tuple[Placement, ...], tuple[Placement, ...]]:
-    """What stands already before step `number` (from 1), and what comes, still out of its place."""
+    """What stands already before step `number` (from 1), and what the step adds, still out of its place."""
     earlier = {d for step in scene.steps[: number - 1] for d in step.designators}
     standing = tuple(p for p in scene.placements if p.designator in earlier)
     return standing, _coming(scene, scene.steps[number - 1])

@@ -16,15 +16,15 @@ from tactcad.parts.description import Vector
 from .ink import HIDDEN, VISIBLE, DrawnArc, LineType, Point, Role, Stroke
 from .picture import compound, curves_of, exact, on_curve, projector
 
-CHORD = 0.001  # mm of the part: what is neither line nor circle is drawn as chords this close
+CHORD = 0.001  # mm of the part: other curves than lines and circles are drawn as chords this close
 SAME = 1e-4  # mm: edges nearer than this are one
 
 
 def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Stroke | DrawnArc]:
-    """Visible edges, then hidden ones that no visible one covers, in the view's plane (mm of the part),
-    sorted.
+    """Edges in the view's plane (mm of the part), sorted: visible ones, then hidden ones that no visible one
+    covers.
 
-    Edges between tangent faces are left out, as ISO 128-3 lets.
+    Edges between tangent faces are left out, as ISO 128-3 allows.
     """
     result = exact([compound([shape])], projector(eye, right))
     seen = _once(_curves((result.VCompound(), result.OutLineVCompound()), VISIBLE, "outline"))
@@ -77,7 +77,7 @@ def _once(curves: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
 
 
 def _uncovered(curve: Stroke | DrawnArc, seen: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
-    """What of a hidden curve no visible one covers."""
+    """The pieces of a hidden curve that no visible one covers."""
     if isinstance(curve, DrawnArc):
         same = [
             s

@@ -1,5 +1,4 @@
-"""Round holes as a drawing sees them: grouped by what one callout can say, with the dimensions in its
-text."""
+"""Round holes as on a drawing: grouped by callout, with the dimensions in each callout's text."""
 
 from __future__ import annotations
 
@@ -17,7 +16,7 @@ from .measures import size
 from .sheet_plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
-EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a micrometre's thousandth
+EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a nanometre
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""What a sheet is made of: lines, arcs, filled areas and texts, in mm of paper, x to the right and y up.
+"""The items that a sheet is made of: lines, arcs, filled areas and texts, in mm of paper, x to the right, y
+up.
 
 Line types and widths of ISO 128-2:2020, group 0.5 (thick 0.5, thin 0.25); dashes in multiples of the width.
 """
@@ -14,8 +15,7 @@ from typing import Literal
 from .boxes import Box, Chord, Point, bounds_of, corners, grown
 from .fonts import ink_box, width
 
-# What a line or text is for. Texts of the part and of the paper alike may not touch any line; a watermark
-# may.
+# Role of a line or text. Texts of the part and texts of the paper may not touch any line; a watermark may.
 Role = Literal[
     "outline",
     "hidden",
@@ -88,7 +88,7 @@ class DrawnArc:
         return polar(self.centre, self.radius, angle)
 
     def chords(self) -> tuple[Chord, ...]:
-        """Straight pieces that stay within a hundredth of a millimetre."""
+        """Straight pieces within a hundredth of a millimetre of the arc."""
         step = 2 * (2 * 0.01 / max(self.radius, 0.02)) ** 0.5  # sagitta r w^2/8
         count = max(4, ceil(radians(self.sweep) / step))
         points = [self.at(self.start + self.sweep * i / count) for i in range(count + 1)]
@@ -144,8 +144,9 @@ class Text:
 
 @dataclass(frozen=True)
 class Hatch:
-    """A cut face between closed polygons (holes among them, by even and odd), hatched at 45 degrees (ISO
-    128-50)."""
+    """A cut face between closed polygons (by the even-odd rule, so that holes are among them), hatched at 45
+    degrees (ISO 128-50).
+    """
 
     loops: tuple[tuple[Point, ...], ...]
     line: LineType = THIN
@@ -158,7 +159,7 @@ class Hatch:
         return min(max(min(x1 - x0, y1 - y0) / 8, HATCHING[0]), HATCHING[1])
 
     def chords(self) -> tuple[Chord, ...]:
-        """The hatching lines, y - x = k sqrt(2) spacing: of one pattern for all areas of the face."""
+        """The hatching lines, y - x = k sqrt(2) spacing: one pattern for all areas of the face."""
         return self._lines
 
     @cached_property

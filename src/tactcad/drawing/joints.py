@@ -1,7 +1,8 @@
 """How placed parts come off each other: read off a scene's contacts and the parts' boxes, without a kernel.
 
-A screw leaves its thread along its own axis, on the side of its head; so does whatever is turned and stands
-in a hole. Other parts leave where their faces meet, or else the shortest way out of each other's boxes.
+A screw leaves its thread along its own axis, on the side of its head; so does any turned part that stands in
+a hole. Other parts leave normal to the faces at which they meet, or else the shortest way out of each other's
+boxes.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> l
 def way_off(first: Placement, second: Placement, boxes: Mapping[str, Extent]) -> tuple[int, int]:
     """Axis and sign along which the second part comes off the first."""
     a, b = boxes[first.designator], boxes[second.designator]
-    ways = np.array([a[1] - b[0], b[1] - a[0]])  # to go, up and down, along each axis
+    ways = np.array([a[1] - b[0], b[1] - a[0]])  # distance to go, up and down, along each axis
     axis = int(ways.min(axis=0).argmin())
     if ways[:, axis].min() > TOUCH:
         turned = [k for p in (first, second) if (k := axis_of(p)) is not None and _inside(a, b, k)]
@@ -73,14 +74,14 @@ def way_off(first: Placement, second: Placement, boxes: Mapping[str, Extent]) ->
 
 
 def axis_of(p: Placement) -> int | None:
-    """The axis of the scene that a turned part is turned about."""
+    """The scene's axis that is the axis of a turned part."""
     if not isinstance(p.part.body, Revolution):
         return None
     return int(np.abs([row[2] for row in p.rotation]).argmax())
 
 
 def _out_of_thread(screw: Placement, its_box: Extent, into: Extent) -> tuple[int, int] | None:
-    """Axis and sign along which a screw leaves what it is screwed into; None where it is no turned part."""
+    """Axis and sign along which a screw leaves its thread; None where the part is not a turned one."""
     axis = axis_of(screw)
     return None if axis is None else (axis, 1 if its_box[:, axis].sum() > into[:, axis].sum() else -1)
 

@@ -1,4 +1,4 @@
-"""What a part's coordinates and sizes are called: typed keys of its variables."""
+"""Typed keys of a part's variables: its coordinates and sizes."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Variable:
     quantity: Quantity
 
     def __str__(self) -> str:
-        """As in "outer.3.cx": variables are put in order by it."""
+        """As in "outer.3.cx"; variables are sorted by this text."""
         if isinstance(self.of, Spot):
             return f"{self.of.contour}.{self.of.segment}.{'c' if self.of.centre else ''}{self.quantity}"
         return f"{self.of}.{self.quantity}".removeprefix(".")

@@ -1,6 +1,6 @@
-"""The layout check: what a draughtsman would not let pass, measured on the finished sheet.
+"""The layout check: faults that a draughtsman would reject, measured on the finished sheet.
 
-Nothing here knows how the sheet was composed: it sees primitives only.
+It does not know how the sheet was composed: it sees primitives only.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .paper import LEFT, OTHER
 # width.
 BETWEEN_TEXTS = 0.5
 BESIDE_LINE = 0.25
-# Lines that meet nearer to their ends than this touch there on purpose (mm of paper).
+# Lines that meet nearer to their ends than this are meant to touch there (mm of paper).
 END = 0.3
 
 Quad = tuple[Point, Point, Point, Point]
@@ -71,7 +71,7 @@ def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator
 
 
 def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[str]:
-    """A text in a hatched area, be it between two lines; one across its edge stands over a line anyway."""
+    """A text inside a hatched area, even one between two lines; across its edge it is over a line anyway."""
     for text in texts:
         if any(item.holds(corner) for item in items if isinstance(item, Hatch) for corner in text.corners()):
             yield f"text {text.text!r} at {_shown(text.at)} over hatching"

@@ -3,10 +3,11 @@ them.
 
 A dimension takes its value from these variables. Together with the conventions (lines drawn level are level,
 arcs drawn tangent are tangent, features on one extension line are in line) the dimensions of a sheet have to
-determine all variables but the part's place on the paper; `Determined` keeps the account.
+determine all variables, up to the part's place on the paper; `Determined` keeps track of that by the rank of
+their derivatives.
 
-The start of each of a contour's segments has x and y, an arc's centre too; a contour that is one circle has
-x, y and a diameter alone. Holes have the places across their axis, and their sizes.
+Variables are x and y of the start of each segment of a contour, and of an arc's centre; a contour that is one
+circle has only x, y and a diameter. Holes have the coordinates across their axis, and their sizes.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from .contours import axis_of, contours
 from .keys import THICKNESS, Owner, Quantity, Spot, Values, Variable
 
 STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth at this size
-INDEPENDENT = 1e-6  # share of a row's length that must be new
+INDEPENDENT = 1e-6  # a row is independent where more than this share of its length is
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,9 @@ def halfway(a: Level, b: Level) -> Level:
 
 @dataclass(frozen=True)
 class Span:
-    """The way from one level to another, mm, positive where the second is larger. From nothing: a size."""
+    """From one level to another, mm, positive where the second is larger; without a first level it is a
+    size.
+    """
 
     a: Level
     b: Level
@@ -171,7 +174,9 @@ class Offset:
 
 @dataclass(frozen=True)
 class Width:
-    """Sum of two offsets of one point: the width between two parallel lines that have it between them, mm."""
+    """Sum of a point's offsets from two lines, mm: the width between two parallel lines on either side of
+    it.
+    """
 
     a: Offset
     b: Offset
@@ -229,8 +234,9 @@ def _hole(k: int, hole: Hole) -> dict[Variable, float]:
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:
-    """What a drawn contour says by itself: level and upright lines, arcs about their centre, tangent
-    joints."""
+    """What a drawn contour implies without dimensions: level and upright lines, circular arcs, tangent
+    joints.
+    """
     if contour.as_circle():
         return []
     count = len(contour)
@@ -247,7 +253,7 @@ def conventions(owner: Owner, contour: Contour) -> list[Measure]:
 
 
 def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
-    """That segment i runs smoothly out of the one before it, if it does."""
+    """The convention that segment i is tangent to the one before it, where it is."""
     before, after = contour.segments[i - 1], contour.segments[i]
     if isinstance(before, Line) and isinstance(after, Line) or not _smooth(before, after):
         return None
@@ -283,10 +289,10 @@ class Determined:
         return len(self.basis)
 
     def takes(self, row: Measure) -> bool:
-        """Whether the row says something new; if so it is taken up."""
+        """Add a row where it is independent of those before; returns whether it is."""
         new = gradient(row, self.values, self.columns)
         whole = np.linalg.norm(new)
-        for _ in range(2):  # twice is enough for orthogonality to rounding
+        for _ in range(2):  # done twice, the rows are orthogonal to rounding
             new = new - self.basis.T @ (self.basis @ new)
         left = np.linalg.norm(new)
         if left < INDEPENDENT * whole or left == 0:

@@ -1,4 +1,4 @@
-"""What a part's sheet says in words: the part's own notes, and what follows from how it is made."""
+"""Notes of a part's sheet: the part's own, and those that follow from how it is made."""
 
 from __future__ import annotations
 

@@ -39,10 +39,10 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
 GAP = 0.06  # least distance in an exploded view, of the largest extent of what it takes apart
-GAP_OF_UNITS = 0.2  # and where all of it are sub-assemblies
+GAP_OF_UNITS = 0.2  # and where all of its pieces are sub-assemblies
 SEEN = 0.5  # a part counts as seen where this share of its edges is
-WELL = 0.8  # leaders go to parts that are seen nearly as well as the best one like it
-FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance for what is not seen
+WELL = 0.8  # leaders go to parts that are seen nearly as well as the best-seen equal part
+FARTHER = (2.0, 4.0, 8.0, 16.0)  # times that distance, for parts that are not seen
 
 
 def numbered_pages(
@@ -52,11 +52,11 @@ def numbered_pages(
     list_: parts_list.Laid | None,
     block: TitleBlock,
 ) -> tuple[list[Page], bool]:
-    """Views until every item that has a solid has its number in one, and whether the parts list stands beside
+    """Views in which every item that has a solid is numbered once, and whether the parts list stands beside
     one.
 
-    A scene of several sub-assemblies is taken apart one by one; others in one view. What these do not show
-    follows in further views, and where an exploded view would be too large or too crowded the parts stand
+    A scene of several sub-assemblies is taken apart one by one; others in one view. Items that these do not
+    show follow in further views, and where an exploded view would be too large or too crowded the parts stand
     side by side.
     """
     from .picture import ABOVE
@@ -118,7 +118,9 @@ def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
 
 
 def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
-    """The unit exploded; what is hardly seen is pulled out farther, as long as that shows more."""
+    """The unit exploded; parts that are hardly seen are pulled out farther, as long as that shows more of
+    them.
+    """
     from .picture import ABOVE
 
     if not unit.pieces:
@@ -144,7 +146,7 @@ def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, T
 
 
 def _best_of_alike(pieces: Sequence[Piece], shares: Sequence[float]) -> list[float]:
-    """For each piece the largest share that is seen of one like it."""
+    """For each piece the largest share of its edges that is seen of any equal piece."""
     best: dict[tuple, float] = {}
     for piece, share in zip(pieces, shares):
         best[alike(piece)] = max(best.get(alike(piece), 0.0), share)

@@ -12,8 +12,9 @@ from .ink import Item, LineType, Stroke
 from .paper import Paper
 
 EDGE = LineType("edge", 0.35)  # visible edges of an assembly: the thinner line group of ISO 128-2
-MARGIN = 5.0  # from the frame to anything
-# of repeated parts no more are drawn than keep a view under this many: the kernel compares them pair by pair
+MARGIN = 5.0  # distance of anything from the frame
+# a view has at most this many: repeated parts beyond are left out, since the kernel compares them pair by
+# pair
 MOST_DRAWN = 150
 
 

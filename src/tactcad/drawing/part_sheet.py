@@ -23,13 +23,14 @@ from .sheet_plan import SectionPlane, SheetPlan, View
 from .title import TitleBlock, block_of
 from .workers import Written
 
-LEAST_WHOLE = 1 / 2  # scale: a long part comes out broken before it comes out smaller
+LEAST_WHOLE = 1 / 2  # scale: below it a long part is drawn broken rather than smaller
 
 
 @dataclass(frozen=True)
 class Order:
-    """One sheet to make: the part, its solid as the kernel's text, and the files that the shop makes it
-    from."""
+    """One sheet to make: the part, its solid as the kernel's text, and the files from which the shop makes
+    it.
+    """
 
     design: Design
     part: Part
@@ -100,8 +101,11 @@ def part_sheet(order: Order) -> DrawnSheet:
 
 
 def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequence[Scale]]]:
-    """Plans to try in turn, each on which papers and at which scales: small sheets first; whole views on them
-    down to 1:2 before broken ones, and smaller only after these."""
+    """Plans to try in turn, each with its papers and scales.
+
+    Small sheets first; whole views on them down to 1:2 before broken ones, and smaller scales only after
+    these.
+    """
 
     def plans(shortened: bool = False) -> Iterator[SheetPlan]:
         for spare in (False, True):
@@ -128,7 +132,7 @@ def title_of(design: Design, part: Part, draft: bool) -> TitleBlock:
 
 
 def written(order: Order) -> Written:
-    """The sheet as PDF and SVG, read back. Raises CheckFailure where it does not hold."""
+    """The sheet as PDF and SVG, read back. Raises CheckFailure where it differs from the part."""
     from .pdf import pdf_bytes
     from .svg import svg_bytes
 

@@ -50,8 +50,9 @@ def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) 
 
 @contextmanager
 def _dated(date: str) -> Iterator[None]:
-    """Let reportlab take this date and no other: it looks for one in SOURCE_DATE_EPOCH, which users set for
-    others."""
+    """Make reportlab use this date only: by itself it takes that of SOURCE_DATE_EPOCH, which users set for
+    other purposes.
+    """
     given = os.environ.pop(EPOCH, None)
     os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
     try:

@@ -38,7 +38,7 @@ from .windows import Lines, draw_in_windows
 CHORD = 0.01
 MARGIN = 2.0  # mm around the drawing
 # Exact removal: 110 shapes take 0.8 s, 260 take 2.7 s, 2100 more than four minutes; on triangles 0.5, 1.4 and
-# 18 s, and the 2100 window by window 12 s.
+# 18 s; on triangles and window by window the 2100 take 12 s.
 EXACT_UP_TO = 300
 # mm, radians: 18 chords a circle, for pictures of a hundred parts and more
 MESH_LINEAR, MESH_ANGULAR = 0.05, 0.35
@@ -85,7 +85,7 @@ class Drawing:
 
 
 def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
-    """What is seen of placed shapes, in canonical order.
+    """Visible lines of placed shapes, in canonical order.
 
     Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles, window by window.
 
@@ -134,8 +134,10 @@ def projector(eye: Vector, right: Vector) -> HLRAlgo_Projector:
 
 
 def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBRep_HLRToShape:
-    """Exact hidden-line removal of placed shapes, which are told apart: 112 of them take 3.7 s, as one
-    compound 1.0 s."""
+    """Exact hidden-line removal of placed shapes, whose lines are told apart by shape.
+
+    112 of them take 3.7 s, as one compound 1.0 s.
+    """
     algorithm = HLRBRep_Algo()
     for shape in shapes:
         algorithm.Add(shape)
@@ -161,8 +163,9 @@ def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
 
 
 def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
-    """All shapes as one: added one by one they are hidden pair by pair, with the same lines for the
-    result."""
+    """All shapes as one. Added one by one they would be compared pair by pair, with the same lines as the
+    result.
+    """
     builder, whole = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(whole)
     for shape in shapes:
@@ -176,11 +179,11 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
     Parameters
     ----------
     drawn
-        What is seen, mm; smaller than a hand it is shown enlarged.
+        Visible lines, mm; a drawing smaller than a hand is shown enlarged.
     title, description
-        What the file says of itself.
+        Of the file.
     marked
-        Drawn over it in blue.
+        Lines drawn over it in blue.
     """
     x0, y0, x1, y1 = drawn.box
     left, top = x0 - MARGIN, y1 + MARGIN

@@ -1,8 +1,8 @@
 """The plan of a plate, disc or block: outline and holes by running dimensions from one corner, callouts for
 the rest.
 
-What the rule-made dimensions leave open is filled by whatever coordinate or radius says something new, so
-that the account of `Determined` closes for any outline of lines and arcs.
+Variables that these leave undetermined get a dimension on whichever coordinate or radius determines more, so
+that every outline of lines and arcs is fully dimensioned.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def prism_plan(
 
 
 def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
-    """The face from which more is made is seen from the front; axes lead into the material."""
+    """The front view shows the face with more features; their axes lead into the material."""
     from_top = sum(1 for axis in axes if axis[2] < 0)
     from_below = sum(1 for axis in axes if axis[2] > 0)
     return BACK if from_below > from_top else FRONT

@@ -1,5 +1,6 @@
-"""Running dimensions of a plan: edges, holes, corners and centres from one origin, each that says something
-new."""
+"""Running dimensions of a plan: edges, holes, corners and centres from one origin, each determining
+something new.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +52,7 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
 
 
 def filled(sketch: Sketch, view: View, r: Running, k: int, points: Sequence[Coordinate]) -> Running:
-    """The running dimensions with what corners and centres still have to say."""
+    """The running dimensions, with stops for corners and centres that still determine something."""
     return _with_stops(r, sketch, view, k, sketch.known[k][0], _way(view, k), points) if r.stops else r
 
 

@@ -1,9 +1,9 @@
-"""Whether a part is shown cut, and where: by what is sunk into it, not by what it is called.
+"""Whether a part is shown in section, and where: decided by its features, not by its name.
 
-A section is cut where a depth would otherwise be seen in hidden lines alone: a pocket, a groove, a blind
+A section is cut where a depth would otherwise be seen in hidden lines only: a pocket, a groove, a blind
 hole, a counterbore. Its plane stands upright on the front view's paper, through axes of such features: x =
 constant, seen from the left, so that it stands to the right of the front view (first angle); or, where no
-such plane will do, y = constant, seen from the side whose place above or below the front view is free.
+such plane is possible, y = constant, seen from the side whose place above or below the front view is free.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ SAME = 1e-6  # mm: a plane nearer to an axis than this goes through it
 
 def section_of(part: Part, holes: Sequence[Round], front: View, below: Vector | None) -> SectionPlane | None:
     """The plane that shows most kinds of sunk features, then the deepest, then most of them, then nearest to
-    the middle; None where nothing is sunk, or every plane through an axis would cut another hole off its axis
-    or run along a wall.
+    the middle.
 
-    `below` is the eye of a view onto a y face, which has its place already.
+    None where no feature is sunk, or every plane through an axis would cut another hole off its axis or run
+    along a wall. `below` is the eye of a view onto a y face, whose place on the sheet is taken.
     """
     sunk = [f for f in part.features if is_sunk(f)]
     for k in (0, 1):
@@ -81,7 +81,7 @@ def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, w
 
 
 def is_sunk(f: Feature) -> bool:
-    """Whether a feature ends inside the part, or changes there."""
+    """Whether a feature ends or changes inside the part."""
     return isinstance(f, Pocket) or not f.through or bool(f.counterbore)
 
 

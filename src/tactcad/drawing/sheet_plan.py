@@ -17,7 +17,7 @@ Side = Literal["top", "bottom", "left", "right"]
 
 @dataclass(frozen=True)
 class Dimension:
-    """One authored dimension: its value is what its rows measure, all the same.
+    """One authored dimension: its value is the common value of its rows.
 
     `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number
     shown, of a part modelled at `modelled` (deviation of the model from that number). `key` is the number of
@@ -162,9 +162,9 @@ class SectionPlane:
 class View:
     """One view: eye and up in the part's frame, its box in the view's own mm, and what is written on it.
 
-    A `window` cuts out what a detail shows; its letter is the view's `label`, and it is drawn as large as
-    `room` (mm of paper) lets, but no smaller than `least` : 1. Of a `section` what lies before its plane is
-    taken away.
+    A `window` is the area that a detail shows; the detail's letter is the view's `label`, and it is drawn as
+    large as fits `room` (mm of paper), at least at `least` : 1. For a `section` everything before its plane
+    is removed.
     """
 
     name: str

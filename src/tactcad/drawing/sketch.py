@@ -1,4 +1,4 @@
-"""A plan in the making: the account of what is determined, and what says it."""
+"""A plan in the making: its dimensions, and what they determine so far."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Coordinate:
 
 
 class Sketch:
-    """A plan in the making: the account of what is determined, and what says it."""
+    """A plan in the making: its dimensions, and what they determine so far."""
 
     def __init__(self, part: Part) -> None:
         self.part = part
@@ -80,7 +80,7 @@ class Sketch:
         return Dimension(c.name, rows, limits=limits, key=number, characteristic=c)
 
     def must(self, dimension: Dimension) -> Dimension:
-        """A dimension that has to be new. Raises CheckFailure where it repeats what is said already."""
+        """A dimension that has to determine something new. Raises CheckFailure where it repeats others."""
         if not self.new(dimension):
             raise CheckFailure(f"drawings: {self.part.part_no}: {dimension.name} is given twice")
         return dimension

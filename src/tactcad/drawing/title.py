@@ -19,7 +19,7 @@ GENERAL_TOLERANCES = ("ISO 2768-1:1989-m", "ISO 2768-2:1989-K")
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What the title block says. `mass` in g; None where it means nothing; scale as text, "5:1"."""
+    """Contents of the title block. `mass` in g, None where it is not stated; `scale` as text, "5:1"."""
 
     legal_owner: str
     number: str
@@ -39,7 +39,7 @@ class TitleBlock:
 
 
 def block_of(identity: Identity, number: str, title: str, draft: bool) -> TitleBlock:
-    """What the title blocks of all sheets of a design have in common."""
+    """The entries that the title blocks of all sheets of a design share."""
     return TitleBlock(
         legal_owner=identity.organisation,
         number=number,

@@ -14,8 +14,9 @@ from .apart import Piece, pieces_of
 
 @dataclass(frozen=True)
 class UnitView:
-    """A view's letter and title, the scene that knows how its pieces meet, and the pieces; none where all of
-    the scene is drawn as its steps explode it."""
+    """A view's letter and title, the scene whose contacts tell how its pieces meet, and the pieces; no pieces
+    where the whole scene is drawn as its steps explode it.
+    """
 
     letter: str
     title: str

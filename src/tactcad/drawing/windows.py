@@ -1,9 +1,9 @@
 """Hidden-line pictures of many shapes, window by window, so that time does not grow with their square.
 
-The kernel holds every edge against every face that may hide it, and its time grows faster than the number of
-shapes. Inside a strip of the picture only shapes count that reach into it: each strip is drawn with those,
-and its lines are cut off at its borders. (A plate as long as the picture reaches into every strip with all
-its holes: that share of the time still grows with the square, 1.2 in all.)
+The kernel compares every edge with every face that may hide it, and its time grows faster than the number of
+shapes. In a strip of the picture only shapes that reach into it matter: each strip is drawn with those, and
+its lines are cut off at its borders. (A plate as long as the picture reaches into every strip with all its
+holes; that part of the time still grows with the square, and the exponent is 1.2 in all.)
 """
 
 from __future__ import annotations

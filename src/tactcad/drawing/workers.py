@@ -1,5 +1,6 @@
-"""Drawings made side by side on the machine's cores, by processes that end with the export, however it
-ends."""
+"""Drawings made in parallel on the machine's cores, by processes that end with the export, however it
+ends.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.ending import past_ending
 
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2)
-EVERY = 2.0  # s: nobody waits longer without a word
+EVERY = 2.0  # s between messages while a drawing is waited for
 
 
 @dataclass(frozen=True)
@@ -40,9 +41,9 @@ class Named(Protocol):
 def end_with(parent: int) -> None:
     """Let this process be killed when its parent, of that number, is gone.
 
-    A forked helper waits for work for ever where its parent was killed, and holds what it inherited: the lock
-    of the export's folder among it. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach
-    it too, but it is the parent that answers; by SIGTERM the pool ends it.
+    A forked helper whose parent was killed would wait for work for ever, and hold what it inherited, the lock
+    of the export's folder included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach
+    the helper too, but the parent answers them; SIGTERM is how the pool ends it.
     """
     past_ending()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
@@ -103,7 +104,7 @@ def all_written(
 def _waited(
     future: Future[Written], n: int, orders: Sequence[Named], say: Callable[[int, int, str], None]
 ) -> Written:
-    """The n-th drawing once it is there; meanwhile it is said every EVERY seconds that it is not."""
+    """The n-th drawing once it is finished; meanwhile a message every EVERY seconds."""
     say(n, len(orders), f"drawing of {orders[n].name}")
     for rounds in count(1):
         if wait([future], EVERY).done:

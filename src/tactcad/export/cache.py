@@ -1,14 +1,14 @@
 """Bytes by key, kept from run to run; every entry is verified when it is read.
 
-The key names everything that the bytes depend on (see inputs.py), so an entry is never out of date, only
+The key contains everything that the bytes depend on (see inputs.py), so an entry is never out of date, only
 absent. An entry is one file: a header line with the digest of key and bytes, then the bytes; name and digest
-are keyed with a secret that lies beside the entries and that only its owner reads. What was truncated,
-altered, made without the secret or put under another key is reported, removed and built again.
+are keyed with a secret that is stored beside the entries and readable by its owner only. Entries that were
+truncated, altered, made without the secret or put under another key are reported, removed and built again.
 
-The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own nothing
-but regular files that are named as entries is read or removed. The cache is a help, not a need: where it
-cannot be written the work is done without it. An export ends by taking out what was used least recently
-beyond a bound.
+The folder is one that tactcad made or found empty, and marked; any other is refused, and in its own only
+regular files with the names of entries are read or removed. The cache is optional: where it cannot be written
+the work is done without it. At the end of an export the least recently used entries beyond a bound are
+removed.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from tactcad.design.messages import InputError
 from tactcad.ending import unfinished
 
 FORMAT = b"tactcad-cache-2"
-# All designs in hardware/ take 50 MB a revision: room for ten of them, and a disk does not notice.
+# All designs in hardware/ take 50 MB a revision: room for ten revisions, little for a disk.
 MOST_BYTES = 500_000_000
 UNFINISHED = ".new-"
 
-# bford.info/cachedir: programs that make backups pass by a folder with such a file
+# bford.info/cachedir: backup programs skip a folder with such a file
 MARK_NAME = "CACHEDIR.TAG"
 MARK = b"""Signature: 8a477f597d28d172789f06886806bc55
 # Cache of tactcad: everything in this folder may be deleted at any time, and tactcad deletes in it.
@@ -113,11 +113,11 @@ class Cache:
         return data
 
     def trim(self, most_bytes: int = MOST_BYTES) -> int:
-        """Take out what was used least recently until `most_bytes` are left, and what killed runs left half
+        """Remove the least recently used entries until `most_bytes` are left, and what killed runs left half
         written.
 
-        Returns how many entries went. Another process may read or write meanwhile: what is gone for it is
-        built again.
+        Returns how many entries were removed. Another process may read or write meanwhile: it builds again
+        what it misses.
         """
         if self._trouble:
             return 0
@@ -179,7 +179,7 @@ def _claim(root: Path) -> None:
 
 
 def _secret(path: Path) -> bytes:
-    """What only this user knows: 32 bytes drawn by the first who asks.
+    """32 random bytes that only this user can read, drawn on first use.
 
     Raises PermissionError where the file is not this user's.
     """
@@ -212,7 +212,7 @@ def _content(path: Path) -> bytes | None:
 
 
 def _without_waiting(path: str, flags: int) -> int:
-    """Opens no link's target, and waits for no pipe's writer."""
+    """Open a file without following links and without waiting for a pipe's writer."""
     return os.open(path, flags | os.O_NOFOLLOW | os.O_NONBLOCK)
 
 

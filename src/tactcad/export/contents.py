@@ -1,11 +1,11 @@
-"""What lies in a folder that tactcad wrote, held against the folder's own manifest.json: ours unchanged, or
-somebody's.
+"""Contents of a folder that tactcad wrote, compared with the folder's own manifest.json: unchanged, or
+changed by somebody.
 
 Every folder that tactcad writes has a manifest.json with `schema`, `files: [{path, sha256, ...}]` and, last,
-`seal`: the SHA-256 of the manifest's text without it, so that an edited manifest is seen too. Ours is a file
-with its listed digest, and a folder that holds one. All else is somebody's: a file that was added or changed,
-a link in a file's place, an empty folder; and what was write-protected, because whoever did that wants it
-kept.
+`seal`: the SHA-256 of the manifest's text without it, so that an edited manifest is recognised too. Files
+with their listed digest, and folders that hold one, are ours. Everything else is somebody's: a file that was
+added or changed, a link in a file's place, an empty folder; and anything write-protected, because whoever did
+that wants it kept.
 """
 
 from __future__ import annotations
@@ -23,19 +23,18 @@ from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
 
 NAME = "manifest.json"
-MOST_BYTES = 1_000_000_000  # no file of ours comes near; what is larger is not ours
+MOST_BYTES = 1_000_000_000  # none of our files comes near; anything larger is not ours
 ADDED, CHANGED, PROTECTED = "added", "changed", "write-protected"
 
-State = tuple[int, ...]  # of one file: mode, inode, size, times; another state means that somebody was at it
+State = tuple[int, ...]  # of one file: mode, inode, size, times; a difference means that somebody changed it
 
 
 @dataclass(frozen=True)
 class Contents:
-    """A folder's entries by path: all with their states, the somebody's with what they are (see the words
+    """A folder's entries by path: all with their states, and somebody's with what each is (see the words
     above).
 
-    `record` is the manifest, None where there is none or it is not as we wrote it; `missing` is listed but
-    not there.
+    `record` is the manifest, None where there is none or it was edited; `missing` are listed but not there.
     """
 
     states: Mapping[str, State]
@@ -44,7 +43,7 @@ class Contents:
     record: Mapping[str, Any] | None
 
     def changed_since(self, before: Contents) -> tuple[str, ...]:
-        """What is somebody's here, and was not there before, or was in another state."""
+        """Entries that are somebody's, and were not there before or were in another state."""
         return tuple(p for p in self.foreign if p not in before.foreign or before.states[p] != self.states[p])
 
 
@@ -134,10 +133,9 @@ def _sealed_record(folder: Path, schema: str) -> dict[str, Any] | None:
 
 
 def remove(folder: Path, seen: Contents) -> bool:
-    """Remove the folder with what was seen in it; False where something is there that was not, or is another
-    now.
+    """Remove the folder with the entries that were seen in it; False where it holds new or changed ones.
 
-    What is left when this is cut short is still known for ours: the manifest goes last.
+    The manifest goes last, so that what is left by an interrupted removal is still recognised as ours.
     """
     folders = [path for path, state in seen.states.items() if stat.S_ISDIR(state[0])]
     files = [path for path in seen.states if path not in set(folders) | {NAME}]

@@ -75,7 +75,7 @@ def _compare(old: Any, new: Any, path: tuple[str, ...]) -> Iterator[Change]:
                 yield from _compare(old[key], new[key], here)
     elif path[-1:] == ("contours",):
         yield from _compare_contours(old, new, path)
-    elif path[:1] == ("values",):  # what the user wrote: every digit counts
+    elif path[:1] == ("values",):  # the user's own text: every digit counts
         if old != new:
             yield Change("changed", path, old, new)
     elif not _same(old, new, path[-1] if path else ""):
@@ -97,7 +97,9 @@ def _is_number(value: Any) -> bool:
 
 
 def _compare_contours(old: list, new: list, path: tuple[str, ...]) -> Iterator[Change]:
-    """Contours differ where they do not cover the same curve; how they are cut into segments is no matter."""
+    """Contours differ where they do not cover the same curve; their division into segments does not
+    matter.
+    """
     if old == new:
         return
     before, after = [contour_of(rows) for rows in old], [contour_of(rows) for rows in new]

@@ -1,8 +1,8 @@
 """The cut file of a part that is cut from sheet or plate, written from its contours and read back.
 
-AC1015 with LINE, ARC and CIRCLE on one layer is what every importer tried reads exactly. Entities follow each
-contour head to tail; openings come before the outline, as they are cut, since the part drops with the last
-cut. The file holds the nominal contour: wire compensation belongs to the machine.
+AC1015 with LINE, ARC and CIRCLE on one layer is read exactly by every importer that was tried. Entities
+follow each contour head to tail; openings come before the outline, in the order of cutting, since the part
+drops with the last cut. The file holds the nominal contour: wire compensation belongs to the machine.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def dxf_bytes(part: Part) -> bytes:
 
 
 def checked_dxf(part: Part) -> bytes:
-    """The part's cut file, read back. Raises CheckFailure where it does not say what the part is."""
+    """The part's cut file, read back. Raises CheckFailure where it differs from the part."""
     data = dxf_bytes(part)
     wrong = check_dxf(data, part)
     if wrong:
@@ -131,7 +131,7 @@ def read_dxf(file: str | Path | bytes) -> CutFile:
     """
     import ezdxf
 
-    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # what it says of a damaged file is in our one line
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL)  # its message on a damaged file is in ours
     try:
         if isinstance(file, bytes):
             drawing = ezdxf.read(io.StringIO(file.decode("cp1252")))

@@ -26,7 +26,7 @@ from tactcad.scenes.scene import Scene
 Record = dict[str, Any]
 
 DIGITS = 9  # decimals; tolerances of the comparison start at the sixth
-# Columns of a bill that name files and their order, or repeat the design's revision: no meaning of their own.
+# Columns of a bill that are not compared: they name files and their order, or repeat the design's revision.
 NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 

@@ -27,7 +27,7 @@ MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
 def golden_path(design_file: Path, design: Design) -> Path | None:
-    """Where the golden file of a design file is, whether it exists or not; None where it can have none."""
+    """Where the golden file of a design file belongs; None where the design stands in no hardware/."""
     folder = design_file.resolve().parent
     return folder.parent / "exports" / "golden" / f"{design.name}.json" if folder.name == "hardware" else None
 

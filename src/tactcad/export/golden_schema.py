@@ -1,4 +1,4 @@
-"""Is a JSON value a golden file's record: sections, kinds of values, contours that close."""
+"""Whether a JSON value is a golden file's record: sections, kinds of values, contours that close."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ TABLES = ("holes", "pockets", "limits")
 
 
 def faults(record: Any, schema: str) -> str:
-    """What is wrong first, "" where nothing is."""
+    """The first fault, "" where there is none."""
     if not isinstance(record, dict) or record.get("schema") != schema:
         return f"its schema is not {schema}"
     if not all(isinstance(record.get(k), str) for k in ("design", "revision")):

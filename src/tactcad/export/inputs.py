@@ -87,7 +87,7 @@ def _is_source(path: Path) -> bool:
 
 
 def first_installed(*names: str) -> str:
-    """Of libraries that stand for each other the first that is installed; the first of all where none is."""
+    """The first installed one of libraries that replace each other; the first of all where none is."""
     return next((name for name in names if _version(name) != ABSENT), names[0])
 
 
@@ -154,10 +154,10 @@ def inputs_from_json(record: Any) -> Inputs | None:
 
 
 def reasons(before: Inputs | None, now: Inputs) -> list[str]:
-    """Why an output made from `before` has to be made again from `now`, a line each; none where nothing
+    """Why an output made from `before` has to be made again from `now`, one line each; empty where nothing
     changed.
 
-    Raises nothing: a record that cannot be understood (None) is a reason too.
+    Raises nothing: a record that cannot be read (None) is a reason too.
     """
     if before is None:
         return ["there is no record of an earlier export"]

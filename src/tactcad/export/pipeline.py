@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .products import Output
     from .shapes import Shapes
 
-# What an exported file may depend on: a change in any of them rebuilds.
+# Rooms and libraries that an exported file may depend on: a change in any of them rebuilds.
 ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
 # The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
 # is an empty stand-in for the first.
@@ -35,19 +35,20 @@ DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font a
 
 
 class Progress(Protocol):
-    """Where an export says what it does."""
+    """Receives the messages of an export."""
 
     def line(self, text: str) -> None:
-        """One line worth keeping."""
+        """A line that is kept on a terminal."""
 
     def step(self, done: int, total: int, text: str) -> None:
-        """`done` of `total` pieces of work are finished, `text` is the one that comes."""
+        """`done` of `total` pieces of work are finished; `text` is the next one."""
 
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export did: its folder, how many files it holds, which were made anew, which parts the kernel
-    built, and why (empty where nothing had changed)."""
+    """Result of an export: its folder, how many files it holds, which were made anew, which parts the kernel
+    built, and why (empty where nothing had changed).
+    """
 
     folder: Path
     files: int
@@ -58,10 +59,10 @@ class Exported:
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What of a design is exported, and how; beside the design all that an export is made from.
+    """What of a design is exported, and how. With the design, this is all that an export is made from.
 
-    `pose`: a rig's configuration, None for how the rig rests. `guides`: with assembly guides. `detail`:
-    `full` or `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
+    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
     """
 
     scenes: tuple[str, ...]
@@ -112,7 +113,7 @@ def export(
     earlier = looked_at(out, manifests.SCHEMA, others)
     why = _reasons(earlier, inputs)
     if why:
-        _refuse_broken(design)  # before anything appears on the disk
+        _refuse_broken(design)  # before anything is written to the disk
         if options.drawings:
             _refuse_unprintable(design)
     elif not left_unfinished(out):
@@ -128,7 +129,7 @@ def export(
 
 
 def _unchanged(out: str | Path, earlier: Contents, progress: Progress) -> Exported:
-    assert earlier.record  # or there would have been reasons
+    assert earlier.record  # otherwise there would have been reasons
     count = len(earlier.record["files"]) + 1
     progress.line(f"{out}: nothing changed, {count} files are up to date; nothing was rebuilt")
     return Exported(Path(out), count, (), (), ())
@@ -150,7 +151,7 @@ def _refuse_unprintable(design: Design) -> None:
 
 
 def _reasons(earlier: Contents, now: Inputs) -> list[str]:
-    """Why the export has to be made anew; empty: it need not."""
+    """Why the export has to be made anew; empty where it need not."""
     wrong = [f"{path}: {why}" for path, why in earlier.foreign.items()]
     wrong += [f"{path}: missing" for path in earlier.missing]
     if wrong:

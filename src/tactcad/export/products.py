@@ -197,8 +197,9 @@ def _drawn(
     shapes: Shapes,
     say: Callable[[int, int, str], None],
 ) -> list[Output]:
-    """Both files of each drawing; the first one that is asked for makes all that the cache has not, side by
-    side."""
+    """Both files of each drawing. The first one that is needed makes all that the cache does not hold, in
+    parallel.
+    """
     from tactcad.drawing.workers import all_written
 
     endings = ("pdf", "svg")

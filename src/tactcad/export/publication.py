@@ -50,9 +50,9 @@ def _print(text: str) -> None:
 
 
 def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Contents:
-    """What lies in DIR now; touches nothing.
+    """What lies in DIR now; changes nothing.
 
-    Raises InputError where DIR is no place for a folder, or holds what tactcad did not write there and
+    Raises InputError where DIR is not a place for a folder, or holds what tactcad did not write there and
     `others` is REFUSE.
     """
     out = absolute(directory)
@@ -107,7 +107,7 @@ def left_unfinished(directory: str | Path) -> bool:
 
 @dataclass(frozen=True)
 class Work:
-    """One process's turn at DIR: `folder` to write into, `earlier` is what lay in DIR when the turn came."""
+    """One process's turn at DIR: `folder` to write into; `earlier` is what lay in DIR when the turn began."""
 
     out: Path
     schema: str
@@ -131,7 +131,7 @@ class Work:
         self.publish()
 
     def publish(self) -> None:
-        """Let `folder`, with its manifest, be DIR; the earlier one goes, or is kept beside."""
+        """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept beside."""
         if self.out.is_dir():
             self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
         _flush(self.folder)
@@ -163,9 +163,9 @@ class Work:
 def turn(
     directory: str | Path, schema: str, others: str = REFUSE, say: Say = _print, wait: float = WAIT_SECONDS
 ) -> Iterator[Work]:
-    """Be the only one who writes a folder; what killed runs left is settled first.
+    """Hold the exclusive right to write a folder; first settles what killed runs left.
 
-    Whatever is raised inside, the earlier folder stands.
+    If anything is raised inside, the earlier folder stays.
 
     Parameters
     ----------
@@ -174,16 +174,16 @@ def turn(
     schema
         Of the manifest that it has, or will have.
     others
-        What becomes of files in it that tactcad did not write so: refuse, keep or discard.
+        What to do with files in it that tactcad did not write: refuse, keep or discard.
     say
-        Gets a line worth keeping, such as that another process is waited for.
+        Receives lines worth keeping, such as that another process is waited for.
     wait
         How long to wait for another process, s.
 
     Yields
     ------
     Work
-        A folder to write into, and what lay in DIR when the turn came.
+        A folder to write into, and what lay in DIR when the turn began.
 
     Raises
     ------
@@ -231,7 +231,7 @@ def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say:
     holders: tuple[str, ...] | None
     while True:
         parent = os.open(out.parent, os.O_RDONLY | os.O_DIRECTORY)
-        try:  # one at a time looks around; closing gives the lock back
+        try:  # one process at a time looks around; closing releases the lock
             fcntl.flock(parent, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             holders = None
@@ -309,8 +309,8 @@ def _move(old: Path, new: Path) -> None:
 
 
 def _rename(old: Path, new: Path, flag: int) -> bool:
-    """Rename with that flag of renameat2; False where the system or its file system cannot."""
-    import ctypes  # an export with nothing changed does without
+    """Rename with that flag of renameat2; False where the system or its file system does not support it."""
+    import ctypes  # not needed by an export without changes
 
     try:
         renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
@@ -325,7 +325,7 @@ def _rename(old: Path, new: Path, flag: int) -> bool:
 
 
 def _flush(folder: Path) -> None:
-    """Everything in the folder is on the disk before its name is."""
+    """Write everything in the folder to the disk, before its name."""
     for base, _, names in os.walk(folder):
         for name in names:
             flush_entry(Path(base, name))
@@ -334,7 +334,7 @@ def _flush(folder: Path) -> None:
 
 @contextmanager
 def _in_one_line(target: Path) -> Iterator[None]:
-    """Turn the machine's refusals to write `target` into the one-line messages of the house."""
+    """Turn an operating system's refusal to write `target` into a one-line message."""
     try:
         yield
     except OSError as error:

@@ -66,9 +66,9 @@ def named(source: str) -> Path:
 
 
 def read_side(source: str) -> Side:
-    """What `source` names: a folder with a manifest, a golden file (*.json), else a design.
+    """One side of a comparison: a folder with a manifest, a golden file (*.json), else a design.
 
-    Raises InputError where it is none of them, or damaged.
+    Raises InputError where `source` is none of them, or damaged.
     """
     path = Path(source)
     if os.path.isdir(path):  # False too for what is no path
@@ -145,7 +145,7 @@ def _exported_bills(folder: Path, manifest: Manifest) -> Record:
 
 
 def compare_sides(old: Side, new: Side) -> list[Change]:
-    """What changed, in as much as both sides tell it: names, the design's values, then the geometry."""
+    """What changed, as far as both sides record it: names, the design's values, then the geometry."""
     records = []
     for side in (old, new):
         record = {
@@ -163,7 +163,7 @@ def compare_sides(old: Side, new: Side) -> list[Change]:
 
 
 def not_compared(old: Side, new: Side) -> list[str]:
-    """What one of the sides does not tell."""
+    """What could not be compared, because one of the sides does not record it."""
     missing = []
     if "golden" in (old.kind, new.kind):
         missing.append("a golden file holds no design values")

@@ -14,7 +14,7 @@ from tactcad import __version__
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*((?:'(?:[^']|'')*'|[^';])*);")
 _REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
-# Text that the kernel gives every instance and that says nothing: 37 bytes of each.
+# Text that the kernel gives every instance, without information: 37 bytes of each.
 _PLACEMENT = re.compile(r"^PRODUCT_DEFINITION_SHAPE\('Placement','Placement of an item',")
 _INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
 _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"

@@ -1,2 +1,1 @@
-"""The release of a design: one zip that a shop can quote from, checked before, while and after it is
-written."""
+"""The release of a design: one zip from which a shop can quote, checked before, during and after writing."""

@@ -1,4 +1,4 @@
-"""A zip of equal bytes in every process."""
+"""A zip with the same bytes in every process."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ def archive_bytes(files: Mapping[str, bytes], date: str) -> bytes:
 
 
 def replaced_content(target: Path, new: bytes) -> list[str]:
-    """What differs between the zip that stands at `target` and the new one, by file; empty where there is
-    none or nothing does."""
+    """Differences between the zip at `target` and the new one, by file; empty where there is no zip or no
+    difference.
+    """
     if not target.is_file() or target.read_bytes() == new:
         return []
     try:

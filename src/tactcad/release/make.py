@@ -19,13 +19,14 @@ from .archive import archive_bytes, replaced_content
 from .readme import MARK, ReleaseContents, readme_bytes
 from .verify import README, check_archive
 
-QUOTED = ("wire-cut", "machining")  # checks whose flags a shop should hear of
+QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the shop
 
 
 @dataclass(frozen=True)
 class Released:
-    """What was written: the zip, whether as a draft, how many files it holds, what was wrong (drafts only),
-    and what differs from the zip that stood there before."""
+    """Result of a release: the zip, whether it is a draft, how many files it holds, failures (drafts only),
+    and differences from the zip that stood there before.
+    """
 
     path: Path
     design: str
@@ -56,9 +57,9 @@ def release(
     shop_file
         The limits that parts are checked against.
     progress
-        Is told what is done, and why nothing is.
+        Receives what is done, and why nothing is.
     draft
-        Goes on whatever the checks say; the README says what they do.
+        Continue even where checks fail; the README lists the failures.
 
     Returns
     -------
@@ -142,7 +143,7 @@ def _exported(
 
 
 def _path_in_zip(file: FileRecord) -> str:
-    """Where an exported file goes; "" where a shop has no use for it."""
+    """Path of an exported file in the zip; "" where it is of no use to a shop."""
     if file.kind in ("dxf", "step-part", "step-assembly", "inspection"):
         return file.path
     if file.kind == "drawing" and file.path.endswith(".pdf"):

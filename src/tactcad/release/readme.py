@@ -1,5 +1,6 @@
-"""README.txt of a release: what a shop reads first. Plain ASCII where the design's own texts are, 96
-columns."""
+"""README.txt of a release, which a shop reads first. Plain ASCII apart from the design's own texts, 96
+columns.
+"""
 
 from __future__ import annotations
 
@@ -42,8 +43,9 @@ PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "T
 
 @dataclass(frozen=True)
 class ReleaseContents:
-    """What a release is about: its scenes, what the checks flagged, and why it is only a draft (empty: it is
-    none)."""
+    """Subject of a release: its scenes, what the checks flagged, and why it is only a draft (empty where
+    it is not).
+    """
 
     design: Design
     scenes: Sequence[Scene]

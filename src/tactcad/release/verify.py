@@ -1,4 +1,4 @@
-"""Reads a release back: what is wrong with the zip against the design that it is to show."""
+"""Reads a release back, and reports how the zip differs from the design."""
 
 from __future__ import annotations
 

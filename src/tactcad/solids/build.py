@@ -30,11 +30,11 @@ OUTSIDE = 0.5
 
 
 class SolidError(RuntimeError):
-    """The kernel made something else than the description says."""
+    """The kernel made something other than the description says."""
 
 
 def build(part: Part) -> Solid:
-    """The part's solid in its own frame (mm).
+    """The part's solid in its own frame, mm.
 
     Raises SolidError where the result is not one valid solid, or its volume is not the closed form's.
     """

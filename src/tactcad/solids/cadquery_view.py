@@ -50,7 +50,9 @@ def _colour(colour: str) -> cq.Color:
 def bought_from_step(
     path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
 ) -> Part:
-    """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has not one."""
+    """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has another
+    number.
+    """
     from .step_models import model_file
 
     return Part(part_no, name, "bought", material, model_file(path), purchase=purchase)

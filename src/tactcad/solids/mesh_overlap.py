@@ -11,7 +11,7 @@ Mesh = tuple[np.ndarray, np.ndarray]  # vertices (n, 3) in mm, triangles (m, 3)
 
 
 def closed(mesh: Mesh) -> manifold3d.Manifold:
-    """The mesh as a closed surface. Raises ValueError where it is none."""
+    """The mesh as a closed surface. Raises ValueError where it is not closed."""
     made = manifold3d.Manifold(
         manifold3d.Mesh64(np.ascontiguousarray(mesh[0]), np.ascontiguousarray(mesh[1], dtype=np.uint64))
     )
@@ -30,7 +30,7 @@ def placed(
 
 
 def meeting(first: manifold3d.Manifold, second: manifold3d.Manifold, reach: float) -> tuple[float, float]:
-    """Common volume (mm3), and the gap between the surfaces (mm, at most `reach`)."""
+    """Common volume of two placed meshes (mm3), and the gap between their surfaces (mm, at most `reach`)."""
     return (first ^ second).volume(), first.min_gap(second, reach)
 
 

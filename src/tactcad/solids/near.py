@@ -60,7 +60,9 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
 
 
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
-    """Distance in mm, infinite where one has nothing, and a point of the first where it is taken."""
+    """Distance of two sets of faces (mm, infinite where one is empty), and the point of the first where it
+    is taken.
+    """
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)
     nearest_points = BRepExtrema_DistShapeShape(first, second)

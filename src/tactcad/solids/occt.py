@@ -1,5 +1,4 @@
-"""Names of the kernel's binding that OCP 8 has elsewhere than OCP 7.9: whoever needs one takes it from
-here."""
+"""Names of the kernel's binding that differ between OCP 7.9 and OCP 8; all code imports them from here."""
 
 from __future__ import annotations
 

@@ -34,7 +34,9 @@ def read_step(data: bytes) -> TopoDS_Shape:
 
 
 def set_up_writer() -> None:
-    """How every STEP file of the house is written. The kernel knows these names once it has made a writer."""
+    """Settings of every STEP file that tactcad writes; the kernel knows their names once it has made a
+    writer.
+    """
     silence()
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
     Interface_Static.SetCVal_s("write.step.unit", "MM")
@@ -43,7 +45,7 @@ def set_up_writer() -> None:
 
 
 def silence() -> None:
-    """The kernel reports every transfer on standard output, which belongs to our own messages."""
+    """Keep the kernel from reporting every transfer on standard output, which carries our own messages."""
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):
         messenger.RemovePrinter(printer)

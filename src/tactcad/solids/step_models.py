@@ -42,7 +42,7 @@ def _sha256(path: str) -> str:
 def _only_solid(path: str) -> Solid:
     try:
         solids = list(import_step(path).solids())
-    except Exception as error:  # the importer's own refusals come in many kinds
+    except Exception as error:  # the importer raises many kinds of exceptions
         raise InputError(path, f"cannot be read as STEP: {error}") from None
     if len(solids) != 1:
         raise InputError(path, "not one solid", value=len(solids), legal="a STEP file with one solid")
