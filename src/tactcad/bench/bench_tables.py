@@ -1,7 +1,7 @@
 """Tables of a run as plain data, and how they are shown: text, Markdown, CSV.
 
 A table is {"title", "columns": [{"key", "heading", "unit", "scale"}], "rows": [{key: value}], "note"}. Values
-are in s, mm, bytes and ratios; a column's scale takes them to the unit in which it is shown. None is what was
+are in s, mm, bytes and ratios; a column's scale converts them to the unit in which it is shown. None means
 not measured.
 """
 

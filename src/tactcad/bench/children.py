@@ -1,5 +1,6 @@
-"""Tasks that run in a process of their own, so that their memory and their imports can be told:
-`python -m tactcad.bench.children TASK ARGUMENTS.json` prints its result as JSON on its last line."""
+"""Tasks that run in a process of their own, so that their memory and imports can be measured separately:
+`python -m tactcad.bench.children TASK ARGUMENTS.json` prints its result as JSON on its last line.
+"""
 
 from __future__ import annotations
 

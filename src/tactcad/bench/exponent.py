@@ -21,9 +21,9 @@ class Exponent:
 
 
 def fit(sizes: Sequence[float], costs: Sequence[float]) -> Exponent:
-    """Slope of log cost over log size; the interval is Student's. Raises ValueError below two sizes.
+    """Slope of log cost over log size, with Student's interval. Raises ValueError below two sizes.
 
-    A fixed cost hides growth at small sizes: `last` shows what the largest ones do.
+    A fixed cost hides growth at small sizes: `last` is the slope between the two largest ones.
     """
     x, y = np.log(np.asarray(sizes, dtype=float)), np.log(np.asarray(costs, dtype=float))
     if len(np.unique(x)) < 2:

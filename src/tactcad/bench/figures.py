@@ -1,4 +1,6 @@
-"""Plots of a run, from its JSON: error against time, both logarithmic, what is worth choosing on a line."""
+"""Plots of a run, from its JSON: error against time, both logarithmic, the efficient choices joined by a
+line.
+"""
 
 from __future__ import annotations
 
@@ -71,8 +73,9 @@ class Point:
 
 @dataclass(frozen=True)
 class Panel:
-    """Error against time: the points, a title, what stands at the axes; a key to read it by; the error that
-    stands for none."""
+    """Error against time: the points, a title, labels of the axes; a legend; the error at which "none" is
+    plotted.
+    """
 
     points: list[Point]
     title: str

@@ -24,7 +24,9 @@ def command() -> list[str]:
 
 
 def environment(job: dict) -> dict[str, str]:
-    """Its command line takes every argument for a file to open: the job goes through the environment."""
+    """The environment that carries the job: FreeCAD's command line takes every argument for a file to
+    open.
+    """
     return {
         "TACTCAD_PEER": json.dumps(job),
         "QT_QPA_PLATFORM": os.environ.get("QT_QPA_PLATFORM", "offscreen"),
@@ -32,7 +34,7 @@ def environment(job: dict) -> dict[str, str]:
 
 
 def answer(output: str) -> dict:
-    """What the script prints after its mark, among FreeCAD's own lines."""
+    """The line that the script prints after its mark, found among FreeCAD's own output."""
     lines = [line for line in output.splitlines() if line.startswith("PEER ")]
     return json.loads(lines[-1].removeprefix("PEER ")) if lines else {}
 

@@ -1,4 +1,4 @@
-"""What is worth choosing: nothing else is both as quick and as accurate."""
+"""Efficient choices: no other one is both as quick and as accurate."""
 
 from __future__ import annotations
 
@@ -19,8 +19,9 @@ def efficient(points: Sequence[tuple[float, float]]) -> list[int]:
 
 
 def dominators(points: Sequence[tuple[float, float]]) -> dict[int, int]:
-    """For every index that is not on the front the most accurate one that costs no more: what to take
-    instead."""
+    """For every index that is not on the front the most accurate one that costs no more: the better
+    choice.
+    """
     front = efficient(points)
     beaten = [i for i in range(len(points)) if i not in front]
     return {

@@ -1,4 +1,4 @@
-"""What a measurement was made on: processor, cores, versions, and which peers are there."""
+"""The machine that measured: processor, cores, versions, and which peers are installed."""
 
 from __future__ import annotations
 

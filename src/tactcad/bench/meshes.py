@@ -181,7 +181,7 @@ def _solid(density: int, shape: ElementShape, nu: float, width: float) -> Answer
 
 
 def _corrected(density: int, shape: ElementShape, nu: float, width: float) -> Answer:
-    """With the plane problem's error on the same mesh taken off, as fem-solid does."""
+    """The solid with the plane problem's error on the same mesh removed, as fem-solid does."""
     stiffness, unknowns = _solid(density, shape, nu, width)
     limit, _ = _extrapolated(6, shape, nu, width)
     return stiffness * limit / _plane(density, shape, nu, width)[0], unknowns

@@ -47,7 +47,7 @@ def measured(command: Sequence[str], environment: Mapping[str, str] | None = Non
 def in_turns(
     commands: Mapping[K, Sequence[str]], turns: int, say: Callable[[str], None]
 ) -> dict[K, list[Run]]:
-    """Each command once a turn, so that what else the machine does meets all alike."""
+    """Each command once a turn, so that other load on the machine affects all alike."""
     runs: dict[K, list[Run]] = {name: [] for name in commands}
     for turn in range(turns):
         for name, command in commands.items():
@@ -57,15 +57,16 @@ def in_turns(
 
 
 def cost(runs: Sequence[Run], seconds: Sequence[float] = ()) -> dict[str, float]:
-    """Shortest and median time (s), as the processes themselves tell it or else whole, and the least of their
-    largest memories (bytes)."""
+    """Shortest and median time (s), as the processes report it or else of the whole process, and the smallest
+    of their largest memories (bytes).
+    """
     timed = of_samples(list(seconds) or [run.seconds for run in runs])
     peak = min(run.peak_bytes for run in runs)
     return {"seconds": timed.seconds, "median": timed.median, "peak_bytes": peak}
 
 
 def surroundings() -> dict[str, str]:
-    """One thread a process, and the tactcad that is running for every child too."""
+    """The environment of children: one thread a process, and the running tactcad."""
     here = str(Path(tactcad.__file__).parents[1])
     path = os.pathsep.join([here, *filter(None, [os.environ.get("PYTHONPATH")])])
     return {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": path}

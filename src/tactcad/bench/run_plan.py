@@ -14,7 +14,8 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class RunPlan:
-    """mode; seed of everything random; a scratch folder; `say` hears what is being measured.
+    """Plan of a run: mode; seed of everything random; a scratch folder; `say` receives what is being
+    measured.
 
     smoke: does everything run? Its figures mean nothing. short: four minutes on two quiet cores. full: for
     publication, some 40 minutes.

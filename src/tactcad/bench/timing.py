@@ -1,4 +1,6 @@
-"""Times of things that are compared: in turns, so that what else the machine does meets all alike."""
+"""Times of things that are compared, measured in turns, so that other load on the machine affects all
+alike.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,15 @@ from math import ceil
 from statistics import median
 from typing import TypeVar
 
-LEAST_SAMPLE = 0.005  # s: shorter actions are run several times a sample, for the clock's and the loop's sake
+LEAST_SAMPLE = 0.005  # s: shorter actions run several times a sample, to reduce the error of clock and loop
 K = TypeVar("K", bound=Hashable)
 
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds of one action: shortest and median of `runs` samples. The shortest counts: disturbance only
-    adds."""
+    """Seconds of one action: shortest and median of `runs` samples. The shortest counts: disturbances only
+    add time.
+    """
 
     seconds: float
     median: float
@@ -39,7 +42,7 @@ def interleaved(actions: Mapping[K, Callable[[], object]], repeats: int) -> dict
 
 
 def of_samples(seconds: list[float]) -> Timed:
-    """The same from times that were taken elsewhere, as by another process's own clock."""
+    """The same from times measured elsewhere, such as by another process's own clock."""
     return Timed(min(seconds), median(seconds), len(seconds))
 
 

@@ -1,8 +1,8 @@
-"""Converged finite elements, finer than any rung: what errors are measured against.
+"""Converged finite elements, finer than any rung: the reference for errors.
 
 Plane stress: Richardson's limit from densities 6 and 12, where the rung takes 3 and 6. Three dimensions: that
-limit times K3D/K2D on one plane mesh (both miss the fillets by the same share), Richardson's limit from
-densities 2 and 3, with what a second layer across the width changes.
+limit times K3D/K2D on one plane mesh (both have the same relative error at the fillets), by Richardson's
+limit from densities 2 and 3, with the change that a second layer across the width makes.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""Do two placed parts overlap? Triangle meshes at each tolerance against the kernel, on pairs with known
-verdicts, on the array's own near pairs, and the whole check against every near pair by the kernel."""
+"""Whether two placed parts overlap: triangle meshes at each tolerance against the kernel, on pairs with known
+verdicts, on the array's own near pairs, and the whole check against every near pair by the kernel.
+"""
 
 from __future__ import annotations
 
@@ -80,8 +81,9 @@ def near(scene: Scene) -> list[Placed]:
 
 
 def count_wrong(verdicts: list[str], true: list[str]) -> dict[str, int]:
-    """Wrong verdicts in all, and by kind: overlaps not seen, overlaps that are none, touch and clear
-    mistaken."""
+    """Number of wrong verdicts, and by kind: overlaps missed, overlaps that are none, touch and clear
+    confused.
+    """
     pairs = Counter(zip(verdicts, true))
     missed = sum(n for (f, t), n in pairs.items() if t == "overlap" != f)
     false = sum(n for (f, t), n in pairs.items() if f == "overlap" != t)
@@ -91,8 +93,9 @@ def count_wrong(verdicts: list[str], true: list[str]) -> dict[str, int]:
 
 @dataclass
 class Prepared:
-    """What each way of judging makes once a part, by part number: the kernel's shape with its box and its
-    faces' boxes, and closed meshes by angular tolerance."""
+    """What each method of judging makes once for every part number: the kernel's shape with its box and its
+    faces' boxes, and closed meshes by angular tolerance.
+    """
 
     shapes: dict = field(default_factory=dict)
     boxes: dict = field(default_factory=dict)
@@ -121,7 +124,7 @@ def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
 
 
 def kernel_verdict(pair: Placed, made: Prepared) -> str:
-    """As `tactcad check` finds it: the kernel's distance, and its common solid where that is none."""
+    """As `tactcad check` decides: by the kernel's distance, and by its common solid where that is 0."""
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM, meeting, placed_box
 
     a, b = (placed_box(p, made.boxes[p.part.part_no]) for p in pair)
@@ -130,7 +133,7 @@ def kernel_verdict(pair: Placed, made: Prepared) -> str:
 
 
 def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
-    """By the same limits from what the triangles share, and from their distance."""
+    """By the same limits, from the triangles' common volume and distance."""
     from tactcad.checks.interference import OVERLAP_MM3, TOUCH_MM
     from tactcad.solids.mesh_overlap import meeting, placed
 
@@ -184,7 +187,7 @@ def _timed(into: list[float], action: Callable[[], T]) -> T:
 
 
 class _Forgetful(dict):
-    """Knows no situation: every pair is looked at anew."""
+    """Remembers no situation: every pair is judged anew."""
 
     def __contains__(self, key: object) -> bool:
         return False

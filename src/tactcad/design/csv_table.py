@@ -1,9 +1,9 @@
 """Tables read from CSV: every refusal names file, line and column.
 
 A line that starts with # is a comment. The first other line is the header; columns may stand in any order and
-unknown ones are left alone. What spreadsheets do to a CSV file is undone where it can only mean one thing: a
-byte order mark, a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at the
-end, and decimal commas.
+unknown ones are ignored. Changes that spreadsheets make to a CSV file are undone where they are unambiguous:
+a byte order mark, a first line "sep=;", semicolons or tabs between the columns, empty rows, empty cells at
+the end, and decimal commas.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Table:
-    """A CSV file taken apart as far as its header: what follows is split when it is asked for.
+    """A CSV file read up to its header; the rows below are split on demand.
 
     lines: those below the header, without comments; numbers: of each, as an editor counts them.
     """
@@ -71,11 +71,11 @@ class Table:
 
     @cached_property
     def records(self) -> list[tuple[int, list[str]]]:
-        """The rows as text without blanks about the cells, each at the header's width and with the line it
-        begins on.
+        """The rows as text, each with the line it begins on; cells without blanks around them, at the
+        header's width.
 
-        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is no
-        CSV, or a row is of another length.
+        Line ends within quotes belong to their row; empty rows are left out. Raises InputError where it is
+        not CSV, or a row is of another length.
         """
         rows = _split(self.path, self.lines, self.numbers, self.delimiter)
         return [(n, _fitted(self, n, row)) for n, row in rows if any(row)]
@@ -134,7 +134,22 @@ def half_step(text: str) -> float:
 
 
 def read(path: str | Path, fields: tuple[Field, ...], optional: tuple[Field, ...] = ()) -> Rows:
-    """The numeric columns `fields` (and `optional` where present) of a CSV file; see `numeric`."""
+    """Numeric columns of a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file, as the user named it.
+    fields
+        Columns that must be there.
+    optional
+        Columns that are read where they are there.
+
+    Raises
+    ------
+    InputError
+        As `numeric`.
+    """
     return numeric(read_table(path, "readings (CSV)"), fields, optional)
 
 
@@ -180,13 +195,13 @@ def numeric(
 
 
 def _at_once(table: Table, chosen: tuple[Field, ...]) -> Rows | None:
-    """The same where every line is a row of plain legal numbers, ten times as fast; None where one is not."""
+    """`numeric` ten times as fast, for lines of plain legal numbers only; None where one is not."""
     width = len(table.header) - 1
     if not table.lines or any(line.count(table.delimiter) != width or '"' in line for line in table.lines):
         return None
     try:
         places = [table.header.index(f.name) for f in chosen]
-        # loadtxt knows fewer texts for a number than `number` does: what it does not know is looked at again
+        # loadtxt accepts fewer texts for a number than `number` does: where it refuses, `numeric` decides
         values = np.loadtxt(
             table.lines, delimiter=table.delimiter, usecols=places, comments=None, ndmin=2, unpack=True
         )
@@ -256,7 +271,22 @@ def require_columns(table: Table, names: Sequence[str]) -> None:
 
 
 def refuse_duplicates(rows: Rows, names: tuple[str, ...], legal: str = "each once") -> None:
-    """Raise InputError at the second row that has the same values in the columns `names`."""
+    """Refuse a row that repeats an earlier one's values in some columns.
+
+    Parameters
+    ----------
+    rows
+        As `read` gives them.
+    names
+        The columns that are compared.
+    legal
+        What would be accepted, for the message.
+
+    Raises
+    ------
+    InputError
+        With line and column of the second row.
+    """
     columns = [rows.values(n) for n in names]
     order = np.lexsort(columns)  # stable: of equal rows the first stays first
     same = np.all([column[order[1:]] == column[order[:-1]] for column in columns], axis=0)
@@ -306,7 +336,7 @@ def _split(
 
 
 def _fitted(table: Table, line: int, row: list[str]) -> list[str]:
-    """The row at the header's width; what is over must be blank."""
+    """The row cut to the header's width; cells beyond must be blank."""
     width = len(table.header)
     if len(row) < width or any(row[width:]):
         raise InputError(
@@ -319,7 +349,7 @@ def _fitted(table: Table, line: int, row: list[str]) -> list[str]:
 
 
 def _numbers(table: Table, field: Field, lines: np.ndarray, column: list[str]) -> np.ndarray:
-    """A column's numbers. Raises InputError at the first cell that is none, or not legal."""
+    """A column's numbers. Raises InputError at the first cell that is not a number, or not legal."""
     values = np.array([number(text) for text in column])
     for i in np.flatnonzero(~field.allowed(values))[:1]:
         wrong = "is not a number" if isnan(values[i]) else "is out of range"

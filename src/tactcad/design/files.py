@@ -20,7 +20,7 @@ from typing import Any, NoReturn
 from .held import held_file, held_folder, sweep_folders
 from .messages import CheckFailure, InputError, hidden, shortened
 
-# what a machine, not a mistake of ours, refuses: answered by one line instead of a traceback
+# refusals of the operating system, not mistakes of ours: answered by one line instead of a traceback
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
 REFUSED_BY_MACHINE = NO_ROOM | {
     errno.EACCES,
@@ -170,17 +170,16 @@ def _no_number(text: str) -> NoReturn:
 
 
 def write_whole(path: str | Path, data: bytes) -> None:
-    """Let `path` be a file of these bytes in one step. Raises as `whole_file` does."""
+    """Write a file of these bytes in one step. Raises as `whole_file` does."""
     with whole_file(path) as part:
         part.write_bytes(data)
 
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A file to write beside `path`, which is flushed and renamed over it when the block ends well, and gone
-    else.
+    """A file to write beside `path`: flushed and renamed over it when the block ends well, otherwise removed.
 
-    A link is followed; its folder must be there. What killed runs left there goes first. Raises InputError
+    A link is followed; its folder must exist. What killed runs left there is removed first. Raises InputError
     where the place cannot be written to, CheckFailure where there is no room; what was there before is then
     unchanged.
     """
@@ -201,7 +200,7 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 
 def flush_entry(path: Path) -> None:
-    """Let what the file or folder holds be on the disk."""
+    """Write the content of the file or folder to the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -211,8 +210,7 @@ def flush_entry(path: Path) -> None:
 
 @contextmanager
 def scratch_folder(purpose: str) -> Iterator[Path]:
-    """A folder for a while among the machine's temporary ones; what killed runs left of that purpose goes
-    first.
+    """A temporary folder; what killed runs left of that purpose is removed first.
 
     Raises as `whole_file` does.
     """
@@ -234,7 +232,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
     out
         File or folder to be written.
     inputs
-        Files and folders that are read; None and what is not there are no matter.
+        Files and folders that are read; None and missing ones are ignored.
     option
         The option that names `out`, for the message.
 
@@ -256,7 +254,7 @@ def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str 
 
 
 def _identity(path: str | Path) -> tuple[int, int] | None:
-    """Device and number of what stands at the end of all links, None where nothing does."""
+    """Device and inode number at the end of all links, None where nothing is there."""
     try:
         state = os.stat(path)
     except (OSError, ValueError):
@@ -271,7 +269,7 @@ def _folders(path: str | Path) -> set[tuple[int, int] | None]:
 
 
 def absolute(path: str | Path) -> Path:
-    """The path from the root. Raises InputError where the folder that it starts from is gone."""
+    """The path from the root. Raises InputError where the working folder was removed."""
     try:
         return Path(os.path.abspath(path))
     except OSError as error:
@@ -279,7 +277,7 @@ def absolute(path: str | Path) -> Path:
 
 
 def make_folder(path: str | Path) -> None:
-    """Let there be a folder of that name. Raises as `write_whole` does."""
+    """Make the folder where it does not exist. Raises as `write_whole` does."""
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -287,9 +285,10 @@ def make_folder(path: str | Path) -> None:
 
 
 def refusal(where: str, error: OSError) -> InputError | CheckFailure:
-    """The house's message for what the machine refused to write: CheckFailure where there is no room.
+    """Our message for an operating system's refusal to write: CheckFailure where there is no room, else
+    InputError.
 
-    Raises `error` again where it is nothing that a machine refuses.
+    Raises `error` again where it is anything else.
     """
     if error.errno not in REFUSED_BY_MACHINE:
         raise error

@@ -1,8 +1,8 @@
-"""Unfinished files and folders, held by the process that makes them; the next run removes what a killed one
-left.
+"""Unfinished files and folders, held by the process that makes them; the next run removes those of killed
+runs.
 
-Whoever makes one holds a lock (flock) on it, which goes with the process however that ends. Only names of our
-own form, nobody's lock on them and, for folders, our mark in them: then it is a killed run's.
+Whoever makes one holds a lock (flock) on it, which ends with the process, however that ends. A file or folder
+is a killed run's if its name has our form, nobody holds its lock and, for folders, our mark is in it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tactcad.ending import unfinished
 
 MARK = "written-by-tactcad"  # in every folder of ours; holds the process's number
 OWN = ".tactcad-"  # in every name of ours, before eight characters drawn by chance
-MAKING = "making"  # in a folder of ours, what is of no use before it is finished
+MAKING = "making"  # in a folder of ours: content that is useless until it is finished
 DRAWN = "[a-z0-9_]{8}"  # as tempfile draws them
 
 Settle = Callable[[Path], None]
@@ -136,7 +136,7 @@ def _remove_if_left(part: Path) -> None:
 
 
 def _take(handle: int) -> bool | None:
-    """Whether this process holds the lock now; None where the file system has no locks."""
+    """Whether this process now holds the lock; None where the file system has no locks."""
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -147,7 +147,7 @@ def _take(handle: int) -> bool | None:
 
 
 def _remove(folder: Path, settle: Settle) -> None:
-    """The mark goes last, so that what is half removed is still known as ours."""
+    """Remove the folder, its mark last, so that a half-removed one is still recognised as ours."""
     settle(folder)
     for path in folder.iterdir():
         if path.is_dir() and not path.is_symlink():

@@ -17,14 +17,14 @@ from .plain_numbers import as_number
 from .toml_text import parse_toml
 from .tree import Design, Element, Hinge, SheetMaterial, Stop, Tolerance
 
-# A design is a page of text; more is a mistake or an attack, and parsing it would only cost time.
+# A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
 
 DEFAULT_DESIGN = "macro-array"
 
 
 def read(source: str | Path) -> Design:
-    """The design in a file, or the one of that name in hardware/, field by field.
+    """The design in a file, or the one of that name in hardware/, checked field by field.
 
     Rules between fields are tried by `tactcad.parts.designs.load`, which is what commands call. Raises
     InputError where the file is missing or not a design, or a value is not legal.
@@ -66,7 +66,10 @@ def _hardware_folders() -> list[Path]:
 
 
 def parse(text: str, where: str) -> Design:
-    """Read a design from TOML text; `where` names it in messages. Rules between fields are not tried."""
+    """Read a design from TOML text; rules between fields are not tried.
+
+    `where` names the text in messages. Raises InputError as `read` does.
+    """
     return from_table(parse_toml(text, where))
 
 
@@ -156,13 +159,12 @@ def _gaps(table: Any, where: str, spec: Number) -> dict[float, float]:
 
 
 def _material(given: SheetMaterial) -> SheetMaterial:
-    """[material] with what the file leaves out from the table of materials."""
+    """[material], completed from the table of materials."""
     return SheetMaterial(**completed(given.alloy, vars(given)))
 
 
 def _tolerance(given: Tolerance, alloy: str) -> Tolerance:
-    """[tolerance] with the spread of Young's modulus that the material's row has, where the file gives
-    none."""
+    """[tolerance], completed with the spread of Young's modulus from the material's row."""
     if given.youngs_modulus is not None:
         return given
     row = ALLOYS.get(alloy)

@@ -1,5 +1,6 @@
-"""Materials of the sensing element: the table of those known by name, and what a design's own values differ
-from it."""
+"""Materials of the sensing element: the table of those known by name, and how a design's own values differ
+from it.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +14,13 @@ from typing import Any
 
 from .messages import InputError, in_brackets, near, one_of
 
-# A part that differs by more than this from what its name says is of another material, whatever the reason.
+# A value that differs by more than this from the named material's belongs to another material.
 MOST_DIFFERENCE = 0.10
 # Young's modulus of a lot about its material's, relative, where a label of its own has no row: chosen, as
 # the widest of the wrought alloys but the cold-rolled.
 LOT_SPREAD = 0.02
-# What a design may give, by the table's columns; the last three may stay unknown in a material of one's own.
+# Properties that a design may give, by the table's columns; a material of one's own may lack the OPTIONAL
+# ones.
 PROPERTIES = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
 OPTIONAL = ("tensile_strength", "conductivity", "magnetic")
 MAGNETIC = ("no", "weakly", "yes")
@@ -59,7 +61,9 @@ class Alloy:
 
 @dataclass(frozen=True)
 class Difference:
-    """A property that a design has otherwise than the table's row of its name. origin: the value's source."""
+    """A property for which a design and the table's row of its material differ. origin: the value's
+    source.
+    """
 
     alloy: str
     name: str
@@ -142,10 +146,10 @@ def _spelled(name: str) -> str:
 
 
 def differences(name: str, given: Mapping[str, Any], origin: Mapping[str, str]) -> tuple[Difference, ...]:
-    """What a design's material differs by from the table's row of its name; none for a label of its own.
+    """Differences between a design's material and the table's row of its name; none for a label of its own.
 
-    Raises InputError where a value leaves the row by more than its spread and `origin` does not say where it
-    is from, or by more than MOST_DIFFERENCE.
+    Raises InputError where a value differs from the row by more than its spread without a source in `origin`,
+    or by more than MOST_DIFFERENCE.
     """
     row = ALLOYS.get(name)
     if row is None:

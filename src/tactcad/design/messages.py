@@ -1,4 +1,4 @@
-"""The one way in which bad input is refused: where, which value, what is legal."""
+"""Refusal of bad input: where, which value, what is legal."""
 
 from __future__ import annotations
 
@@ -27,14 +27,22 @@ class InputError(ValueError):
 
 def near(word: str, known: Iterable[str]) -> str:
     """ "did you mean X?" for the known word that `word` looks like; "" where none does."""
-    import difflib  # most commands never mistype
+    import difflib  # rarely needed
 
     likely = difflib.get_close_matches(word[:200], list(known), n=1)
     return f"did you mean {likely[0]}?" if likely else ""
 
 
 def one_of(word: object, known: Iterable[str]) -> str:
-    """What is legal in place of a mistyped word: the whole list, and the word that was meant."""
+    """The legal words in place of a mistyped one: the whole list, and a suggestion.
+
+    Parameters
+    ----------
+    word
+        What was typed.
+    known
+        The legal words.
+    """
     known = list(known)
     return "one of " + ", ".join(known) + in_brackets(near(str(word), known))
 
@@ -59,11 +67,12 @@ def shortened(value: object, most: int = 60) -> str:
 
 
 def hidden(text: str) -> str:
-    """What a text holds that nobody sees and that changes how the rest is shown; "" where there is nothing.
+    """Description of invisible characters in a text that change how the rest is shown; "" where there are
+    none.
 
-    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, halves of
-    pairs, and formats, among them all that turn the direction of text. The two joiners that scripts and emoji
-    need may stand.
+    By the categories of Unicode: controls other than line ends, separators of lines and paragraphs, surrogate
+    halves, and formats, among them all that turn the direction of text. The two joiners that scripts and
+    emoji need are accepted.
     """
     if text.isprintable():
         return ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 NINE_DIGITS = (
-    1e-8  # numbers that agree to nine digits differ by less, relatively, however the last was rounded
+    1e-8  # relative difference below which two numbers agree to nine digits, however the last was rounded
 )
 
 _WHOLE = re.compile(r"[+-]?[0-9]+")
@@ -13,8 +13,9 @@ _NUMBER = re.compile(r"[+-]?(([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?|nan|inf(i
 
 
 def as_number(text: str) -> float:
-    """The number that is written there, with or without blanks around it. Raises ValueError where there is
-    none."""
+    """The number that a text stands for, with or without blanks around it. Raises ValueError where it is
+    none.
+    """
     plain = text.strip(" \t")
     if not _NUMBER.fullmatch(plain):
         raise ValueError(f"not a number: {text!r}")
@@ -22,7 +23,7 @@ def as_number(text: str) -> float:
 
 
 def as_whole(text: str) -> int:
-    """The whole number that is written there, likewise."""
+    """The whole number that a text stands for; as `as_number`."""
     plain = text.strip(" \t")
     if not _WHOLE.fullmatch(plain):
         raise ValueError(f"not a whole number: {text!r}")
@@ -30,6 +31,7 @@ def as_whole(text: str) -> int:
 
 
 def filling_radius(radius: float, length: float) -> float:
-    """The radius of two fillets in a slot: half its length where they fill it to nine digits (a full
-    round)."""
+    """The fillet radius in a slot, mm: exactly half its length where two fillets fill it to nine digits (a
+    full round).
+    """
     return length / 2 if abs(2 * radius - length) <= NINE_DIGITS * length else radius

@@ -1,4 +1,4 @@
-"""What may be left out of a design, and is there."""
+"""Optional values that are known to be there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ T = TypeVar("T")
 
 
 def present(value: T | None) -> T:
-    """A table or value of a design that what runs before has seen to be there: a type, no check of input.
+    """An optional table or value of a design that earlier code has ensured to be there: for the type checker,
+    not for input.
 
     Raises
     ------

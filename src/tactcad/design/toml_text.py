@@ -1,4 +1,4 @@
-"""TOML text from strangers: parsed, or refused with where and why, and never slowly."""
+"""TOML text from untrusted sources: parsed, or refused with where and why, and never slowly."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 from .messages import InputError
 
-# Keys of our files have four names at most (element.override.N.hinge_thickness). Python's parser takes
-# minutes for keys of many thousand names, so they are refused before it sees them; 16 names are few enough to
-# parse at once. Comments and strings are stepped over: they may hold what they like. Possessive, hence linear
-# in the length of the text.
+# Keys of our files have at most four names (element.override.N.hinge_thickness). Python's parser takes
+# minutes for keys of many thousand names, so keys of more than 16 are refused before it sees them. Comments
+# and strings are skipped: they may hold anything. The quantifiers are possessive, so the search is linear in
+# the length of the text.
 _LONG_KEY = re.compile(
     r"""
     \#[^\n]*+
@@ -26,8 +26,9 @@ _LONG_KEY = re.compile(
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """The table that TOML text holds; `where` names it in messages. Raises InputError where it is not
-    TOML."""
+    """The table that TOML text holds; `where` names the text in messages. Raises InputError where it is
+    not TOML.
+    """
     text = text.replace("\r\n", "\n")
     long = next((token for token in _LONG_KEY.finditer(text) if token["long"]), None)
     if long:

@@ -1,8 +1,7 @@
-"""Designs that fill the whole range of the closed forms, and what refined elements say about them.
+"""Designs that fill the whole range of the closed forms, and their stiffness by refined elements.
 
-The fit's own samples crowd where sensors are made; the range that its groups span is wider than they are
-together. Here every group is drawn over all of its range, so that worst errors are measured in its corners
-too.
+The fit's own samples are dense where sensors are made; the range that their groups span is larger. Here every
+group is drawn over its whole range, so that the largest errors are measured in its corners too.
 """
 
 from __future__ import annotations
@@ -23,19 +22,31 @@ from tactcad.mechanics.section import HingeSection
 from .fit_samples import FULL_ROUND_SHARE, Columns, as_written, draw_edges, section
 
 SEED = 1618
-SOLID_PART, REFINED_PART = 8, 16  # two designs in so many with solid elements, and with refined ones
+SOLID_PART, REFINED_PART = 8, 16  # two designs in so many are solved by solid elements, and by refined ones
 REFINED_EDGES = 12
 REFINED_LENGTH = 5.0  # hinge thicknesses
-THICKNESS = 0.25  # mm; all else goes with it, and stiffness is free of size
+THICKNESS = 0.25  # mm; all other lengths are multiples of it, and K/(E b) does not depend on size
 LONGEST_BODY = 141.0  # thicknesses: of the fit's samples; a longer one is a beam and only costs elements
-# Most elements in the plane, on its coarsest mesh, for which meshes 3 and 4 are still affordable. Where there
-# are more the hinge is long and thin, and mesh 2 errs less.
+# Largest number of elements in the plane, on its coarsest mesh, for which meshes 3 and 4 are still
+# affordable. Where there are more the hinge is long and thin, and mesh 2 is more accurate.
 MOST_CELLS = {2: 1000, 3: 80, 4: 45}
 
 
 def draw_range(count: int, seed: int = SEED) -> Columns:
-    """`count` designs (mm), half of them two-sided, every group drawn by logarithm over the range of rung
-    solid."""
+    """Designs over the whole range of rung solid, every group drawn uniformly in its logarithm.
+
+    Parameters
+    ----------
+    count
+        How many; every second one is two-sided.
+    seed
+        Of the random numbers.
+
+    Returns
+    -------
+    Columns
+        Parameters by name, arrays of shape (count,), mm.
+    """
     rng = np.random.default_rng(seed)
     groups = ladder_data()["range"]["groups"]
     rows: list[dict[str, float]] = []
@@ -76,10 +87,23 @@ def design(g: dict[str, float], full_round: bool) -> dict[str, float]:
 def compute_range(
     columns: Columns, report: Callable[[str], None], meshes: Callable[[int], tuple[int, ...]]
 ) -> Columns:
-    """Stiffness (unit modulus) by plane elements of every design, by fem-solid on the `meshes` of the i-th.
+    """Stiffness (unit modulus) of every design by plane and by solid elements, with the processor seconds of
+    each.
 
-    `solid_mesh_2` is the rung as it is; `solid_mesh_3` and `solid_mesh_4` refine it. Seconds are processor
-    time.
+    Parameters
+    ----------
+    columns
+        Designs.
+    report
+        Receives lines of progress.
+    meshes
+        For the i-th design the meshes of fem-solid: 2 is the rung itself, 3 and 4 refine it.
+
+    Returns
+    -------
+    Columns
+        The designs' with `plane_stiffness`, `solid_mesh_2` to `solid_mesh_4` and the seconds; NaN where not
+        computed.
     """
     s, count = section(columns), len(columns["two_sided"])
     names = ("plane_stiffness", "solid_mesh_2", "solid_mesh_3", "solid_mesh_4", *SECONDS.values())
@@ -93,7 +117,7 @@ def compute_range(
 
 
 def with_width_factor(columns: Columns) -> Columns:
-    """The same with K3D/K2D by the finest of the solid meshes that each design was solved on."""
+    """The columns with K3D/K2D by the finest solid mesh on which each design was solved."""
     stiffness = np.full(len(columns["width"]), math.nan)
     for name in ("solid_mesh_2", "solid_mesh_3", "solid_mesh_4"):
         stiffness = np.where(np.isfinite(columns[name]), columns[name], stiffness)

@@ -1,5 +1,4 @@
-"""Worst error of every rung by zone of the envelope, against solid elements, from the samples:
-data/accuracy.json."""
+"""Largest error of every rung by zone of the envelope, against solid elements: data/accuracy.json."""
 
 from __future__ import annotations
 
@@ -23,12 +22,12 @@ from .corner_samples import DRAWS
 from .fit import NEXT_TO_NONE
 from .fit_samples import Columns, joined, section
 
-# Promised is this much over the worst that was measured: a fresh design can always be somewhat worse, and the
+# The promised error is the largest measured one times this: a new design can always be somewhat worse, the
 # more so the fewer were measured. The closed forms are fitted to least eighth powers, corners included, so
-# that many designs stand near the worst.
+# that many designs have errors near the largest.
 MARGIN, MARGIN_OF_FEW, FEW = 1.4, 2.5, 60
-# Under l/t = 0.5 the hinge is next to none and its two roots are one; from 2 they are apart. A leaf much
-# longer than wide curls over all of its width.
+# Below l/t = 0.5 the hinge is so short that its two roots act as one; from 2 on they are independent. A leaf
+# much longer than wide curls over its whole width.
 NARROW = 0.7
 DEEP = 4.0  # fillets over hinge thickness: where they reach through arm or body, few were solved
 ZONES: tuple[dict[str, list[float | None]], ...] = (
@@ -48,8 +47,17 @@ Errors = dict[str, np.ndarray]
 
 
 def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) -> dict:
-    """The contents of data/accuracy.json from the samples (as fit_samples.FILES names them), for the
-    constants and the range in `ladder_data` (data/ladder.json)."""
+    """The contents of data/accuracy.json.
+
+    Parameters
+    ----------
+    samples
+        Computed designs, by the names of fit_samples.FILES.
+    ladder_data
+        Constants and range, as data/ladder.json.
+    today
+        Date of the table.
+    """
     clock = closed_form_seconds(ladder_data)
     columns = joined(list((samples | {"range": with_width_factor(samples["range"])}).values()))
     errors = candidate_errors(columns, ladder_data)
@@ -77,8 +85,9 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
 def candidate_errors(columns: Columns, ladder_data: dict) -> Errors:
     """|K/K_solid - 1| of every candidate for every design, NaN where it was not measured.
 
-    K_solid is fem-solid's, on the finest meshes that the design was solved on. A closed form that knows the
-    width is made of the plane rung's parts, whose error counts where only the plane was measured, too.
+    K_solid is that of fem-solid on the finest meshes on which the design was solved. A closed form that
+    models the width is made of the plane rung's parts; where only the plane was solved, the error of these
+    counts.
     """
     s = section(columns)
     plane = columns["plane_stiffness"] * columns["width"]
@@ -124,10 +133,10 @@ def _seconds(form: Callable[[HingeSection, dict], Array], s: HingeSection, ladde
 def _measured(
     columns: Columns, errors: Errors, inside: np.ndarray, clock: dict[str, tuple[float, float]]
 ) -> dict:
-    """A zone's worst errors and what they promise, and the seconds of an element."""
+    """A zone's largest errors, the errors promised for it, and the seconds of an element."""
     worst, counts, seconds = {}, {}, {}
     for candidate in CANDIDATES:
-        # few designs are solved on refined meshes: those of all zones count in each
+        # few designs are solved on refined meshes: every zone uses those of all zones
         e = errors[candidate.name][inside] if candidate.mesh is None else errors[candidate.name]
         e = e[np.isfinite(e)]
         worst[candidate.name] = float(f"{e.max():.3g}")
@@ -136,7 +145,7 @@ def _measured(
         )
         closed = clock.get(candidate.name)
         seconds[candidate.name] = closed[1] if closed else _median(candidate, columns, inside)
-    own = worst["fem-solid, mesh 3"]  # what the reference itself may err by
+    own = worst["fem-solid, mesh 3"]  # possible error of the reference itself
     promised = {
         name: _rounded_up((MARGIN if counts[name] >= FEW else MARGIN_OF_FEW) * (worst[name] + own))
         for name in worst

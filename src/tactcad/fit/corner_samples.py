@@ -1,7 +1,7 @@
-"""Designs in the corners and on the edges of the default rung's whole range, and refined elements' K of each.
+"""Designs in the corners and on the edges of the default rung's whole range, and their K by refined elements.
 
-The range is a polytope in the logarithms of its groups: each parameter is drawn in turn over what those
-before it leave, and stands as often at an end of that interval as inside.
+The range is a polytope in the logarithms of its groups: each parameter is drawn in turn from the interval
+that those before it leave, and is as often at an end of that interval as inside.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from tactcad.mechanics.section import HingeSection
 from .accuracy_samples import LONGEST_BODY, THICKNESS
 from .fit_samples import Columns, as_written, joined, section
 
-# Draws of each sample: how many, how many of the first are solved by solids whatever they cost, the seed.
+# Draws of each sample: how many; how many of the first are solved as solids at any cost; the seed.
 DRAWS = {
     "corners": ((240, 60, 271828), (100, 0, 141421), (66, 0, 577215)),
     "corners held out": ((38, 0, 161803),),
 }
-# Share of the parameters that stand at the low and at the high end of what they may be. Of the slot's
-# lengths fewer do: the longest cost the most elements, the shortest the finest. Widths are mostly least:
-# there the sheet is neither in plane stress nor in plane strain.
+# Shares of the parameters at the low and at the high end of their intervals. For the slot's length the shares
+# are smaller: the longest need the most elements, the shortest the finest. Widths are mostly the smallest,
+# where the sheet is neither in plane stress nor in plane strain.
 ENDS, SLOT_ENDS, WIDTH_ENDS = (0.25, 0.25), (0.1, 0.1), (0.5, 0.1)
 # Shortest body, in hinge thicknesses: that of the fit before these designs entered it (2.75 since).
 LEAST_BODY = 2.76
@@ -37,8 +37,11 @@ FEW = 150  # quadratic elements, layers that grow by 1.8 from half a thickness: 
 
 
 def draw_corners(count: int, seed: int) -> Columns:
-    """Up to `count` designs (mm), half of them two-sided, in corners, on edges and inside of solid's range:
-    so many are drawn from the groups' intervals, and those kept that no other rule refuses."""
+    """Up to `count` designs (mm), every second one two-sided, in corners, on edges and inside of solid's
+    range.
+
+    `count` are drawn from the groups' intervals; those that another rule refuses are dropped.
+    """
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float]] = []
     while len(rows) < count:
@@ -52,7 +55,7 @@ def draw_corners(count: int, seed: int) -> Columns:
 
 
 def _drawn(rng: np.random.Generator, notch_sides: int) -> dict[str, float]:
-    """One design; NaN in it where what was drawn first leaves nothing for the rest."""
+    """One design; it holds NaN where the first parameters leave no interval for the rest."""
     sampled = ladder_data()["range"]
     g, low_block = sampled["groups"], sampled["least_height"]
 

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Constants = dict[str, float]
 
 SIDES = {"two": 1.0, "one": 0.0}
-WEIGHT_OUTSIDE = 0.3  # of samples outside the promised box: they widen the range, the box decides
+WEIGHT_OUTSIDE = 0.3  # of samples outside the promised box, so that the box dominates the fit
 NEXT_TO_NONE = 0.5  # slot length over hinge thickness below which the two roots are one
 STEP_INSIDE = 1e-6  # of constants that may not be negative: a search starts inside its bounds
 HALF_FILLET = 1.0  # grids on two-sided hinges are fitted up to straight part + this times r
@@ -56,16 +56,22 @@ START = {
 }
 
 
-# Constants that may not be negative, so that what mechanics says of every design holds for the forms,
+# Constants that may not be negative, so that the forms keep the bounds of mechanics for every design,
 # whatever the samples (plane.py, solid.py).
 NOT_NEGATIVE = {"f0", "f1", "c", "e"} | set(START["width"]["two"]) - {"a"}
 
 
 def fit(samples: dict[str, Columns], today: date) -> dict:
-    """Constants, range and report as data/ladder.json holds them, from the samples of fit_samples.FILES.
+    """Constants, range and report, as data/ladder.json holds them.
 
-    Stiffness is fitted on "fitted", "range" and "corners", strains on "fitted", which also says what the
-    range is.
+    Stiffness is fitted on "fitted", "range" and "corners", strains on "fitted", which also defines the range.
+
+    Parameters
+    ----------
+    samples
+        Computed designs, by the names of fit_samples.FILES.
+    today
+        Date of the report.
     """
     fitted = samples["fitted"]
     over_the_range = joined([with_width_factor(samples["range"]), samples["corners"]])
@@ -121,7 +127,7 @@ def sampled_range(samples: Columns) -> dict[str, list[float]]:
 
 
 def sampled_least(samples: Columns) -> dict[str, float]:
-    """Least value over the samples of each group that is bounded on that side alone, a little less."""
+    """Smallest value over the samples, with a small margin, of each group that has a lower bound only."""
     s = section(samples)
     return {
         name: float(f"{value(s).min() * (1.0 - 5e-3):.3g}") for name, (_, value, _) in validity.LEAST.items()
@@ -134,7 +140,7 @@ def _fit_root(rows: Columns, start: Constants) -> Constants:
 
 
 def _fit_width(rows: Columns, root: Constants, start: Constants) -> Constants:
-    """On the whole stiffness: the width's constants make up for some of what the root's leave."""
+    """Fitted on the whole stiffness: the width's constants compensate for part of the error of the root's."""
     s = section(rows)
     flat, stiffness = plane.parts(s, root), rows["plane_stiffness"] * rows["width"] * rows["width_factor"]
     return _search(lambda k: 1.0 / (solid.curled(s, flat, k) * stiffness) - 1.0, start, _width_weights(s))
@@ -190,7 +196,9 @@ def _grid_cases(rows: Columns, side: str) -> dict[float, Columns]:
 def _search(
     error: Callable[[Constants], Array], start: Constants, weights: Array, worst_case: bool = True
 ) -> Constants:
-    """Least squares, then least fourth and eighth powers from there, so that the worst case counts most."""
+    """Least squares, then least fourth and eighth powers from there, so that the largest errors count
+    most.
+    """
     names = list(start)
 
     def residual(values: Array, power: int) -> Array:
@@ -312,7 +320,7 @@ def _summary(error: Array) -> dict[str, float | None]:
 
 
 def _width_weights(s: HingeSection) -> Array:
-    """All designs alike, but for slots that are next to none: they have a promise of their own."""
+    """Equal weights, except for very short slots, which have a promise of their own."""
     return np.where(s.hinge_length < NEXT_TO_NONE * s.hinge_thickness, 0.5, 1.0)
 
 

@@ -1,4 +1,4 @@
-"""The designs that the ladder's constants are fitted on, and what finite elements say about each."""
+"""The designs on which the ladder's constants are fitted, and their finite-element results."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ WIDE = {
     "poisson": (0.15, 0.45),
     "width": (1.0, 10.0),
 }
-LEAST_HEIGHT = 1.25  # arm and body over t + n r: below it the root is no block any more
+LEAST_HEIGHT = 1.25  # height of arm and body over t + n r: below it there is no block behind the root
 FILLET_RATIO = (0.15, 6.0)  # r/t
 FULL_ROUND_SHARE = 0.1  # of the samples have r = l/2, so that lc = 0 is inside the fit
 WIDE_SHARE = 0.4
@@ -67,7 +67,20 @@ GRIDS = (0.25, 0.5, 0.75, 1.0, 1.5, 2.0)  # gauge grid lengths sampled, in slot 
 
 
 def draw(count: int, seed: int) -> Columns:
-    """`count` designs, half of them two-sided, as columns (mm); E is 1 MPa."""
+    """Designs inside the promised box and beyond it.
+
+    Parameters
+    ----------
+    count
+        How many; every second one is two-sided.
+    seed
+        Of the random numbers.
+
+    Returns
+    -------
+    Columns
+        Parameters by name, arrays of shape (count,), mm; E is 1 MPa.
+    """
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float]] = []
     while len(rows) < count:
@@ -84,7 +97,7 @@ def draw(count: int, seed: int) -> Columns:
 
 
 def draw_box(count: int, seed: int) -> Columns:
-    """Designs of the promised box alone, uniform, for checks."""
+    """Designs inside the promised box only, uniformly drawn, for checks; as `draw`."""
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float]] = []
     while len(rows) < count:
@@ -95,7 +108,9 @@ def draw_box(count: int, seed: int) -> Columns:
 
 
 def draw_edges(count: int, seed: int) -> Columns:
-    """Designs on the promised box's edges and corners: each parameter at an end of its range, or inside."""
+    """Designs on the promised box's edges and corners: each parameter at an end of its range, or inside;
+    as `draw`.
+    """
     rng = np.random.default_rng(seed)
     rows: list[dict[str, float]] = []
     while len(rows) < count:
@@ -164,7 +179,9 @@ def solid_results(s: HingeSection) -> dict[str, float]:
 
 
 def as_written(rows: list[dict[str, float]]) -> Columns:
-    """Columns with the digits that `write` keeps, so that elements are solved for what the file says."""
+    """Columns rounded to the digits that `write` keeps, so that elements are solved for the designs in the
+    file.
+    """
     return {k: np.array([float(f"{row[k]:.8g}") for row in rows]) for k in rows[0]}
 
 
@@ -185,9 +202,16 @@ def _possible(row: dict[str, float]) -> bool:
 
 
 def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Columns:
-    """Finite-element results of every design beside its parameters; solids for the first `solids` of them.
+    """Finite-element results of every design beside its parameters.
 
-    Missing results are NaN. `report` gets a line of progress now and then.
+    Parameters
+    ----------
+    columns
+        Designs, as `draw` gives them.
+    solids
+        How many of the first are solved as solids too; the others' results are NaN.
+    report
+        Receives lines of progress.
     """
     s, count = section(columns), len(columns["two_sided"])
     rows: list[dict[str, float]] = []
@@ -201,7 +225,7 @@ def compute(columns: Columns, solids: int, report: Callable[[str], None]) -> Col
 
 
 def write(columns: Columns, path: Path) -> None:
-    """One line a design, eight digits."""
+    """Write columns as CSV, one line a design, eight digits."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(columns)

@@ -1,5 +1,4 @@
-"""How much stress at mid-width passes the width's mean, and what the closed forms for strain and stress err
-by.
+"""Ratio of the stress at mid-width to the width's mean, and errors of the closed forms for strain and stress.
 
 `python -m tactcad.fit.strain_fit src/tactcad/mechanics/data/strain.json` fits and measures again on the
 shipped samples.
@@ -23,16 +22,16 @@ from .strain_samples import GRIDS, SEED
 
 Array = np.ndarray
 
-# A hinge that is hardly wider than long curls over its whole width; one shorter than thick is two roots and
-# no leaf.
+# A hinge hardly wider than long curls over its whole width; one shorter than thick is two roots without a
+# leaf between them.
 NARROW, SHORT = 1.5, 1.0
 ZONES: tuple[dict[str, list[float | None]], ...] = (
     {"b/l": [0.0, NARROW]},
     {"b/l": [NARROW, None], "l/t": [0.0, SHORT]},
     {"b/l": [NARROW, None], "l/t": [SHORT, None]},
 )
-MARGIN = 2.0  # of what is stated over the worst that was found: zones of few designs
-RIDGE = 1e-3  # of the mean square: keeps what few samples do not determine small
+MARGIN = 2.0  # stated error over the largest measured one: zones have few designs
+RIDGE = 1e-3  # share of the mean square: keeps coefficients small that few samples do not determine
 
 
 def shipped_samples() -> Columns:
@@ -43,7 +42,7 @@ def shipped_samples() -> Columns:
 def fit(columns: Columns) -> dict:
     """The contents of data/strain.json from samples as strain_samples.compute gives them."""
     solved = np.isfinite(columns["solid_fillet_stress"])
-    # the range of solid ends elsewhere since they were drawn
+    # the range of solid has changed since they were drawn
     reached = validity.reasons(section(columns), "solid") == ""
     rows = {name: values[solved & reached] for name, values in columns.items()}
     s = section(rows)

@@ -1,5 +1,6 @@
-"""Designs over the whole range of the closed forms, and the strains and stresses that elements find at
-mid-width."""
+"""Designs over the whole range of the closed forms, and their strains and stresses at mid-width by
+elements.
+"""
 
 from __future__ import annotations
 
@@ -39,9 +40,11 @@ COLUMNS = tuple(
 
 
 def draw(count: int = COUNT, seed: int = SEED) -> Columns:
-    """`count` designs (mm), half of them two-sided: a quarter on the box's edges, a quarter inside the range,
-    and half with groups at the ends of their ranges; those of a kind in turn, so that any first part of them
-    is like the whole."""
+    """`count` designs (mm), half of them two-sided.
+
+    A quarter is on the box's edges, a quarter inside the range, and half has groups at the ends of their
+    ranges; the kinds alternate, so that every first part of the sample is like the whole.
+    """
     quarter = count // 4
     parts = [
         draw_edges(quarter, seed),

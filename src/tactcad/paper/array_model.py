@@ -1,4 +1,4 @@
-"""What the studies of the paper take from a design: hinge sections, gauge, read-out, tolerances, rig."""
+"""What the studies of the paper need from a design: hinge sections, gauge, read-out, tolerances, rig."""
 
 from __future__ import annotations
 
@@ -114,5 +114,5 @@ def from_design(design: Design) -> ArrayModel:
 
 
 def _pick(kind: Callable[..., T], table: object) -> T:
-    """A record of those values of a table that it has fields for."""
+    """A record filled with the table's values of the same names."""
     return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})

@@ -1,7 +1,7 @@
 """Uncertainty budget: every effect on K and on K_obj with its size for this array, largest first.
 
 Sizes are half-widths. The pair is the reference element and the measuring element whose printed K_r/K_m
-comes nearest to the ratio that the paper proposes, on the sample of Figure 6; K_r is the one that Table 2
+is nearest to the ratio that the paper proposes, on the sample of Figure 6; K_r is the stiffness that Table 2
 supports.
 """
 

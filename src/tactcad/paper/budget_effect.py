@@ -15,8 +15,8 @@ Stiffness = Callable[[HingeSection], np.ndarray]
 
 @dataclass(frozen=True)
 class Effect:
-    """One effect. Sizes are relative half-widths; NaN where it does not act on K. `common` acts on all
-    elements alike.
+    """One effect. Sizes are relative half-widths; NaN where it does not act on K. A `common` one is the same
+    in all elements.
     """
 
     name: str
@@ -51,11 +51,11 @@ class BudgetPair:
         return abs(float(lumped.condition_in_ratio(self.K_r, self.K_m, self.x)))
 
     def apart(self, short: float, long: float) -> float:
-        """On K_obj, of errors of K that each element has for itself."""
+        """Half-width of K_obj for half-widths of K that are independent in the two elements."""
         return ((self.by_reference * short) ** 2 + (self.by_measuring * long) ** 2) ** 0.5
 
     def together(self, short: float, long: float) -> float:
-        """On K_obj, of errors of K that all elements share."""
+        """Half-width of K_obj for half-widths of K that both elements share."""
         return abs(self.by_reference * short + self.by_measuring * long)
 
     def log_change(self, new: Stiffness, old: Stiffness) -> tuple[float, float]:

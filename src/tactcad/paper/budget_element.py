@@ -1,5 +1,6 @@
-"""Effects on K where it is taken from the drawing: what an element as built differs by, and what a model
-leaves out."""
+"""Effects on K where it is computed from the drawing: differences of the element as built, and what a model
+leaves out.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ from tactcad.paper.residuals import WIRE_TOLERANCE
 
 MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
 ROOM_SWING = 5.0  # K; hardware's own figure
-CLOSED_FORM_ERROR = 0.0035  # goal that the closed forms are held to against finite elements
+CLOSED_FORM_ERROR = 0.0035  # goal for the closed forms against finite elements
 SHEET_MEASURED = 0.01  # mm, half-width of a micrometer's reading of the sheet
 MEASURED = "calibrate each element: K is measured, not computed"
 # By field of [tolerance]: the effect's name and its unit.
@@ -50,7 +51,9 @@ def _as_built(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
 
 
 def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
-    """Where the load stands, and the coarsest cut: by the closed form at both ends, since they are large."""
+    """Position of the load, and the coarsest cut: by the closed form at both ends, since the effects are
+    large.
+    """
     wire = WIRE_TOLERANCE["1 pass"]
 
     def one(title: str, name: str, half: float, remedy: str, better: float) -> Effect:
@@ -72,7 +75,7 @@ def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
 
 
 def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
-    """What a computed K leaves out."""
+    """Effects that a computed K leaves out."""
     width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
     gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
     warm = MODULUS_PER_KELVIN * ROOM_SWING

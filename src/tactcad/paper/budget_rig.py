@@ -75,7 +75,7 @@ def stage_error(data: Published, array: ArrayModel) -> float:
 
 
 def _grasp(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
-    """Pads out of plane, when R is made of totals instead of slopes."""
+    """Pads out of plane, where R is made of totals instead of slopes."""
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()
     K[reference] = pair.K_r
@@ -108,7 +108,7 @@ def _grasp(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]
 
 
 def _sample(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]:
-    """What the rubber and its test do."""
+    """Effects of the rubber and of its test."""
     rig, x = array.rig, pair.x
     cell = rig.load_cell_stiffness
     stiffest = float(data.table2.object_stiffness.value.max())

@@ -87,6 +87,6 @@ def signal(pair: BudgetPair, data: Published, array: ArrayModel) -> list[Effect]
 
 
 def _span(array: ArrayModel) -> float:
-    """Root sum of squares of the loads about their mean, N: what a slope's noise is divided by."""
+    """Root sum of squares of the loads about their mean, N, by which a slope's noise is divided."""
     n = array.rig.weights + 1
     return array.rig.weight * ((n**2 - 1) * n / 12) ** 0.5

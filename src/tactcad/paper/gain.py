@@ -1,7 +1,7 @@
-"""K_v by one gain for all elements, and which combination of gain and hinge length the data identifies.
+"""K_v by one gain for all elements, and the combination of gain and hinge length that the data identifies.
 
 The read-out turns strain into volts by one factor, excitation x amplifier gain x gauge factor/4; strain per
-deflection is geometric, t/(2 l_e L) for a short hinge. So K_v fixes gain over length, not the gain.
+deflection is geometric, t/(2 l_e L) for a short hinge. So K_v determines gain over length, not the gain.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ class GainFit:
     lengths: np.ndarray  # slot lengths tried
     gain_at_length: np.ndarray
     scatter_at_length: np.ndarray
-    per_length_exponent: float  # dlnG/dln(effective length of K): near 1, gain over length is what is fixed
+    per_length_exponent: float  # dlnG/dln(effective length of K): near 1 only gain over length is determined
     signal: Signal  # with the design's own read-out, at the paper's largest deflection
     always_on: self_heating.Heating
     switched: self_heating.Heating
-    drift_always_on: np.ndarray  # N, what the drift reads as, by element
+    drift_always_on: np.ndarray  # N, force equivalent of the drift, by element
     drift_switched: np.ndarray
 
     @property
@@ -112,6 +112,6 @@ def _with_length(s: HingeSection, length: float) -> HingeSection:
 
 
 def _effective(s: HingeSection) -> float:
-    """Mean E b t^3/(12 K L^2), the length of a short hinge with this stiffness: what Table 1's K fixes."""
+    """Mean E b t^3/(12 K L^2): length of a short hinge with this stiffness, which Table 1's K determines."""
     K = ladder.stiffness(s)
     return float((s.youngs_modulus * s.width * s.hinge_thickness**3 / (12 * K * s.load_arm**2)).mean())

@@ -147,9 +147,7 @@ def figure_7(study: Table2Study) -> Figure7:
 
 
 def _chance(R: np.ndarray, straight: np.ndarray, model: np.ndarray, parameters: int) -> float:
-    """F test of the lines against a model with one parameter, which they do not contain: a guide, not a
-    proof.
-    """
+    """F test of the lines against a one-parameter model that is not nested in them: a guide, not a proof."""
     lines, one = ((R - straight) ** 2).sum(), ((R - model) ** 2).sum()
     extra, rest = parameters - 1, R.size - parameters
     return float(fdtrc(extra, rest, max(one - lines, 0.0) / extra / (lines / rest)))

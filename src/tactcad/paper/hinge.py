@@ -1,8 +1,8 @@
-"""Which hinge fits Table 1 and the paper's two strains best, and what they cannot tell apart.
+"""Which hinge fits Table 1 and the paper's two strains best, and what they cannot distinguish.
 
-The thickness is the paper's. Length, fillet radius and notch form, which the paper leaves out, are varied:
-ln K has one unknown standard error, so the regions are those of least squares (F), and the strains enter by
-the accuracy that one may expect of a plane finite-element model.
+The thickness is the paper's. Length, fillet radius and notch form, which the paper leaves out, are varied: ln
+K has one unknown standard error, so the regions are those of least squares (F). The strains are weighted by
+the accuracy to be expected of a plane finite-element model.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from tactcad.paper.residuals import matched
 
 LENGTHS = np.linspace(0.30, 2.0, 171)  # mm, slot length l
 RADII = np.linspace(0.05, 0.60, 56)  # mm, fillet radius r
-CENTRE = 1e-3  # grid length over hinge thickness that stands for a point
-# Chosen: what a plane finite-element model of that time may be off in surface strain by its mesh.
+CENTRE = 1e-3  # grid length over hinge thickness that is taken as a point
+# Chosen: error of the surface strain by the mesh of a plane finite-element model of that time.
 STRAIN_ACCURACY = 0.01
 
 
 @dataclass(frozen=True)
 class Form:
-    """One notch form: best fit and regions. Lengths mm; square sums of ln K over the grid [radius,
+    """One notch form: best fit and regions. Lengths mm; sums of squares of ln K over the grid [radius,
     length].
     """
 
@@ -128,7 +128,7 @@ def _grid(s: HingeSection, rung: str) -> np.ndarray:
     """ln K over [radius, length, element]; NaN outside the rung's range."""
     r, l = np.meshgrid(RADII, LENGTHS, indexing="ij")  # noqa: E741
     wide = {name: np.broadcast_to(getattr(s, name), s.shape) for name in s.__dataclass_fields__}
-    clamp = wide["body_length"] + wide["hinge_length"] / 2  # the clamp's edge stays where it is
+    clamp = wide["body_length"] + wide["hinge_length"] / 2  # the clamp's edge stays in place
     grid = HingeSection.of(**wide).with_(
         fillet_radius=np.broadcast_to(r[..., None], (*r.shape, *s.shape)),
         hinge_length=np.broadcast_to(l[..., None], (*r.shape, *s.shape)),

@@ -1,5 +1,5 @@
-"""Equation (3) turned on Table 2: K_obj from R, how far off, and what the condition number says
-beforehand.
+"""Equation (3) applied to Table 2: K_obj from R, its error, and the error that the condition number
+predicts.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Inverted:
         return np.isfinite(self.estimate) & (self.estimate > 0)
 
     def holds(self, x: np.ndarray) -> np.ndarray:
-        """Where the interval, cut to positive values, has the sample's K_obj in it."""
+        """Whether the interval, cut to positive values, contains the sample's K_obj."""
         outside = (x <= self.low) | (x >= self.high) | np.isinf(self.low)  # two rays, or every value
         return np.where(self.bounded, (self.low <= x) & (x <= self.high), outside)
 
@@ -75,7 +75,7 @@ def invert(study: Table2Study) -> Inversion:
 
 
 def _left_out(study: Table2Study) -> np.ndarray:
-    """No reading, and none of its element or sample, has a part in the K_r by which it is inverted."""
+    """K_obj by a K_r that is fitted without the reading's own element and sample."""
     k, x, R = study.measuring, study.object_printed, study.ratio
     K_obj = np.empty_like(R)
     for i, j in np.ndindex(R.shape):

@@ -1,4 +1,4 @@
-"""How the reports' pictures look, and their SVG text: equal bytes from equal numbers."""
+"""Style of the reports' pictures, and their SVG text: equal bytes from equal numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paper's tables and single figures, typed, with what rounding alone leaves open.
+"""The paper's tables and single figures, as data, with the uncertainty that rounding alone leaves.
 
 Source: "Spring-based tactile array for assistive robotic surgical applications", Tables 1 and 2 and the text.
 Values stay as printed; half steps (half a unit of the last printed digit) go beside them.
@@ -95,10 +95,18 @@ class Published:
 
 
 def load(table1: str | Path | None = None, table2: str | Path | None = None) -> Published:
-    """The paper's data; another file of the same form may stand in for a table.
+    """The paper's data.
 
-    Raises InputError with file, line and column for a missing column, text for a number, a value out of
-    range, an element that stands twice, a grid of Table 2 that has gaps.
+    Parameters
+    ----------
+    table1, table2
+        Files of the same form that replace the paper's tables.
+
+    Raises
+    ------
+    InputError
+        With file, line and column: a missing column, text for a number, a value out of range, an element that
+        stands twice, a grid of Table 2 that has gaps.
     """
     data = Path(str(files("tactcad.paper"))) / "data"
     figures = _figures(data / "printed.csv")

@@ -1,5 +1,5 @@
-"""The reference element: its printed signals against its printed deflections, and what could explain its
-stiffness.
+"""The reference element: its printed signals compared with its printed deflections, and possible explanations
+of its stiffness.
 
 Each explanation takes Table 1's K as given and predicts K_v and K_v/K with the gain that fits the other
 elements.
@@ -22,7 +22,7 @@ from tactcad.paper.residuals import matched, solve
 
 @dataclass(frozen=True)
 class Explanation:
-    """What one cause, sized to give the printed K, predicts; V/mm and V/N."""
+    """Predictions of one cause, sized to give the printed K; V/mm and V/N."""
 
     name: str
     size: float  # of the cause
@@ -38,8 +38,8 @@ class Explanation:
 
 @dataclass(frozen=True)
 class AccountReading:
-    """What the reference element would have shown if one account of Table 2 were true; least and largest
-    over the samples.
+    """Readings of the reference element if one account of Table 2 were true; smallest and largest over the
+    samples.
 
     The whole load is the one that deflects the softest element by the largest deflection that the paper
     prints.
@@ -66,7 +66,7 @@ class ReferenceElement:
     printed_k_v: float
     signal: tuple[float, float]
     deflection: tuple[float, float]
-    implied_k_v: tuple[float, float]  # least/least, most/most
+    implied_k_v: tuple[float, float]  # smallest over smallest, largest over largest
     deflection_from_signal: tuple[float, float]  # with the printed K_v
     softest_k_v: tuple[
         float, float
@@ -143,7 +143,9 @@ def _reading(
     deflection: tuple[float, float],
     signal: tuple[float, float],
 ) -> AccountReading:
-    """factor: the reference element's true deflection over the printed one, which is what R is off by."""
+    """`factor`: the reference element's true deflection over the printed one, the factor by which R is
+    wrong.
+    """
     truth, reference = elements_in_parallel(data, array)
     K = truth.stiffness.copy()
     K[reference] = K_r

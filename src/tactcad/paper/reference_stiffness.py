@@ -1,8 +1,8 @@
 """Table 2: which reference stiffness do the measured ratios R support?
 
-Equation (2) with one thing freed at a time: K_r; a common factor on R; a scale on K_obj; and two at once.
-ln R is fitted. Readings share elements (rows) and samples (columns), so standard errors are two-way
-jackknife ones, rows and columns added: wider than from 48 independent readings, and honest.
+Equation (2) with one parameter freed at a time: K_r; a common factor on R; a scale on K_obj; and two at once.
+ln R is fitted. Readings share elements (rows) and samples (columns), so standard errors are two-way jackknife
+ones, rows and columns added: wider than for 48 independent readings, as they should be.
 """
 
 from __future__ import annotations

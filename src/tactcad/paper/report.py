@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Marked:
-    """A cell to be noticed."""
+    """A highlighted cell."""
 
     value: str | float
 
@@ -80,7 +80,15 @@ class ValidationReport:
 
 
 def sig(value: float, digits: int = 3) -> str:
-    """A number with that many significant digits, without exponent between 1e-4 and 1e7."""
+    """A number as text without exponent between 1e-4 and 1e7.
+
+    Parameters
+    ----------
+    value
+        The number.
+    digits
+        Significant digits.
+    """
     value = float(value)
     if isnan(value):
         return "–"

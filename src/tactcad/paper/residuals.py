@@ -1,8 +1,8 @@
 """Table 1's stiffness against every closed-form rung: residuals, what would explain each, expected spread.
 
-One change at a time: hinge thickness alone, or load point alone, that makes the best rung give the measured
-K. Both are then held against what wire cutting and the pad allow. The Monte Carlo draws every toleranced
-dimension.
+One change at a time is sought that makes the best rung give the measured K: of the hinge thickness alone, or
+of the load point alone. Both are compared with what wire cutting and the pad allow. The Monte Carlo draws
+every toleranced dimension.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from tactcad.paper.published import Published
 # (mecvil.com, tongrencnc.com).
 WIRE_TOLERANCE = {"1 pass": 0.025, "2-3 passes": 0.010, "4 or more passes": 0.005}
 DRAWS = 40_000  # the bands' ends repeat within 0.5 %
-EDGE = 0.02  # ln K this near to a band's end is said to lie at its edge, not in or out
+EDGE = 0.02  # ln K closer than this to a band's end is reported at its edge, neither inside nor outside
 BAND = (0.025, 0.975)
 
 
@@ -124,8 +124,8 @@ def residuals(
 def solve(s: HingeSection, name: str, K: np.ndarray, least: float, most: float, rung: str) -> np.ndarray:
     """Value of one dimension that gives each stiffness, searched from `least` to `most` times its own.
 
-    NaN where none does. A scan brackets the value nearest to the dimension's own, secant steps on ln K
-    against its logarithm, which is nearly straight, then find it.
+    NaN where there is none. A scan brackets the value nearest to the dimension's own; secant steps on ln K
+    against its logarithm, which is nearly straight, then converge to it.
     """
     own = np.broadcast_to(getattr(s, name), s.shape).reshape(-1)
     factor = np.geomspace(least, most, 400)
@@ -158,11 +158,12 @@ def spread(
     contact: float = 0.0,
     draws: int = DRAWS,
 ) -> np.ndarray:
-    """Stiffness [draw, element] with everything that [tolerance] holds drawn: half-widths are two standard
-    deviations. NaN where a draw is out of the rung's range.
+    """Stiffness [draw, element] with every dimension of [tolerance] drawn: half-widths are two standard
+    deviations.
 
-    contact: half-width (mm) over which the load's place on the pad is uniform. What one sheet and one cut
-    share is one draw for all elements of an array, the rest is drawn for each. Layer and clamp only soften.
+    NaN where a draw is out of the rung's range. `contact` is the half-width (mm) over which the load's
+    position on the pad is uniform. Dimensions that one sheet and one cut share have one draw for all elements
+    of an array, the others one for each. Layer and clamp only soften.
     """
     tol = array.tolerance
     shape, shared = (draws, *s.shape), (draws, 1)
@@ -188,7 +189,7 @@ def _band(
 
 
 def _one_each(s: HingeSection, draws: int) -> HingeSection:
-    """The same sections in `draws` rows."""
+    """The same sections, repeated in `draws` rows."""
     changes = {}
     for name in s.__dataclass_fields__:
         value = getattr(s, name)

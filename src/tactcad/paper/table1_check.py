@@ -1,6 +1,6 @@
-"""Table 1 against itself: its products, its ratios, and the load cell that stood in series.
+"""Table 1 against itself: its products, its ratios, and the load cell in series.
 
-K d should be the force and |K_v| d the signal, but for the intercepts of the lines, which are not printed;
+K d should be the force and |K_v| d the signal, apart from the intercepts of the lines, which are not printed;
 K_v/K is printed beside its two terms. Stage travel = d + F/K_c for every element, so d against F is one
 line whose slope is the compliance that was really in series and whose intercept is the travel.
 """
@@ -17,8 +17,8 @@ from tactcad.paper.published import Column, Published
 
 @dataclass(frozen=True)
 class ColumnProduct:
-    """A printed value against the same from other columns; relative difference, and what rounding alone
-    allows.
+    """A printed value and the same value computed from other columns; relative difference, and what
+    rounding allows.
     """
 
     printed: np.ndarray
@@ -33,8 +33,8 @@ class ColumnProduct:
 
 @dataclass(frozen=True)
 class SeriesSpring:
-    """What stood in series: travel (um) from the printed deflections and forces, stiffness (N/mm) with
-    95 % interval.
+    """The compliance in series: travel (um) from the printed deflections and forces, stiffness (N/mm) with 95
+    % interval.
     """
 
     travel: np.ndarray  # by element, d + F/K_c

@@ -33,7 +33,7 @@ from tactcad.paper.published import Published
 from tactcad.paper.report import ValidationReport, sig
 
 SEED = 20260101  # of every Monte Carlo draw: the same report from the same data
-LEAST_COMMON = 4  # elements of Table 1 that a design must have for the fits to say anything
+LEAST_COMMON = 4  # elements of Table 1 that a design must have for meaningful fits
 
 
 def validate(data: Published, array: ArrayModel) -> ValidationReport:

@@ -55,7 +55,7 @@ def findings(v: Inversion) -> tuple[str, ...]:
 
 
 def _without_its_own(v: Inversion) -> str:
-    """How many are right where the K_r is not fitted to what it is tried on."""
+    """How many are right where the K_r is fitted without the reading that it is tried on."""
     x = v.object_stiffness
     left_out, *ends = (_right(e, x).sum() for e in (v.left_out, *v.at_ends))
     same = f"{ends[0]} with either end" if ends[0] == ends[1] else f"{ends[0]} and {ends[1]} with the ends"
@@ -67,7 +67,7 @@ def _without_its_own(v: Inversion) -> str:
 
 
 def _without_reading(v: Inversion) -> str:
-    """How many are right for somebody who has read nothing, and answers the samples' geometric mean."""
+    """How many would be right with the samples' geometric mean as the answer to all, without any reading."""
     x, elements = v.object_stiffness, len(v.measuring)
     log = np.log(x)
     one = np.exp(log.mean())
@@ -108,12 +108,14 @@ def _right(estimate: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def _median(w: Inverted, x: np.ndarray) -> float:
-    """Median of estimate over K_obj; what is not positive counts as infinitely stiff where R is near 1."""
+    """Median of estimate over K_obj; near R = 1 an estimate that is not positive counts as infinitely
+    stiff.
+    """
     return float(np.median(np.where(w.physical(), w.estimate, np.inf) / x))
 
 
 def _median_of_positive(v: Inversion, x: np.ndarray) -> str:
-    """The supported median again where what is not positive makes a difference to it."""
+    """The supported median over positive estimates, where the others make a difference to it."""
     positive = v.supported.physical()
     if positive.all() or not positive.any():
         return ""

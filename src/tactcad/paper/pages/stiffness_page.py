@@ -22,7 +22,7 @@ from tactcad.paper.report import (
 )
 from tactcad.paper.residuals import WIRE_TOLERANCE, Residuals
 
-SMALL_FACTOR = 0.05  # a common factor within this is called none
+SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
 
 
 def page(r: Residuals, array: ArrayModel) -> ReportSection:

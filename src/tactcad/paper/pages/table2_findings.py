@@ -1,4 +1,4 @@
-"""Section 5 in sentences: what Table 2 supports, and who else answers how stiff the reference element is."""
+"""Section 5 in sentences: what Table 2 supports, and other evidence on the reference element's stiffness."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from tactcad.paper.report import interval, listed, percent, sig, signed_percent
 from tactcad.paper.residuals import EDGE, Residuals
 
 ALIKE = 0.15  # models whose rms differ by less than this part are said to fit equally well
-USABLE = 10.0  # an interval wider than this factor says nothing
+USABLE = 10.0  # an interval wider than this factor is not informative
 
 
 @dataclass(frozen=True)
 class Witness:
-    """One source's answer to 'how stiff is the reference element', N/mm."""
+    """One source's value of the reference element's stiffness, N/mm."""
 
     name: str
     value: float
@@ -153,7 +153,7 @@ def _alternatives(s: Table2Study) -> str:
 
 
 def _left_over(s: Table2Study) -> str:
-    """Whether the residuals of the best one-parameter stiffness run with the sample."""
+    """Whether the residuals of the best one-parameter stiffness depend on the sample."""
     by_sample = np.exp(
         np.log(
             s.ratio / (s.supported.value[0] + s.object_printed) * (s.measuring[:, None] + s.object_printed)
