@@ -34,7 +34,22 @@ BENCHMARKS = {
 
 
 def run(plan: RunPlan, names: Sequence[str], say: Callable[[int, int, str], None]) -> dict:
-    """Measure. A benchmark that fails is recorded with its reason under "failed", and the others go on."""
+    """Run benchmarks; one that fails is recorded with its reason under "failed", and the others go on.
+
+    Parameters
+    ----------
+    plan
+        How much each does.
+    names
+        Of `BENCHMARKS`.
+    say
+        Receives (done, total, text).
+
+    Returns
+    -------
+    dict
+        The run as JSON holds it.
+    """
     started = time.perf_counter()
     result: dict[str, Any] = {
         "schema": SCHEMA,

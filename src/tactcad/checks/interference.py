@@ -135,6 +135,19 @@ def meeting(
 
     Surfaces that touch do so in faces that reach the other part's box: only these are measured. One part can
     contain the other without touching it only where its box contains the other's.
+
+    Parameters
+    ----------
+    pair
+        The two placements.
+    boxes : two ndarrays, shape (2, 3)
+        Their least and largest corners in the scene, mm.
+    shapes
+        By part number, each in its own frame, mm.
+    faces
+        By part number; extended by those that are missing.
+    anchor
+        Index of the part in whose frame the point is given.
     """
     reach = [
         faces_within(_faces(p, shapes, faces), p, box, TOUCH_MM) for p, box in zip(pair, reversed(boxes))

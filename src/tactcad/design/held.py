@@ -35,10 +35,17 @@ def _nothing(_folder: Path) -> None:
 def held_folder(
     parent: Path, stem: str, settle: Settle = _nothing, clear: Settle = _nothing
 ) -> Iterator[Path]:
-    """A folder `parent/STEM.tactcad-XXXXXXXX` of this process alone, gone when the block ends.
+    """A folder `parent/STEM.tactcad-XXXXXXXX` of this process alone, removed when the block ends.
 
-    `settle` is called with it before it goes, to save what is not ours to remove. When a signal ends the
-    program `clear` is called instead; where it leaves more than MAKING the next run settles.
+    Parameters
+    ----------
+    parent, stem
+        Where it stands, and how its name begins.
+    settle
+        Called with the folder before its removal, to save what is not ours to remove.
+    clear
+        Called instead when a signal ends the program; if it leaves more than MAKING, the next run settles the
+        folder.
     """
     while True:
         folder = Path(tempfile.mkdtemp(prefix=stem + OWN, dir=parent))
@@ -70,8 +77,18 @@ def _put_away(folder: Path, settle: Settle, clear: Settle) -> None:
 
 
 def sweep_folders(parent: Path, stem: str, settle: Settle = _nothing) -> tuple[str, ...]:
-    """Remove what killed runs of `held_folder` left there; returns the numbers of the processes that hold
-    others."""
+    """Remove what killed runs of `held_folder` left.
+
+    Parameters
+    ----------
+    parent, stem, settle
+        As for `held_folder`.
+
+    Returns
+    -------
+    tuple of str
+        Numbers of the processes that hold folders there now.
+    """
     holders = []
     for folder in _of_our_form(parent, stem, ""):
         if folder.is_symlink() or not folder.is_dir():

@@ -65,8 +65,20 @@ def _section(part: Part) -> Extrusion:
 
 
 def dxf_bytes(part: Part) -> bytes:
-    """The cut file of a part that has one (`cut_section`); the same bytes in every process, time zone and
-    home."""
+    """The cut file of a part that is cut from sheet or plate.
+
+    Its bytes depend on neither process, time zone nor home folder.
+
+    Parameters
+    ----------
+    part
+        A part that has a cut file (`tactcad.parts.cut_section`).
+
+    Raises
+    ------
+    ValueError
+        Where the part has none.
+    """
     import ezdxf
 
     earlier = ezdxf.options.write_fixed_meta_data_for_testing

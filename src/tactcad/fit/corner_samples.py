@@ -102,7 +102,17 @@ def draw_all(kind: str) -> Columns:
 
 
 def compute_all(kind: str, most: int, report: Callable[[str], None]) -> Columns:
-    """A sample with its results; of each draw `most` designs at most."""
+    """A sample with its results.
+
+    Parameters
+    ----------
+    kind
+        Of `DRAWS`.
+    most
+        Designs of each draw at most.
+    report
+        Receives lines of progress.
+    """
     return joined(
         [
             compute_corners(draw_corners(min(count, most), seed), solids, report)

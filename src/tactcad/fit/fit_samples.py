@@ -125,8 +125,20 @@ def draw_edges(count: int, seed: int) -> Columns:
 
 
 def designs(kind: str, count: int) -> tuple[Columns, Columns]:
-    """The "fitted" or "held out" designs: `count` inside the box (for the fit also beyond it), and a third
-    as many on its edges."""
+    """Designs to be solved, inside the promised box and on its edges.
+
+    Parameters
+    ----------
+    kind
+        "fitted", which also has designs beyond the box, or "held out".
+    count
+        Inside the box; a third as many are on its edges.
+
+    Returns
+    -------
+    tuple of Columns
+        Those inside, and those on the edges.
+    """
     inside = draw if kind == "fitted" else draw_box
     return inside(count, SEEDS[kind]), draw_edges(count // EDGE_PART, SEEDS[kind] + 1)
 

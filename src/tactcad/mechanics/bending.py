@@ -80,6 +80,13 @@ def rod(length: float, diameter: float, youngs_modulus: float, poisson: float) -
     """A round bar as a rectangular one of the same height and the same second moment of area, pi d^4/64.
 
     The rectangle is a third softer in shear than the round bar.
+
+    Parameters
+    ----------
+    length, diameter
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
     """
     return Beam(length, 3.0 * pi / 16.0 * diameter, diameter, youngs_modulus, poisson)
 
@@ -87,8 +94,19 @@ def rod(length: float, diameter: float, youngs_modulus: float, poisson: float) -
 def round_plate(
     radius: float, thickness: float, youngs_modulus: float, poisson: float
 ) -> tuple[float, float]:
-    """A round plate supported on its rim: deflection of its middle in mm/N of force there, and in mm/MPa
-    on its face.
+    """Deflection of the middle of a round plate supported on its rim.
+
+    Parameters
+    ----------
+    radius, thickness
+        mm.
+    youngs_modulus, poisson
+        MPa; Poisson's ratio.
+
+    Returns
+    -------
+    tuple of float
+        Under a force in the middle, mm/N, and under pressure on the face, mm/MPa.
     """
     D = youngs_modulus * thickness**3 / (12.0 * (1.0 - poisson**2))
     nu = poisson

@@ -84,7 +84,20 @@ def influence(
 def shares_between(
     x: np.ndarray, y: np.ndarray, length: float, width: float, thickness: float, poisson: float
 ) -> np.ndarray:
-    """`influence` of every pad at x, y (mm) on every other, [pad, pad]; 1 on the diagonal."""
+    """`influence` of every pad on every other.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+        Centres of the pads, mm.
+    length, width, thickness, poisson
+        As for `influence`.
+
+    Returns
+    -------
+    ndarray, shape (n, n)
+        1 on the diagonal.
+    """
     dx, dy = np.abs(x[:, None] - x[None, :]), np.abs(y[:, None] - y[None, :])
     places, index = np.unique(
         np.round(np.column_stack([dx.ravel(), dy.ravel()]), 6), axis=0, return_inverse=True

@@ -36,9 +36,25 @@ class HingeSection:
     """Parameters of one element or of many: arrays (of no dimension for one element) that broadcast together.
 
     Numbers and lists are also taken, and converted to arrays; code that is type-checked passes them to
-    `HingeSection.of`. Lengths in mm, youngs_modulus in MPa. `two_sided` is a bool or an array of bools.
-    `pad_height` (mm, from the hinge's face towards the object to the contact) and the `friction` coefficient
-    there matter only together, see `friction.factor`.
+    `HingeSection.of`. The sketch stands at the top of the module.
+
+    Parameters
+    ----------
+    hinge_thickness, hinge_length, fillet_radius
+        t, l and r of the slot, mm.
+    load_arm
+        L from the hinge's centre to the load line, mm.
+    arm_height, body_height, body_length
+        h, Hb and Lb, mm.
+    poisson, youngs_modulus
+        Of the sheet; MPa.
+    width
+        b, the sheet's thickness, mm.
+    two_sided
+        Whether the slot is cut from both faces: a bool or an array of bools.
+    pad_height, friction
+        From the hinge's face towards the object to the contact, mm, and the coefficient of friction there;
+        they matter only together, see `friction.factor`.
     """
 
     hinge_thickness: Array

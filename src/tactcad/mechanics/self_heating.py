@@ -47,14 +47,34 @@ class Heating:
 
 
 def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
-    """Power on all the time; excitation is the bridge's, V."""
+    """Heating with power on all the time.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+    """
     watts = (excitation / 2) ** 2 / power.resistance
     return _heating(watts, watts * thermal_resistance(gauge, power), gauge, power)
 
 
 def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
-    """Power on for on_time in every period: the warmest moment, at the end of a reading, in the settled
-    cycle. Raises InputError where on_time is longer than the period.
+    """Heating with power on for on_time in every period, at the end of a reading in the settled cycle, its
+    warmest moment.
+
+    Parameters
+    ----------
+    excitation
+        Of the bridge, V.
+    gauge, power
+        The gauge, and what heats it.
+
+    Raises
+    ------
+    InputError
+        Where on_time is longer than the period.
     """
     if power.on_time > power.period:
         raise InputError(

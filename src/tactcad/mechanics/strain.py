@@ -244,9 +244,21 @@ def grid_factor(s: HingeSection, grid_length: Array | float, rung: str = ladder.
 
 
 def one_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> Array:
-    """X = -g [m f(u, v; w/g) + (1 - m) f(x, y; w/g)], f(u, v; z) = ln(1 + exp(u (z - v)))/u.
+    """`grid_factor` of one-sided hinges, by X = -g [m f(u, v; w/g) + (1 - m) f(x, y; w/g)].
 
-    g is the mean `root` length in t: beyond the mouth the strain fades, part of it soon, part in the block.
+    f(u, v; z) = ln(1 + exp(u (z - v)))/u. g is the mean root length in t: beyond the end of the slot the
+    strain fades, partly at once, partly in the block.
+
+    Parameters
+    ----------
+    s
+        One design or many.
+    grid
+        Length of the gauge's grid, mm.
+    k
+        Constants of the fit.
+    root
+        g.
     """
     g, middle, step = root, *_reach(s, grid)
     near = _softplus_rise(k["u"] * (middle / g - k["v"]), k["u"] * step / g) / k["u"]
@@ -255,7 +267,11 @@ def one_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> A
 
 
 def two_sided_grid(s: HingeSection, grid: Array, k: Constants, root: Array) -> Array:
-    """X = -g f(u, v; w/g) + m rho^-x [1 + tanh(y (w/sqrt(rho) - z))]/2: fading, and the fillet's peak."""
+    """`grid_factor` of two-sided hinges: fading strain, and the fillet's peak; parameters as
+    `one_sided_grid`.
+
+    X = -g f(u, v; w/g) + m rho^-x [1 + tanh(y (w/sqrt(rho) - z))]/2.
+    """
     g, middle, step = root, *_reach(s, grid)
     rho = s.fillet_radius / s.hinge_thickness
     fading = _softplus_rise(k["u"] * (middle / g - k["v"]), k["u"] * step / g) / k["u"]

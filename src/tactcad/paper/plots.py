@@ -117,9 +117,18 @@ def series(ax: Axes, i: int, x: ArrayLike, y: ArrayLike, hollow: bool = False, *
 def place_labels(
     figure: Canvas, ax: Axes, labels: list[tuple[str, float, float]], size: float = 10.0
 ) -> None:
-    """Write each label (text, x, y in data) beside its point, on the side where it covers the least.
+    """Write labels beside their points, each on the side where it covers least.
 
-    Call it when the axes have their limits: the places of points on the page decide.
+    To be called when the axes have their limits, since it depends on where the points are on the page.
+
+    Parameters
+    ----------
+    figure, ax
+        To write on.
+    labels
+        Text, and x and y in data units.
+    size
+        Of the letters, points.
     """
     figure.canvas.draw()  # the layout is known only then
     scale = 72.0 / figure.dpi

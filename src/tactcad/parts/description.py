@@ -223,7 +223,30 @@ class Characteristic:
 class Part:
     """One fabricated or bought part.
 
-    `mass_override` (g) is for bought parts whose envelope is not their solid.
+    Parameters
+    ----------
+    part_no, name
+        Equal parts share a number.
+    process
+        How it is made, or "bought".
+    material
+        With its density.
+    body
+        The stock, in the part's own frame, mm.
+    features
+        Holes and pockets cut into the stock; they may not overlap.
+    colour
+        sRGB, "#rrggbb".
+    finish, notes
+        For the drawing.
+    characteristics
+        Toleranced dimensions.
+    purchase
+        How a bought part is ordered.
+    mass_override
+        Mass, g, of a bought part whose body is only an envelope.
+    spares
+        Pieces to order beyond the scene's.
     """
 
     part_no: str

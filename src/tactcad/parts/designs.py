@@ -11,9 +11,17 @@ from .rules import refuse_broken
 
 
 def load(source: str | Path) -> Design:
-    """The design in a file, or the one of that name in hardware/, checked against every rule between fields.
+    """A design, checked against every rule between its fields.
 
-    Raises InputError where the file is missing or not a design, a value is not legal, or a rule is broken.
+    Parameters
+    ----------
+    source
+        A path (it has a '/' or ends in .toml), or the name of a design in hardware/.
+
+    Raises
+    ------
+    InputError
+        Where the file is missing or not a design, a value is not legal, or a rule is broken.
     """
     design = read(source)
     refuse_broken(design)

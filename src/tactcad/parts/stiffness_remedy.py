@@ -18,8 +18,13 @@ V = TypeVar("V", int, float)
 
 
 def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
-    """Path, value, and what is enough: of the first field by which alone the line gets below what is
-    allowed."""
+    """The first field that by itself brings a deflection below what is allowed.
+
+    Returns
+    -------
+    tuple
+        The field's path, its value now, and in words the values that suffice.
+    """
     for path in line.fields:
         value, spec = attrgetter(path)(design), _spec(path)
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):

@@ -62,7 +62,15 @@ class Deflection:
 
 
 def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
-    """The table of a design that keeps its rules, for those of its scenes."""
+    """The stiffness table of a design.
+
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scenes
+        Names of the scenes whose lines are wanted; the design must have them.
+    """
     from .rigs.stiffness import calibration_lines, grasping_lines, sample_lines
 
     lines = {
@@ -75,7 +83,7 @@ def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ..
 
 
 def pads_plane(design: Design) -> tuple[float, str]:
-    """um by which a load may move pads against each other, and why."""
+    """Allowed displacement of pads against each other by one load, um, and why."""
     return 1e3 * TENTH * design.tolerance.pad_height, "a tenth of tolerance.pad_height"
 
 

@@ -184,7 +184,15 @@ def _parsed(column: Any, cell: str) -> object:
 
 
 def json_bytes(rows: Sequence[BomRow], design: str, revision: str, scene: str) -> bytes:
-    """The rows as JSON, with the design and the scene that they belong to."""
+    """The rows as JSON.
+
+    Parameters
+    ----------
+    rows
+        As `bom_rows` gives them.
+    design, revision, scene
+        That they belong to.
+    """
     record = {
         "schema": SCHEMA,
         "design": design,

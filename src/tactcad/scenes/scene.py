@@ -104,11 +104,33 @@ REST = Pose()
 
 @dataclass(frozen=True)
 class Scene:
-    """Placements with designators that are unique, meant contacts, and what has no solid.
+    """Placements with unique designators, their intended contacts, and supplies without a solid.
 
-    `cover` names what is taken off to look inside. `groups` are what moves as one, each with its
-    designators; what is in none stands still. `steps` place every designator once. `ready` are the scenes, in
-    their own places, that were put together before and whose parts stand in this one.
+    Parameters
+    ----------
+    name
+        Such as "array".
+    placements
+        Which part stands where.
+    contacts
+        Pairs that are meant to meet.
+    supplies
+        Lines of the bill without a solid.
+    cover
+        Designators of what is taken off to look inside.
+    groups
+        What moves as one: a name and designators; parts in none stand still.
+    motions
+        Ways of the groups that are checked for collisions.
+    steps
+        Of the assembly; they place every designator once.
+    ready
+        Scenes, at their places, that were put together before and whose parts stand in this one.
+
+    Raises
+    ------
+    ValueError
+        Where designators are not unique, the steps do not place each once, or two parts share a number.
     """
 
     name: str

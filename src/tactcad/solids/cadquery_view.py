@@ -50,8 +50,19 @@ def _colour(colour: str) -> cq.Color:
 def bought_from_step(
     path: str | Path, part_no: str, name: str, material: Material, purchase: Purchase
 ) -> Part:
-    """A bought part whose shape is the one solid of a STEP file. Raises InputError where it has another
-    number.
+    """A bought part whose shape is the one solid of a STEP file.
+
+    Parameters
+    ----------
+    path
+        The STEP file, mm.
+    part_no, name, material, purchase
+        Of the part, see `tactcad.parts.description.Part`.
+
+    Raises
+    ------
+    InputError
+        Where the file does not hold exactly one solid.
     """
     from .step_models import model_file
 
@@ -66,9 +77,21 @@ def bought_from_cadquery(
     material: Material,
     purchase: Purchase,
 ) -> Part:
-    """A bought part modelled in CadQuery: its one solid is written to `path` (STEP), and used from there.
+    """A bought part modelled in CadQuery.
 
-    Raises InputError where the model is not one solid.
+    Parameters
+    ----------
+    model
+        One solid, mm.
+    path
+        Where it is written (STEP) and from then on read.
+    part_no, name, material, purchase
+        Of the part, see `tactcad.parts.description.Part`.
+
+    Raises
+    ------
+    InputError
+        Where the model is not one solid.
     """
     shape = model.val() if isinstance(model, cq.Workplane) else model
     solids = shape.Solids() if isinstance(shape, cq.Shape) else []

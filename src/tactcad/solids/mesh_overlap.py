@@ -30,7 +30,20 @@ def placed(
 
 
 def meeting(first: manifold3d.Manifold, second: manifold3d.Manifold, reach: float) -> tuple[float, float]:
-    """Common volume of two placed meshes (mm3), and the gap between their surfaces (mm, at most `reach`)."""
+    """Overlap and gap of two placed meshes.
+
+    Parameters
+    ----------
+    first, second
+        Closed meshes, mm.
+    reach
+        Largest gap that is measured, mm.
+
+    Returns
+    -------
+    tuple of float
+        Common volume, mm3, and the gap between the surfaces, mm, at most `reach`.
+    """
     return (first ^ second).volume(), first.min_gap(second, reach)
 
 

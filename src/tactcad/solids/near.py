@@ -60,8 +60,17 @@ def faces_within(faces: Faces, place: Placement, box: np.ndarray, reach: float) 
 
 
 def nearest(first: TopoDS_Shape | None, second: TopoDS_Shape | None) -> tuple[float, Vector]:
-    """Distance of two sets of faces (mm, infinite where one is empty), and the point of the first where it
-    is taken.
+    """Distance between two sets of faces.
+
+    Parameters
+    ----------
+    first, second
+        As `faces_within` gives them; None for an empty set.
+
+    Returns
+    -------
+    tuple
+        The distance, mm, infinite where a set is empty; and the point of the first set where it is taken.
     """
     if first is None or second is None:
         return inf, (0.0, 0.0, 0.0)

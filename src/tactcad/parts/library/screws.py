@@ -225,7 +225,7 @@ def nut(thread: str) -> Part:
 
 
 def threaded_rod(thread: str, length: float) -> Part:
-    """DIN 976-1 threaded rod cut to length, along +z from 0."""
+    """DIN 976-1 threaded rod cut to length (mm), along +z from 0."""
     m = METRIC[thread]
     return Part(
         part_no=f"DIN976-1-{thread}x{length:g}-A2-70-rod",
