@@ -1,9 +1,9 @@
-"""How a signal ends the program: at once, by one door, with nothing half made left behind.
+"""Ending the program on a signal: at once, in one place, and leaving nothing half made behind.
 
 An exception raised wherever the program happens to be would pass through libraries that swallow it or turn it
-into another error, native imports above all. So the handler itself puts away what is unfinished, says one
-line and exits. It waits only for the native call that is running. Nothing but what Python has loaded anyway
-is imported here: `tactcad.__main__` lets it stand before everything else.
+into another error, native imports above all. So the handler itself removes what is unfinished, prints one
+line and exits. It waits only for the native call that is running. This module imports only what Python has
+loaded anyway, because `tactcad.__main__` imports it before everything else.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ SAID = {
     signal.SIGHUP: "the terminal hung up (SIGHUP)",
 }
 
-_unfinished: list[Callable[[], object]] = []  # what puts it away
-_owner = 0  # the process whose unfinished things they are: a forked helper has only a copy
+_unfinished: list[Callable[[], object]] = []  # functions that remove what is unfinished
+_owner = 0  # the process that they belong to: a forked helper has only a copy of the list
 
 
 def end_on_signals() -> None:
-    """From now on SIGINT, SIGTERM and SIGHUP end this process with 128 + their number; what it was started to
-    ignore, as nohup does, stays ignored."""
+    """Make SIGINT, SIGTERM and SIGHUP end this process with 128 + their number, except those that it was
+    started to ignore, as by nohup.
+    """
     global _owner
     _owner = os.getpid()
     for number in SAID:
@@ -36,16 +37,17 @@ def end_on_signals() -> None:
 
 
 def past_ending() -> None:
-    """Ignore them: the work is done, and the exit status is known."""
+    """Ignore these signals: the work is done, and the exit status is known."""
     for number in SAID:
         signal.signal(number, signal.SIG_IGN)
 
 
 class unfinished:
-    """Around the making of something: `with unfinished(put_away)` has `put_away` called when a signal ends
-    the program.
+    """A block that makes something: `with unfinished(put_away)` has `put_away` called when a signal ends the
+    program.
 
-    It may be called between any two steps of the block, and must tell by what lies on the disk what is to go.
+    `put_away` may be called between any two steps of the block, and must decide by what is on the disk what
+    to remove.
     """
 
     def __init__(self, put_away: Callable[[], object]) -> None:
@@ -67,20 +69,21 @@ def _end(number: int, _frame: object) -> None:
         try:
             put_away()
         except Exception:
-            pass  # the next run does it
-    for each in SAID:  # whoever presses Ctrl-C again does not wait for a reader that takes no line
+            pass  # the next run removes it
+    for each in SAID:  # a second Ctrl-C ends the process even while the line below waits for its reader
         signal.signal(each, signal.SIG_DFL)
     line = f"tactcad: {SAID[signal.Signals(number)]}; what was not finished is as it was before\n"
     try:
         os.write(2, (("\r\x1b[K" if os.isatty(2) else "") + line).encode())
     except OSError:
-        pass  # the status tells it
+        pass  # the exit status says it too
     os._exit(128 + number)
 
 
 def _kill_helpers(of: str = "self") -> None:
-    """The processes that this one started, and theirs: they work for nobody now. Each stands still before it
-    is asked for its own, or it would start another meanwhile."""
+    """Kill the processes that this one started, and theirs. Each is stopped before its own children are
+    listed, or it could start another meanwhile.
+    """
     try:
         for thread in os.listdir(f"/proc/{of}/task"):
             with open(f"/proc/{of}/task/{thread}/children", encoding="ascii") as children:
@@ -89,4 +92,4 @@ def _kill_helpers(of: str = "self") -> None:
                     _kill_helpers(child)
                     os.kill(int(child), signal.SIGKILL)
     except OSError:
-        pass  # no such list here, or one that ended by itself
+        pass  # no such list on this system, or the process has ended

@@ -35,7 +35,7 @@ def measured(command: Sequence[str], environment: Mapping[str, str] | None = Non
     with scratch_folder("bench-run") as folder:
         result = folder / "meter.json"
         meter = [sys.executable, "-I", "-S", str(METER), str(result), *command]
-        here = {"TMPDIR": str(folder)}  # what a killed one leaves there goes with it
+        here = {"TMPDIR": str(folder)}  # removed with what a killed process leaves in it
         environment = {**os.environ, **surroundings(), **here, **(environment or {})}
         run = subprocess.run(meter, env=environment, capture_output=True, text=True, check=False)
         if run.returncode:

@@ -64,7 +64,7 @@ def _closed_form(rung: str, *samples: Columns) -> dict:
     K = np.concatenate([ladder.evaluate(section(c), rung).stiffness for c in samples])
     solid = np.concatenate([truth.solid_stiffness(c) for c in samples])
     row = {"rung": rung} | errors(K, solid, "solid")
-    if BY_NAME[rung].against == "solid":  # it answers another question than plane stress
+    if BY_NAME[rung].against == "solid":  # not comparable with plane stress
         return row
     return row | errors(K, np.concatenate([c["plane_stiffness"] * c["width"] for c in samples]), "plane")
 

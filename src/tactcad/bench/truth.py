@@ -26,10 +26,7 @@ SOLID_DENSITIES = (2, 3)
 FACTOR_ORDER = (
     2.5  # of K3D/K2D: seen on densities 2, 3 and 4 of the thickest and shortest hinge of the envelope
 )
-ORDERS_SEEN = (
-    2.0,
-    4.0,
-)  # over the envelope, on densities 1, 2 and 3; the others' differences are far smaller
+ORDERS_SEEN = (2.0, 4.0)  # over the envelope, on densities 1, 2 and 3; the other differences are far smaller
 EDGES = 4  # one design of so many stands on the envelope's edges
 SHIPPED = "bench-truth.csv"
 FULL_DESIGNS, FULL_SOLIDS = 120, 40  # random designs of a full run, and how many of all are solved as solids
@@ -50,8 +47,9 @@ def _reference() -> Columns:
 
 
 def compute(columns: Columns, solids: int, say: Callable[[str], None]) -> Columns:
-    """Stiffness of unit width and modulus, and K3D/K2D for the first `solids` designs, each with its
-    estimated relative error; NaN where not computed."""
+    """Stiffness of unit width and modulus, and K3D/K2D for the first `solids` designs, NaN for others; each
+    with its estimated relative error.
+    """
     s, count = section(columns), len(columns["two_sided"])
     rows = []
     for i in range(count):
@@ -93,8 +91,9 @@ def shipped() -> Columns:
 
 
 def of_run(plan: RunPlan) -> Columns:
-    """full: solved anew on designs of this run's seed, once, into the scratch folder; else the shipped
-    ones."""
+    """Designs and results for a run: in mode full solved anew, once, on designs of this run's seed; else the
+    shipped ones.
+    """
     if plan.mode != "full":
         return shipped()
     path = plan.folder / SHIPPED

@@ -145,7 +145,7 @@ def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
 def _compared(
     plan: RunPlan, name: str, pairs: Sequence[tuple[Placed, str | None]], angular: tuple[float, ...]
 ) -> list[dict]:
-    """A row by the kernel and one by each tolerance; on every pair all of them in turn."""
+    """A row for the kernel and one for each tolerance; every pair is judged by all of them in turn."""
     ways: list[float | None] = [None, *angular]  # None: the kernel
     verdicts: dict[float | None, list[str]] = {w: [] for w in ways}
     seconds: dict[float | None, list[float]] = {w: [] for w in ways}
@@ -170,7 +170,7 @@ def _compared(
             "angular": w,
             "count": len(pairs),
         }
-        if w is not None or pairs[0][1]:  # the kernel is not held against itself
+        if w is not None or pairs[0][1]:  # the kernel is not compared with itself
             row |= count_wrong(verdicts[w], true)
         row |= {"seconds": float(np.mean(seconds[w])), "median": float(np.median(seconds[w]))}
         row["time ratio"] = row["seconds"] / float(np.mean(seconds[None]))

@@ -34,7 +34,7 @@ class Parser(argparse.ArgumentParser):
         return parsed
 
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
-        """An empty text is a slip of whoever wrote the script, never a wish for the default."""
+        """Refuse an empty text: it is a mistake in the calling script, never a wish for the default."""
         if "" in (value if isinstance(value, list) else [value]):
             self._refuse(_named(action), "empty", value="", legal=action.help or "")
 

@@ -63,4 +63,4 @@ def slow_work(stream: TextIO) -> Iterator[Callable[[int, int, str], None]]:
     finally:
         ended.set()
         thread.join()
-        shown.step(1, 1, "")  # on a terminal the line goes
+        shown.step(1, 1, "")  # on a terminal the line is removed

@@ -20,7 +20,7 @@ EXAMPLES = """\
   tactcad size --stiffness 2 --load-arm 6 --design soft-tissue --force 0.5 --json
 """
 
-# Lengths that an option of their name takes; the load arm is asked for by itself.
+# Lengths that have an option of their name; the load arm has its own.
 LENGTHS = tuple(name for name in REQUIRED if name not in ("load_arm", "poisson", "youngs_modulus"))
 
 

@@ -29,8 +29,9 @@ class Lossy(io.FileIO):
 
     @property
     def failed(self) -> OSError | None:
-        """Why output was lost; None where none was, or where nobody reads it any more: a pipe, or a terminal
-        that hung up."""
+        """Why output was lost; None where none was, or where its reader is gone: a pipe, or a terminal
+        that hung up.
+        """
         return None if self.terminal or isinstance(self.error, ConnectionError) else self.error
 
 
@@ -61,5 +62,5 @@ def _lossy(stream: TextIO) -> tuple[io.TextIOWrapper, Lossy]:
     """A stream in the place of that one, and its file."""
     at_once = isinstance(stream, io.TextIOWrapper) and (stream.line_buffering or stream.write_through)
     file = Lossy(stream.fileno())
-    buffered: Any = io.BufferedWriter(file)  # the stub asks for more of a raw file than it uses
+    buffered: Any = io.BufferedWriter(file)  # the type stub requires more of a raw file than is used
     return io.TextIOWrapper(buffered, stream.encoding, "backslashreplace", line_buffering=at_once), file

@@ -2,7 +2,7 @@
 
 Lengths in mm, forces in N, stresses in MPa, density in kg/m3. Frame: x from the middle line between the rows
 along the arms, y along the row, z = 0 on the elements' flat (gauge) face, + away from the object. A default
-of None is derived from other fields (design/layout.py says how).
+of None is derived from other fields (parts/layout.py says how).
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, gi
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
 from .rigs import Calibration, Cart, Grasping, Holder, Sample
 
-# Without control characters, line ends, what turns the direction of text, and what XML (SVG) cannot hold.
+# Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
+# cannot hold.
 _LINE = r"(?!\s*$)[^\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\uffff]{1,80}"
 
-IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders that commands write beside the designs' own
+IN_EXPORTS = ("golden", "releases", "check", "bench")  # folders beside those of the designs
 
 
 def _line(meaning: str) -> TextLine:
@@ -51,8 +52,11 @@ def _property(spec: Number | OneOf, optional: bool = False) -> Any:
 
 @dataclass(frozen=True)
 class SheetMaterial:
-    """[material]: the sheet that the elements are cut from. Of a name in the table (data/materials.csv) what
-    is left out is the table's; a label of its own needs all properties but the last three."""
+    """[material]: the sheet that the elements are cut from.
+
+    For a name in the table (data/materials.csv), values that are left out are the table's; a label of its own
+    needs all properties but the last three.
+    """
 
     alloy: str = given(
         TextLine(
@@ -99,7 +103,7 @@ class Array:
 
 @dataclass(frozen=True)
 class Hinge:
-    """[element.override.N]: what one element may have otherwise; None keeps [element]'s value."""
+    """[element.override.N]: values in which one element differs; None keeps [element]'s value."""
 
     hinge_thickness: float | None = given(Number("mm", 0.005, 5, "hinge thickness t"), None)
     hinge_length: float | None = given(Number("mm", 0.01, 50, "slot length l"), None)
@@ -237,7 +241,7 @@ class Readout:
 class Tolerance:
     """[tolerance]: plus and minus, taken as two standard deviations; on drawings, in bands and budget.
 
-    docs/mechanics.md says where the defaults of what no drawing holds are from.
+    docs/mechanics.md gives the origin of defaults that no drawing states.
     """
 
     hinge_thickness: float = given(Number("mm", 1e-4, 0.1, "hinge thickness"), 0.005)
@@ -338,5 +342,5 @@ class Design:
 
     @property
     def differences(self) -> tuple[Difference, ...]:
-        """What the material differs by from the table's row of its name; see `materials.differences`."""
+        """Differences between the material and the table's row of its name; see `materials.differences`."""
         return differences(self.material.alloy, vars(self.material), self.origin)

@@ -52,7 +52,7 @@ class NoPlace(CheckFailure):
 
 @dataclass(frozen=True)
 class _Drawn:
-    """A view's items at its scale, its (0, 0) at the paper's (0, 0)."""
+    """A view's items at its scale; its (0, 0) is the paper's (0, 0)."""
 
     view: View
     scale: Scale
@@ -80,7 +80,7 @@ def compose(
     curves
         Each view's curves by its name, mm of the part.
     block
-        What the title block says; its scale is filled in.
+        Contents of the title block; the scale is filled in.
     papers, scales
         To try, the best first.
 

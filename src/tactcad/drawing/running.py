@@ -25,7 +25,7 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
     Parameters
     ----------
     sketch
-        Takes up what they say; what it knows already is not said again.
+        Receives the dimensions; those that determine nothing new are left out.
     view, side
         Where they stand.
     k

@@ -1,5 +1,4 @@
-"""What a part's sheet shows, before it has a scale: views, dimensions and where they stand, callouts,
-notes."""
+"""Contents of a part's sheet before it has a scale: views, dimensions and their sides, callouts, notes."""
 
 from __future__ import annotations
 
@@ -210,15 +209,16 @@ def opposite(v: Vector, share: float = 1.0) -> Vector:
 
 @dataclass(frozen=True)
 class Breaks:
-    """What broken views leave out along an axis of the part (0 or 1): from where to where (mm of the part,
-    ascending), and the gap (mm) that stands for each."""
+    """Stretches that broken views leave out along an axis of the part (0 or 1): from where to where (mm of
+    the part, ascending), and the gap (mm) that replaces each.
+    """
 
     axis: int
     left_out: tuple[tuple[float, float], ...]
     gap: float
 
     def squeezed(self, at: float) -> float:
-        """Where a coordinate comes to lie."""
+        """A coordinate's place in the broken view."""
         return at - sum(
             min(max(at - low, 0.0), high - low) * (1.0 - self.gap / (high - low))
             for low, high in self.left_out

@@ -59,7 +59,7 @@ class Sketch:
         self.account.takes(row)
 
     def new(self, dimension: Dimension) -> bool:
-        """Whether a dimension says something new with every one of its rows; if so it is taken up."""
+        """Add a dimension if every one of its rows determines something new; returns whether it did."""
         before = self.account.basis
         if all([self.account.takes(row) for row in dimension.rows]):
             if dimension.characteristic:

@@ -25,8 +25,8 @@ class UnitView:
 
 
 def unit_views(scene: Scene) -> list[UnitView]:
-    """The whole, each sub-assembly standing assembled in it; then each by itself, and after it the ready
-    scenes that stand in it.
+    """The whole, with each sub-assembly assembled in it; then each sub-assembly by itself, followed by the
+    ready scenes that stand in it.
 
     None where the scene has fewer than two sub-assemblies.
     """

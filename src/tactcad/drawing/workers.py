@@ -49,7 +49,7 @@ def end_with(parent: int) -> None:
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     with suppress(AttributeError, OSError):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # it was gone before
+    if os.getppid() != parent:  # the parent was gone before
         os._exit(1)
 
 
@@ -67,7 +67,7 @@ def all_written(
     make
         Makes one; called in a process of its own.
     say
-        Is told (done, total, text) at least every EVERY seconds.
+        Receives (done, total, text) at least every EVERY seconds.
 
     Returns
     -------
@@ -84,8 +84,8 @@ def all_written(
     cores = min(len(os.sched_getaffinity(0)), len(orders))
     # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called
     # serial).
-    # One drawing too is made beside this process: the kernel holds the interpreter, and nothing could be said
-    # meanwhile.
+    # Even a single drawing has a process of its own: the kernel would block this one, and no progress could be
+    # shown.
     with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
         futures = [pool.submit(make, order) for order in orders]
         try:

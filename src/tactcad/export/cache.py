@@ -52,7 +52,7 @@ class Cache:
     ) -> None:
         self.root, self.say = root, say
         self._secret = b""  # empty: nothing is read or kept
-        self._trouble: OSError | None = None  # why, to be said at the first use
+        self._trouble: OSError | None = None  # why, reported at the first use
         self._complained = False
         try:
             root.mkdir(parents=True, exist_ok=True)
@@ -93,7 +93,7 @@ class Cache:
             handle, temporary = tempfile.mkstemp(prefix=UNFINISHED, dir=path.parent)
             try:
                 with unfinished(lambda: os.unlink(temporary)), open(handle, "wb") as file:
-                    fcntl.flock(file, fcntl.LOCK_EX)  # `trim` tells by it what a killed run left
+                    fcntl.flock(file, fcntl.LOCK_EX)  # by which `trim` recognises what a killed run left
                     file.write(self._header(key, data) + b"\n" + data)
                     file.flush()
                     os.replace(temporary, path)  # another process may put the same entry: the last one stays
@@ -200,8 +200,10 @@ def _secret(path: Path) -> bytes:
 
 
 def _content(path: Path) -> bytes | None:
-    """The bytes of a regular file, None where it is something else or larger than the whole cache. Its use is
-    noted: `trim` goes by it."""
+    """The bytes of a regular file, None where it is something else or larger than the whole cache.
+
+    Records the use of the file, by which `trim` decides.
+    """
     with open(path, "rb", opener=_without_waiting) as file:
         state = os.fstat(file.fileno())
         if not stat.S_ISREG(state.st_mode) or state.st_size > MOST_BYTES:

@@ -64,7 +64,7 @@ def _json(record: Mapping[str, Any]) -> bytes:
 
 
 def contents(folder: Path, schema: str) -> Contents:
-    """What lies in `folder` (a path that is no folder: nothing but itself, somebody's)."""
+    """Contents of `folder`; a path that is not a folder is a single entry, somebody's."""
     if not os.path.lexists(folder):
         return NOTHING
     if folder.is_symlink() or not folder.is_dir():

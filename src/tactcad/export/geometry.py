@@ -47,7 +47,7 @@ def geometry(design: Design) -> Record:
 
 
 def part_record(part: Part, qty: int) -> Record:
-    """One part in its own frame: what a manifest says of it, its holes, pockets and contours."""
+    """One part in its own frame: its numbers as in a manifest, its holes, pockets and contours."""
     file, cut = isinstance(part.body, ModelFile), cut_section(part)
     record = {
         "name": part.name,

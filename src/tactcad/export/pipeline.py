@@ -90,9 +90,9 @@ def export(
     out
         The folder.
     progress
-        Is told what is done, and why.
+        Receives what is done, and why.
     others
-        What becomes of files in the folder that tactcad did not write so (publication.py).
+        What to do with files in the folder that tactcad did not write (publication.py).
 
     Returns
     -------

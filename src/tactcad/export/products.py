@@ -1,6 +1,6 @@
-"""What an export consists of: for each file what it is made from, and how it is made and checked.
+"""The files of an export: for each what it is made from, and how it is made and checked.
 
-Nothing here runs until a file is really needed: the kernel is imported inside the makers.
+Nothing here runs until a file is needed: the kernel is imported inside the makers.
 """
 
 from __future__ import annotations
@@ -123,7 +123,8 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
 @dataclass(frozen=True)
 class _Wanted:
     """A drawing to make: its file's name, the part that it shows ("" for a scene), what it depends on, its
-    order."""
+    order.
+    """
 
     stem: str
     part_no: str
@@ -144,7 +145,7 @@ def drawing_products(
     from tactcad.drawing.notes import MadeFrom
     from tactcad.drawing.part_sheet import Order, written
 
-    font_file()  # a missing font is said before anything is made
+    font_file()  # a missing font is reported before anything is made
     sources = {(p.part_no, p.kind): p for p in products}
     revision, common = design.design.revision, (design.design, design.tolerance, design.holes, draft)
 

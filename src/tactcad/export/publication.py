@@ -1,17 +1,17 @@
 """All or nothing: a folder of files appears under its name in one step, finished, or not at all.
 
-DIR is an ordinary folder: it may be renamed, copied, archived, and stays what it is. While it is made there
-is
+DIR is an ordinary folder, which may be renamed, copied and archived. While it is being written there are
 
     exports/macro-array                              the earlier one, whole
     exports/.macro-array.tactcad-k3x0a9_2/           ours by its mark, held by the process that writes
         written-by-tactcad                           the mark
         making/                                      being written; named finished/ when it is
 
-Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is looked at
-once more: what is not exactly what tactcad wrote is never removed unasked, but kept beside as DIR-kept-1. The
-next run does the same with what a killed one left. Where the system or the file system cannot exchange, DIR
-is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run puts it back.
+Then `finished` and DIR exchange names in one step (Linux's renameat2), and the earlier folder is examined
+once more: unless it is exactly what tactcad wrote, it is kept beside as DIR-kept-1 and not removed unasked.
+The next run does the same with the folder of a killed one. Where the system or the file system cannot
+exchange, DIR is moved to `earlier` first; a kill between these two renames leaves no DIR until the next run
+puts it back.
 """
 
 from __future__ import annotations
@@ -235,7 +235,7 @@ def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say:
             fcntl.flock(parent, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             holders = None
-        except OSError:  # a file system without locks: who comes last stays
+        except OSError:  # a file system without locks: the last one stays
             holders = ()
         else:
             holders = sweep_folders(out.parent, f".{out.name}", settle)
@@ -256,8 +256,7 @@ def _own_folder(out: Path, settle: Settle, clear: Settle, stack: ExitStack, say:
 
 
 def _recover(left: Path, out: Path, schema: str, kept: list[str]) -> None:
-    """Settle what a killed run left in its folder: DIR is put back where it is gone, all else as `Work`
-    does."""
+    """Settle a killed run's folder: DIR is put back where it is missing, everything else as `Work` does."""
     if os.path.lexists(left / "earlier") and not os.path.lexists(out):
         os.rename(left / "earlier", out)
     work = Work(out, schema, REFUSE, _print, left, NOTHING, kept)
@@ -267,8 +266,8 @@ def _recover(left: Path, out: Path, schema: str, kept: list[str]) -> None:
 
 
 def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
-    """Let `finished` be DIR; returns where the earlier DIR is now, None where there was none."""
-    while True:  # DIR may come or go meanwhile
+    """Make `finished` the new DIR; returns where the earlier DIR is now, None where there was none."""
+    while True:  # DIR may appear or disappear meanwhile
         try:
             if not os.path.lexists(out):
                 _move(finished, out)

@@ -71,7 +71,7 @@ def read_side(source: str) -> Side:
     Raises InputError where `source` is none of them, or damaged.
     """
     path = Path(source)
-    if os.path.isdir(path):  # False too for what is no path
+    if os.path.isdir(path):  # False also for texts that are not paths
         return _export(source, path.resolve())
     if path.suffix == ".json":
         record = read_golden(path)

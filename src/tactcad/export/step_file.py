@@ -50,7 +50,7 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     shape
         Its solid in its own frame, mm.
     header
-        What the file says of itself.
+        Entries of the file's header.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     shapes
         Solids by part number, each in its own frame, mm.
     header
-        What the file says of itself.
+        Entries of the file's header.
 
     Returns
     -------

@@ -22,7 +22,7 @@ _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
 
 @dataclass(frozen=True)
 class Header:
-    """What the file's header says. date is YYYY-MM-DD; the time of day is fixed at midnight."""
+    """Entries of the file's header. date is YYYY-MM-DD; the time of day is fixed at midnight."""
 
     name: str
     description: str

@@ -28,7 +28,7 @@ def stack_beam(layout: Layout) -> Beam:
     """Both rows' rear bodies and spacers, as high as the spacers, between the end plates."""
     z0, z1 = layout.spacer_z
     m, width = layout.design.material, 2 * layout.design.element.rear_length
-    height = max(z1 - z0, 1e-3)  # a height that rules refuse may be tried as a remedy
+    height = max(z1 - z0, 1e-3)  # `remedy` may try a height that rules refuse
     return Beam(layout.stack, width, height, present(m.youngs_modulus), present(m.poisson))
 
 

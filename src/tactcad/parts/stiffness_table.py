@@ -110,7 +110,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
         1e3 * force * plate.supported(),
         *pads_plane(design),
         ("clamp.end_plate_thickness", "tolerance.pad_height", origin),
-        "flag",  # nothing is measured during an overload, and the stop's gap does not hang on the end plates
+        "flag",  # nothing is measured during an overload, and the stop's gap is independent of the end plates
     )
     stack = seating.stack_beam(layout)
     yield Deflection(
@@ -153,7 +153,7 @@ def array_lines(design: Design) -> Iterator[Deflection]:
 
 def _stop_lines(layout: Layout) -> Iterator[Deflection]:
     """What bends between arm and stop, under the arm that has least room for it."""
-    from .stop_gap import stop_limit  # numpy, which the rigs' lines do without
+    from .stop_gap import stop_limit  # numpy, which the rigs' lines do not need
 
     held = carrier_beam(layout, 2 * layout.end_plate_y).supported()
     force_field = "rating.overload_force"

@@ -215,6 +215,6 @@ def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
 
 
 def _mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
-    """A draft's README says so, a release's does not."""
+    """A draft's README says that it is one, a release's does not."""
     if (DRAFT in files[README].decode().splitlines()) != contents.draft:
         yield f"{README}: {'does not say' if contents.draft else 'says'} that it is a draft"

@@ -71,7 +71,7 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
     _carrier_screws(b, layout)
     if stops:
         _stop_plate(b, layout, on_ledge)
-    b.placed_in[STACK].reverse()  # it grows from the second end plate
+    b.placed_in[STACK].reverse()  # built up from the second end plate
     return b
 
 
@@ -174,8 +174,9 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
 
 
 def _steps(layout: Layout) -> tuple[Step, ...]:
-    """How the array is put together and its pads are made coplanar, in order; what each step places is not
-    in yet."""
+    """Steps that put the array together and make its pads coplanar, in order, without the parts that they
+    place.
+    """
     d = layout.design
     gap, stack = 2 * layout.pad_inner, layout.stack
     width = stack + 2 * d.clamp.end_plate_thickness

@@ -91,7 +91,7 @@ class Builder:
         return name
 
     def subassembly(self, scene: Scene, rotation: Rotation, shift: Vector) -> None:
-        """Everything of another scene, turned and moved; its designators stay."""
+        """Everything of another scene, turned and moved; its designators are kept."""
         for p in scene.placements:
             turned = turn(
                 (sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
@@ -111,7 +111,7 @@ class Builder:
         bench: bool = False,
         aside: tuple[str, ...] = (),
     ) -> None:
-        """Close a step: it takes what was placed since the one before; a subassembly's parts are ready."""
+        """Close a step: it takes what was placed since the step before; parts of a subassembly are ready."""
         names = tuple(p.designator for p in self.placements[self._stepped :])
         self._stepped = len(self.placements)
         self.steps.append(

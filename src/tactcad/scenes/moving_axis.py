@@ -38,7 +38,7 @@ from .scene import ALONG_Y, UPRIGHT, Rotation, Scene
 
 ALONG_RAIL: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # carriage: local y out of the rail, z along it
 PIN_SCREW = ("M4", 10.0)
-NEWTON = STANDARD_GRAVITY * 1e-3  # weight of a gram
+NEWTON = STANDARD_GRAVITY * 1e-3  # N, weight of a gram
 # A thinner disc is not turned flat (chosen); a longer pin, in steps of 5 mm, bends under the tool: 12
 # diameters.
 LEAST_BALLAST = 0.5
@@ -110,7 +110,7 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     over = max(layout.ledge_of(p.hinge) - p.hinge.h for p in layout.elements)
     land = over * (d.stop.land_length + over) * d.sheet.thickness * d.material.density * 1e-6
     light = heavy - land * len(layout.elements)
-    grams = 1.0 / ballast_thickness(rig, 1.0)  # of a millimetre of disc
+    grams = 1.0 / ballast_thickness(rig, 1.0)  # mass of a millimetre of disc, g
     stack = rig.grasping.weights * rigs.disc_weight(rig).extrusion.thickness
     longest = rigs.pin(rig, LONGEST_PIN - 1.0 - stack).mass
     most = light + (LONGEST_PIN - 1.0 - stack) * grams

@@ -1,7 +1,7 @@
 """Shapes as bytes and back, for caches: the kernel's own text format (BREP).
 
 The text drops the sign of zero, so a shape that went through it may give other bytes in a STEP file than the
-one just built: whoever wants equal files takes both from the text.
+one just built: for equal files both must be taken from the text.
 """
 
 from __future__ import annotations

@@ -15,8 +15,9 @@ from .guide_layout import GuideLayout
 
 
 def ballast(rig: GuideLayout, mass: float) -> Part:
-    """Disc under the weights that brings the moving mass to the paper's; `mass` in g, thickness to 0.01
-    mm."""
+    """Disc under the weights that brings the moving mass to the design's; `mass` in g, thickness to 0.01
+    mm.
+    """
     outer, bore = _disc(rig)
     thickness = round(ballast_thickness(rig, mass), 2)
     return Part(

@@ -36,7 +36,7 @@ class CalibrationLoad:
 
 def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     """Every element, by number."""
-    from tactcad.mechanics import ladder, strength  # numpy: only checks and guides ask for this
+    from tactcad.mechanics import ladder, strength  # numpy, which only checks and guides need
 
     from ..hinge_section import design_alloy, hinge_section
 

@@ -28,7 +28,7 @@ def sample(rig: CartLayout, dents: tuple[tuple[float, float], ...] = (), depth: 
     number = f"SAMPLE-{rig.sample.side:g}x{rig.sample.side:g}x{t:g}-rubber"
     if (
         pressed
-    ):  # one pad and the force gauge's tip dent it alike, in different places: the first tells them all
+    ):  # one pad and the force gauge's tip make equal dents in different places: the first one stands for all
         x, y = dents[0]
         number += f"-pressed-{len(pockets)}x{depth:g}mm-at-{x + 0.0:g}x{y + 0.0:g}"
     return Part(

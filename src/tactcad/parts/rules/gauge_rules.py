@@ -93,7 +93,7 @@ def leads_have_room(layout: Layout) -> Iterator[Finding]:
             f"at least {LEAD * rows:g} mm, and a pitch of {LEAD:g} mm or more",
         )
     out, room = gauge_stands_out(layout), gauge_room(layout)
-    if LEAST_GAP - SAME <= room:  # still less is another rule's
+    if LEAST_GAP - SAME <= room:  # less than that breaks another rule
         yield from at_least(
             "element.pad_height",
             "the object would touch gauge and leads before the pad",

@@ -93,7 +93,8 @@ def pressed_arms_clear_opposite_row(layout: Layout) -> Iterator[Finding]:
         )
 
 
-# Which field makes a piece of the contour short; what is not named here lies between holes.web and the body's
+# The field that makes a piece of the contour short; pieces not named here lie between holes.web and the
+# body's
 # heights.
 _FIELD = {
     "pad_face": "element.pad_length",
