@@ -84,8 +84,8 @@ def all_written(
     cores = min(len(os.sched_getaffinity(0)), len(orders))
     # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called
     # serial).
-    # Even a single drawing has a process of its own: the kernel would block this one, and no progress could be
-    # shown.
+    # Even a single drawing has a process of its own: the kernel would block this one, and nothing could be
+    # shown meanwhile.
     with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
         futures = [pool.submit(make, order) for order in orders]
         try:
