@@ -24,11 +24,13 @@ DENSE = 16  # places searched for a peak or an end, for each point at which the 
 class FaceStrain:
     """Strain and stress per newton at points along one face, in the order of the face.
 
-    along        length along the face from its end at the body, mm x            from the hinge's centre
-    towards the arm, mm strain       tangential, 1/N; positive in tension, for a force that bends this face
-    convex stress       tangential, MPa/N: the largest principal stress; the others are at most half of it, so
-    that it is Tresca's too  The points are Gauss points, where the elements' strains are most accurate;
-    between them cubic splines.
+    along        length along the face from its end at the body, mm
+    x            from the hinge's centre towards the arm, mm
+    strain       tangential, 1/N; positive in tension, for a force that bends this face convex
+    stress       tangential, MPa/N: the largest principal stress; as the others are at most half
+                 of it, it is Tresca's too
+
+    The points are Gauss points, where the elements' strains are most accurate; between them cubic splines.
     """
 
     along: Array
