@@ -4,6 +4,8 @@ squares.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import binom
@@ -337,6 +339,14 @@ def test_the_load_cell_s_limits_reach_the_object():
     found = grasp.evaluate(grasped(3.85, 1e-5), known)
     assert found.combined.low <= 3.85 <= found.combined.high
     assert not found.combined_by_noise.low <= 3.85 <= found.combined_by_noise.high
+
+
+@pytest.mark.parametrize("half_width", [CELL, 2 * CELL, CELL - 1.0])
+def test_limits_that_leave_the_load_cell_no_stiffness_are_refused(half_width):
+    """Nothing, less than nothing, and less than what gave way with it."""
+    given = dict(load_cell=np.full(4, CELL), load_cell_half_width=np.full(4, half_width))
+    with pytest.raises(InputError, match="softest load cell within its limits"):
+        replace(exact(), **given).at_load_cell_limit(-1.0)
 
 
 def test_signals_without_size_are_refused():

@@ -34,14 +34,15 @@ class Sensitivity:
         cell = self.load_cell + sign * self.load_cell_half_width
         old = 1 / (1 + self.stiffness / self.load_cell)  # 1 - k/K_c, as k = K K_c/(K + K_c)
         k, v = self.stiffness * old, self.signal_per_deflection * old
-        new = 1 - k / cell
-        if not (new > 0).all():
+        soft = cell <= k
+        if soft.any():
             raise InputError(
                 self.path,
                 "the softest load cell within its limits is no stiffer than cell and element together",
-                value=float(cell[new <= 0][0]),
-                legal=f"above {float(k[new <= 0].max()):.4g} N/mm",
+                value=float(cell[soft][0]),
+                legal=f"above {float(k[soft].max()):.4g} N/mm",
             )
+        new = 1 - k / cell
         return replace(
             self,
             stiffness=k / new,
