@@ -45,6 +45,7 @@ def keeps_its_promise(s, wanted, mesh):
         reference_shape(s), float(s.youngs_modulus), float(s.poisson), float(s.width), mesh=mesh
     )
     error = abs(answer.stiffness / truth.stiffness - 1.0)
+    print(answer.model, f"{error:.3g} of {answer.expected_error:g}")
     assert error <= answer.expected_error <= wanted, (answer.model, error)
 
 

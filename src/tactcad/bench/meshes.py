@@ -193,8 +193,8 @@ def _ccx_plane(density: int, folder: Path, shape: ElementShape, nu: float, width
 
 
 def _ccx_solid(density: int, folder: Path, shape: ElementShape, nu: float, width: float) -> Answer:
-    stiffness = calculix.solid_stiffness(plane_mesh(shape, density), 1.0, nu, width, 1, folder)
-    return stiffness, 3 * _nodes(folder / "solid.inp")
+    solution = calculix.solve_solid(plane_mesh(shape, density), 1.0, nu, width, 1, folder)
+    return solution.stiffness, solution.unknowns
 
 
 def _nodes(path: Path) -> int:

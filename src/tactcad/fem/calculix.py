@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from .mapped_mesh import PlaneMesh, merged
 from .plane_elements import parabola
-from .space import AcrossSpace, line_load
+from .solid_elements import SolidSolution
+from .space import AcrossSpace, PlaneSpace, line_load
 
 Array = NDArray[np.float64]
 
@@ -47,24 +48,11 @@ def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
     return force
 
 
-def write_solid(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, path: Path) -> Array:
-    """Input file of the solid problem, 20-node bricks on half the width; returns nodal forces (nodes, 3)."""
-    bricks = _swept(mesh, AcrossSpace.of(mesh, width / 2.0, across, 2))
-    points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
-    flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
-    cells = _turned(points, cells, flipped)
-    force = np.zeros_like(points)
-    for face, share in _end_faces(points, cells, mesh, width):
-        np.add.at(force[:, 1], face, share)
-    _write(path, points, cells, "C3D20", "", E, nu, _supports(points, mesh, 3), force)
-    return force
-
-
-def run(path: Path, force: Array) -> float:
-    """Solve the input file; work-conjugate displacement f.u of the forces, mm."""
+def run(path: Path, shape: tuple[int, int]) -> Array:
+    """Displacements (nodes, directions) of that shape of the solved input file, mm."""
     job = path.with_suffix("")
     subprocess.run([executable() or "ccx", "-i", job.name], cwd=path.parent, check=True, capture_output=True)
-    return float(np.sum(force * _displacements(job.with_suffix(".dat"), force.shape)))
+    return _displacements(job.with_suffix(".dat"), shape)
 
 
 def plane_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, folder: Path) -> float:
@@ -82,11 +70,17 @@ def plane_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, folder: 
         Existing folder for CalculiX's files.
     """
     force = write_plane(mesh, E, nu, folder / "plane.inp")
-    return width / THIN / ((2.0 if mesh.half else 1.0) * run(folder / "plane.inp", force))
+    moved = np.sum(force * run(folder / "plane.inp", force.shape))
+    return width / THIN / ((2.0 if mesh.half else 1.0) * float(moved))
 
 
-def solid_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, across: int, folder: Path) -> float:
-    """Tip stiffness by CalculiX's 20-node bricks C3D20, N/mm.
+def solve_solid(
+    mesh: PlaneMesh, E: float, nu: float, width: float, across: int, folder: Path, element: str = "C3D20"
+) -> SolidSolution:
+    """The solid problem by CalculiX's 20-node bricks on half the width.
+
+    The solution's places across are where bricks end. In the middle of a brick's face there is no node:
+    displacements are NaN there.
 
     Parameters
     ----------
@@ -100,9 +94,28 @@ def solid_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, across: 
         Density of the mesh over half the width.
     folder
         Existing folder for CalculiX's files.
+    element
+        C3D20, or C3D20R, which integrates at fewer points.
     """
-    force = write_solid(mesh, E, nu, width, across, folder / "solid.inp")
-    return 1.0 / ((4.0 if mesh.half else 2.0) * run(folder / "solid.inp", force))
+    sideways = AcrossSpace.of(mesh, width / 2.0, across, 2)
+    bricks = _swept(mesh, sideways)
+    points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
+    flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
+    turned = _turned(points, cells, flipped)
+    force = np.zeros_like(points)
+    for face, share in _end_faces(points, turned, mesh, width):
+        np.add.at(force[:, 1], face, share)
+    _write(folder / "solid.inp", points, turned, element, "", E, nu, _supports(points, mesh, 3), force)
+    u = run(folder / "solid.inp", force.shape)
+    space, ends = PlaneSpace.of(mesh), sideways.nodes[::2]
+    moved = np.full((3, space.nodes.shape[1], len(ends)), np.nan)
+    layers = cells.reshape(len(ends) - 1, len(mesh.cells), len(_BRICK))
+    for i, (a, b, w) in enumerate(_BRICK):
+        if w != 1:
+            for k, layer in enumerate(layers):
+                moved[:, space.elements[:, a, b], k + w // 2] = u[layer[:, i]].T
+    compliance = (4.0 if mesh.half else 2.0) * float(np.sum(force * u))
+    return SolidSolution(compliance, moved, space, AcrossSpace(ends, 2), mesh, u.size, E, nu)
 
 
 def _swept(mesh: PlaneMesh, across: AcrossSpace) -> Array:

@@ -8,6 +8,7 @@ import platform
 import time
 from collections.abc import Callable
 from datetime import date
+from itertools import product
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from tactcad.mechanics.register import REGISTER
 from tactcad.mechanics.section import Array, HingeSection
 
 from .accuracy_samples import SECONDS, SEED, with_width_factor
-from .corner_samples import DRAWS
+from .corner_samples import DEEP_NARROW, DRAWS, NARROW
 from .fit import NEXT_TO_NONE
 from .fit_samples import Columns, joined, section
 
@@ -26,16 +27,15 @@ from .fit_samples import Columns, joined, section
 # more so the fewer were measured. The closed forms are fitted to least eighth powers, corners included, so
 # that many designs have errors near the largest.
 MARGIN, MARGIN_OF_FEW, FEW = 1.4, 2.5, 60
-# Below l/t = 0.5 the hinge is so short that its two roots act as one; from 2 on they are independent. A leaf
-# much longer than wide curls over its whole width.
-NARROW = 0.7
+# Below l/t = 0.5 the hinge is so short that its two roots act as one; from 2 on they are independent.
 DEEP = 4.0  # fillets over hinge thickness: where they reach through arm or body, few were solved
 ZONES: tuple[dict[str, list[float | None]], ...] = (
     {"b/l": [NARROW, None], "l/t": [0.0, NEXT_TO_NONE]},
     {"b/l": [NARROW, None], "l/t": [NEXT_TO_NONE, 2.0]},
     {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [0.0, DEEP]},
     {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [DEEP, None]},
-    {"b/l": [0.0, NARROW]},
+    {"b/l": [0.0, NARROW], "r/t": [0.0, DEEP_NARROW]},
+    {"b/l": [0.0, NARROW], "r/t": [DEEP_NARROW, None]},
 )
 TIMED = 10_000  # designs in the table that closed forms are timed on
 REFERENCE = (
@@ -63,9 +63,11 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
     errors = candidate_errors(columns, ladder_data)
     groups, two_sided = validity.groups(section(columns)), columns["two_sided"] == 1.0
     zones = []
-    for zone in ({"sides": sides, "bounds": bounds} for sides in ("two", "one") for bounds in ZONES):
-        narrow = "l/t" not in zone["bounds"]  # too few to tell the notch forms apart
-        inside = groups["b/l"] < NARROW if narrow else accuracy.in_zone(zone, groups, two_sided)
+    for sides, bounds in product(("two", "one"), ZONES):
+        zone = {"sides": sides, "bounds": bounds}
+        narrow = bounds["b/l"][0] == 0.0  # too few to tell the notch forms apart
+        form = np.full_like(two_sided, sides == "two") if narrow else two_sided
+        inside = accuracy.in_zone(zone, groups, form)
         zones.append(zone | _measured(columns, errors, inside, clock))
     return {
         "reference": REFERENCE,
@@ -76,7 +78,7 @@ def accuracy_table(samples: dict[str, Columns], ladder_data: dict, today: date) 
         f"{os.cpu_count()} cores, one used",
         "samples": {name: len(c["poisson"]) for name, c in samples.items()}
         | {"seed of range": SEED}
-        | {f"seeds of {name}": [seed for *_, seed in draws] for name, draws in DRAWS.items()},
+        | {f"seeds of {name}": [draw.seed for draw in draws] for name, draws in DRAWS.items()},
         "seconds a call": {c.name: clock.get(c.name, (0.0, 0.0))[0] for c in CANDIDATES},
         "zones": zones,
     }

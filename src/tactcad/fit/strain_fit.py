@@ -17,8 +17,9 @@ import numpy as np
 from tactcad.mechanics import strain, strain_errors, validity
 from tactcad.mechanics.section import HingeSection
 
-from .fit_samples import Columns, load, section
-from .strain_samples import GRIDS, SEED
+from . import corner_samples
+from .fit_samples import Columns, joined, load, section
+from .strain_samples import FILES, GRIDS, SEED
 
 Array = np.ndarray
 
@@ -26,7 +27,8 @@ Array = np.ndarray
 # leaf between them.
 NARROW, SHORT = 1.5, 1.0
 ZONES: tuple[dict[str, list[float | None]], ...] = (
-    {"b/l": [0.0, NARROW]},
+    {"b/l": [0.0, corner_samples.NARROW]},
+    {"b/l": [corner_samples.NARROW, NARROW]},
     {"b/l": [NARROW, None], "l/t": [0.0, SHORT]},
     {"b/l": [NARROW, None], "l/t": [SHORT, None]},
 )
@@ -34,23 +36,25 @@ MARGIN = 2.0  # stated error over the largest measured one: zones have few desig
 RIDGE = 1e-3  # share of the mean square: keeps coefficients small that few samples do not determine
 
 
-def shipped_samples() -> Columns:
-    """The sample that comes with the program."""
-    return load(resources.files(__package__) / "data" / "strain-samples.csv")
+def shipped_samples() -> dict[str, Columns]:
+    """The samples that come with the program."""
+    folder = resources.files(__package__) / "data"
+    return {kind: load(folder / name) for kind, name in FILES.items()}
 
 
-def fit(columns: Columns) -> dict:
-    """The contents of data/strain.json from samples as strain_samples.compute gives them."""
-    solved = np.isfinite(columns["solid_fillet_stress"])
-    # the range of solid has changed since they were drawn
-    reached = validity.reasons(section(columns), "solid") == ""
-    rows = {name: values[solved & reached] for name, values in columns.items()}
+def fit(samples: dict[str, Columns]) -> dict:
+    """The contents of data/strain.json from samples (as strain_samples.FILES names them): fitted on the first
+    kind, errors measured on all."""
+    known = {kind: _known(columns) for kind, columns in samples.items()}
+    rows = known["fitted"]
     s = section(rows)
     share = {}
     for side, flag in strain_errors.SIDES.items():
         own = np.flatnonzero(s.two_sided == flag)
         measured = (rows["solid_fillet_stress"] / strain.stress_beyond_the_fit(s, 1.0))[own]
         share[side] = _fitted(s.rows(own), measured)
+    rows = joined(list(known.values()))
+    s = section(rows)
     errors = _errors(rows, s, share)
     zones = []
     for side, flag in strain_errors.SIDES.items():
@@ -58,6 +62,14 @@ def fit(columns: Columns) -> dict:
             own = strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
             zones.append({"sides": side, "bounds": bounds} | _measured(errors, own))
     return {"seed": SEED, "designs": len(s.two_sided), "mid-width share": share, "zones": zones}
+
+
+def _known(columns: Columns) -> Columns:
+    """Those that solids were solved for, inside the range of rung solid, which may end elsewhere since they
+    were drawn."""
+    solved = np.isfinite(columns["solid_fillet_stress"])
+    reached = validity.reasons(section(columns), "solid") == ""
+    return {name: values[solved & reached] for name, values in columns.items()}
 
 
 def _fitted(s: HingeSection, measured: Array) -> dict[str, list[float]]:

@@ -21,9 +21,12 @@ from tactcad.mechanics.constants import ladder_data
 from tactcad.mechanics.section import HingeSection
 
 from .accuracy_samples import LONGEST_BODY, THICKNESS, design
+from .corner_samples import draw_all
 from .fit_samples import FULL_ROUND_SHARE, Columns, as_written, draw_edges, joined, section, write
 
 SEED, COUNT = 20261122, 900
+NARROW = "narrow held out"  # designs of corner_samples that errors are measured on, and nothing is fitted
+FILES = {"fitted": "strain-samples.csv", NARROW: "strain-narrow-heldout.csv"}
 END_SHARE = 0.5  # of a corner design's groups stand at an end of their range
 # Grid lengths that are read, in lengths of the slot (one-sided) or of its flat part and one fillet (two-
 # sided).
@@ -103,11 +106,9 @@ def _named(model: str, strains: SurfaceReadings) -> dict[str, float]:
     return {f"{model}_{name}": float(getattr(strains, name)) for name in NAMES} | gauges
 
 
-def compute(count: int) -> Columns:
-    """The first `count` of COUNT designs with elements' results beside their parameters, NaN where there is
-    none."""
-    columns = {name: values[:count] for name, values in draw(COUNT).items()}
-    s = section(columns)
+def compute(columns: Columns) -> Columns:
+    """Designs with elements' results beside their parameters, NaN where there is none."""
+    s, count = section(columns), len(columns["two_sided"])
     computed = {name: np.full(count, math.nan) for name in COLUMNS}
     for i in range(count):
         for name, value in results(s.rows(i)).items():
@@ -116,4 +117,7 @@ def compute(count: int) -> Columns:
 
 
 if __name__ == "__main__":
-    write(compute(int(sys.argv[2])), Path(sys.argv[1]))
+    folder, first = Path(sys.argv[1]), int(sys.argv[2])
+    drawn = {"fitted": {name: values[:first] for name, values in draw().items()}, NARROW: draw_all(NARROW)}
+    for kind, designs in drawn.items():
+        write(compute(designs), folder / FILES[kind])

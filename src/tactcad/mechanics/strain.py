@@ -173,7 +173,9 @@ def width_reduction(s: HingeSection, rung: str, at: str) -> Array | float:
     """
     if "width" not in BY_NAME[rung].fitted:
         return 1.0
-    return ladder.compliance(s, rung) / ladder.compliance(s, "plane") * mid_width(s, at)
+    # a leaf longer than wide curls no more than one as long as wide, up to which the polynomial was fitted
+    curled = s.with_(hinge_length=np.minimum(s.hinge_length, s.width))
+    return ladder.compliance(s, rung) / ladder.compliance(s, "plane") * mid_width(curled, at)
 
 
 def mid_width(s: HingeSection, at: str, k: Constants | None = None) -> Array:
