@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
 import tomllib
 from html.parser import HTMLParser
 from math import dist
@@ -193,3 +195,12 @@ def assert_offline(text: str) -> None:
     Reader().feed(text)
     assert all(address.startswith("data:image/svg+xml;base64,") for address in addresses)
     assert "url(" not in text and "@import" not in text
+
+
+def test_a_page_of_designs_whose_names_are_no_text(tmp_path):
+    """Names of files are bytes: what is no UTF-8 in them is shown as escapes."""
+    mine = Path(os.fsdecode(bytes(tmp_path) + b"/a\xff.toml"))
+    shutil.copy(ROOT / "hardware" / "macro-array.toml", mine)
+    page = tmp_path / "page.html"
+    assert main(["diff", str(mine), "soft-tissue", "--html", str(page)]) == 0
+    assert "a\\udcff.toml" in page.read_text("utf-8")

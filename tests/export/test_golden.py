@@ -199,6 +199,15 @@ def test_only_a_design_in_a_hardware_folder_has_one(tmp_path):
     assert there == (tmp_path / "exports" / "golden" / "macro-array.json").resolve()
 
 
+def test_a_link_in_a_hardware_folder_has_one(tmp_path):
+    """By the name that was given: a release asks there."""
+    (tmp_path / "hardware").mkdir()
+    (tmp_path / "x.toml").touch()
+    (tmp_path / "hardware" / "x.toml").symlink_to("../x.toml")
+    golden = tmp_path / "exports" / "golden" / "macro-array.json"
+    assert golden_path(tmp_path / "hardware" / "x.toml", read("macro-array")) == golden
+
+
 def test_accept_writes_a_new_revision_and_refuses_the_rest(tmp_path):
     path = tmp_path / "exports" / "golden" / "macro-array.json"
     design = load("macro-array")

@@ -3,16 +3,20 @@ comes."""
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
 import sys
+import tempfile
+import tracemalloc
 from pathlib import Path
 
 import pytest
 
-from tactcad.design.files import scratch_folder, whole_file, write_whole
+from tactcad.design.files import read_bytes, scratch_folder, whole_file, write_whole
 from tactcad.design.held import MARK, held_folder, sweep_folders
+from tactcad.design.messages import InputError
 
 KILLED = """
 import os, signal, sys, tempfile
@@ -115,3 +119,36 @@ def test_the_part_of_another_file_stays(tmp_path):
     assert other.exists()
     write_whole(tmp_path / "a.b", b"x")
     assert not other.exists()
+
+
+def test_a_write_protected_file_is_kept_and_another_keeps_its_permissions(tmp_path):
+    mine = tmp_path / "mine.csv"
+    mine.write_text("mine")
+    mine.chmod(0o444)
+    with pytest.raises(InputError, match="is write-protected; nothing was changed"):
+        write_whole(mine, b"ours")
+    assert mine.read_text() == "mine" and mine.stat().st_mode & 0o777 == 0o444
+    mine.chmod(0o600)
+    write_whole(mine, b"ours")
+    assert mine.read_text() == "ours" and mine.stat().st_mode & 0o777 == 0o600
+
+
+def test_no_temporary_folder_at_all(monkeypatch):
+    def nowhere():
+        raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found")
+
+    monkeypatch.setattr(tempfile, "gettempdir", nowhere)
+    with (
+        pytest.raises(InputError, match="^temporary folder: cannot be written: No usable"),
+        scratch_folder("x"),
+    ):
+        pass
+
+
+def test_a_small_file_takes_little_memory_whatever_it_may_be_at_most(tmp_path):
+    (tmp_path / "small").write_bytes(bytes(60_000))
+    tracemalloc.start()
+    assert len(read_bytes(tmp_path / "small", 1_000_000_000, "a file")) == 60_000
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 5_000_000

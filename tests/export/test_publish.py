@@ -3,6 +3,7 @@ refuses."""
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import random
@@ -535,6 +536,31 @@ def test_an_export_inside_an_export_is_refused(tmp_path):
 def test_the_root_folder_is_refused():
     with pytest.raises(InputError, match="cannot be replaced"):
         publish.looked_at("/", SCHEMA)
+
+
+def test_a_mount_point_is_refused_before_anything_is_made(tmp_path, monkeypatch):
+    export(tmp_path / "macro", "a")
+    monkeypatch.setattr(os.path, "ismount", lambda path: Path(path) == tmp_path / "macro")
+    with pytest.raises(InputError, match="is a mount point"):
+        publish.looked_at(tmp_path / "macro", SCHEMA)
+    assert whole(tmp_path / "macro") == "a"
+
+
+def test_a_folder_that_cannot_be_read_is_nobodys_to_remove(tmp_path, monkeypatch):
+    """What lies in it is not missing: it may be anybody's."""
+    export(tmp_path / "macro", "a")
+    scan = os.scandir
+
+    def of_others(folder):
+        if Path(folder).name == "sub":
+            raise PermissionError(errno.EACCES, "Permission denied", str(folder))
+        return scan(folder)
+
+    monkeypatch.setattr(os, "scandir", of_others)
+    with pytest.raises(InputError, match=r"Permission denied \(.*macro/sub\); nothing was changed"):
+        export(tmp_path / "macro", "b")
+    monkeypatch.undo()
+    assert whole(tmp_path / "macro") == "a"
 
 
 @pytest.mark.parametrize(

@@ -13,12 +13,15 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import islice
 from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
 from .held import held_file, held_folder, sweep_folders
 from .messages import CheckFailure, InputError, hidden, shortened
+
+PIECE = 1 << 20  # bytes read at once
 
 # refusals of the operating system, not mistakes of ours: answered by one line instead of a traceback
 NO_ROOM = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}
@@ -66,8 +69,10 @@ def read_bytes(path: str | Path, most_bytes: int, kind: str) -> bytes:
             state = os.fstat(handle)
             if not stat.S_ISREG(state.st_mode):
                 raise InputError(shown, "cannot be read: not a file", legal=kind)
-            # a file may say less than it gives, as those of /proc do
-            data = stream.read(most_bytes + 1) if state.st_size <= most_bytes else None
+            # a file may say less than it gives, as those of /proc do; never more memory than it takes
+            pieces = iter(lambda: stream.read(PIECE), b"")
+            some = state.st_size <= most_bytes
+            data = b"".join(islice(pieces, most_bytes // PIECE + 2)) if some else None
     except (FileNotFoundError, NotADirectoryError):
         raise InputError(shown, "cannot be read: no such file", legal=kind) from None
     except IsADirectoryError:
@@ -179,9 +184,9 @@ def write_whole(path: str | Path, data: bytes) -> None:
 def whole_file(path: str | Path) -> Iterator[Path]:
     """A file to write beside `path`: flushed and renamed over it when the block ends well, otherwise removed.
 
-    A link is followed; its folder must exist. What killed runs left there is removed first. Raises InputError
-    where the place cannot be written to, CheckFailure where there is no room; what was there before is then
-    unchanged.
+    A link is followed; its folder must exist. What killed runs left there is removed first. A file that is
+    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where the place
+    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged.
     """
     try:
         place = Path(os.path.realpath(path))
@@ -189,10 +194,19 @@ def whole_file(path: str | Path) -> Iterator[Path]:
             raise InputError(
                 str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
             )
+        mode = 0o666 & ~_umask()
+        if place.is_file():
+            mode = stat.S_IMODE(place.stat().st_mode)
+            if not mode & stat.S_IWUSR:
+                raise InputError(
+                    str(path),
+                    "is write-protected; nothing was changed",
+                    legal="a new name, or make it writable",
+                )
         with held_file(place) as part:
             yield part
             flush_entry(part)
-            part.chmod(0o666 & ~_umask())
+            part.chmod(mode)
             part.replace(place)
             flush_entry(place.parent)
     except OSError as error:
@@ -214,9 +228,10 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
 
     Raises as `whole_file` does.
     """
-    parent = absolute(tempfile.gettempdir())
     stem = f"tactcad-{purpose}"
+    parent = Path("temporary folder")
     try:
+        parent = absolute(tempfile.gettempdir())
         sweep_folders(parent, stem)
         with held_folder(parent, stem) as folder:
             yield folder

@@ -17,7 +17,7 @@ import stat
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, NoReturn
 
 from tactcad.design.files import read_bytes
 from tactcad.design.messages import InputError
@@ -101,8 +101,15 @@ def _fault(entry: Path, state: State, sha256: str | None) -> str:
 
 
 def _entries(folder: Path) -> Iterator[str]:
-    """The folder (".") and all below it by path, a folder before what it holds; links are not followed."""
-    for base, folders, files in os.walk(folder):
+    """The folder (".") and all below it by path, a folder before what it holds; links are not followed.
+
+    Raises OSError where a folder cannot be read: nobody knows what it holds.
+    """
+
+    def unreadable(error: OSError) -> NoReturn:
+        raise error
+
+    for base, folders, files in os.walk(folder, onerror=unreadable):
         folders.sort()
         inside = os.path.relpath(base, folder)
         yield Path(inside).as_posix()

@@ -63,7 +63,7 @@ def page(old: Side, new: Side, changes: Sequence[Change]) -> bytes:
         f"<title>{escape(new.design)}: {escape(old.revision)} to {escape(new.revision)}</title>"
         f"<style>{STYLE}</style></head><body><main>\n" + "\n".join(body) + "\n</main></body></html>\n"
     )
-    return text.encode()
+    return text.encode(errors="backslashreplace")  # names of files are bytes, whatever they mean
 
 
 def _name(side: Side) -> str:

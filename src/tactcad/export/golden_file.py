@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from tactcad.design.files import make_folder, read_json, write_whole
+from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
@@ -27,9 +27,12 @@ MOST_BYTES = 50_000_000  # the largest array, 2 x 500, takes under one
 
 
 def golden_path(design_file: Path, design: Design) -> Path | None:
-    """Where the golden file of a design file belongs; None where the design stands in no hardware/."""
-    folder = design_file.resolve().parent
-    return folder.parent / "exports" / "golden" / f"{design.name}.json" if folder.name == "hardware" else None
+    """Where the golden file of a design file belongs; None where the design stands in no hardware/, neither
+    by the name given nor by where links lead."""
+    for folder in (absolute(design_file).parent, design_file.resolve().parent):
+        if folder.name == "hardware":
+            return folder.parent / "exports" / "golden" / f"{design.name}.json"
+    return None
 
 
 def golden_record(design: Design) -> Record:

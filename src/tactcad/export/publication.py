@@ -81,6 +81,8 @@ def _refuse_place(out: Path) -> None:
         raise InputError(str(out), "is a link", legal=f"the folder that it leads to, or {LEGAL}")
     if os.path.lexists(out) and not out.is_dir():
         raise InputError(str(out), "is a file", legal=LEGAL)
+    if os.path.ismount(out):
+        raise InputError(str(out), "is a mount point, which cannot be replaced", legal=LEGAL)
     for folder in Path(os.path.realpath(out)).parents:
         if _says_tactcad(folder / NAME):
             raise InputError(str(out), f"lies inside {folder}, which tactcad wrote", legal=LEGAL)

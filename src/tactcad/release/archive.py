@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import os
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from tactcad.design.messages import InputError
 from tactcad.export.contents import sha256_of
 
 MANIFEST = "MANIFEST.sha256"
@@ -30,6 +32,18 @@ def archive_bytes(files: Mapping[str, bytes], date: str) -> bytes:
             entry.create_system, entry.external_attr = UNIX, MODE << 16
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED, 9)
     return out.getvalue()
+
+
+def refuse_what_is_no_zip(target: Path) -> None:
+    """Raise InputError where the place of a new zip holds a link, or anything else that is no zip."""
+    if target.is_symlink():
+        raise InputError(
+            str(target), "is a link; nothing was changed", legal="a zip to replace, or a new place"
+        )
+    if os.path.lexists(target) and not zipfile.is_zipfile(target):
+        raise InputError(
+            str(target), "is no zip; nothing was changed", legal="a zip to replace, or a new place"
+        )
 
 
 def replaced_content(target: Path, new: bytes) -> list[str]:

@@ -15,7 +15,7 @@ from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import ExportOptions, Progress, export
 from tactcad.scenes import make_scene, scene_names
 
-from .archive import archive_bytes, replaced_content
+from .archive import archive_bytes, refuse_what_is_no_zip, replaced_content
 from .readme import MARK, ReleaseContents, readme_bytes
 from .verify import README, check_archive
 
@@ -72,11 +72,12 @@ def release(
         With nothing written and an older zip as it was, where a check fails, the golden file does not hold
         just this revision, or what was written does not read back.
     InputError
-        Where `out` cannot be written.
+        Where `out` cannot be written, or the zip's place is taken by what is none.
     """
     revision = design.design.revision
     target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
     refuse_overwriting(target, design_file, shop_file)
+    refuse_what_is_no_zip(target)
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
     _refuse(design, failures, draft, progress)
