@@ -19,7 +19,7 @@ from tactcad.mechanics.register import REGISTER
 from tactcad.mechanics.section import Array, HingeSection
 
 from .accuracy_samples import SECONDS, SEED, with_width_factor
-from .corner_samples import DEEP_NARROW, DRAWS, NARROW
+from .corner_samples import DEEP, DRAWS, LESS_NARROW, NARROW
 from .fit import NEXT_TO_NONE
 from .fit_samples import Columns, joined, section
 
@@ -28,14 +28,14 @@ from .fit_samples import Columns, joined, section
 # that many designs have errors near the largest.
 MARGIN, MARGIN_OF_FEW, FEW = 1.4, 2.5, 60
 # Below l/t = 0.5 the hinge is so short that its two roots act as one; from 2 on they are independent.
-DEEP = 4.0  # fillets over hinge thickness: where they reach through arm or body, few were solved
 ZONES: tuple[dict[str, list[float | None]], ...] = (
     {"b/l": [NARROW, None], "l/t": [0.0, NEXT_TO_NONE]},
     {"b/l": [NARROW, None], "l/t": [NEXT_TO_NONE, 2.0]},
     {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [0.0, DEEP]},
-    {"b/l": [NARROW, None], "l/t": [2.0, None], "r/t": [DEEP, None]},
-    {"b/l": [0.0, NARROW], "r/t": [0.0, DEEP_NARROW]},
-    {"b/l": [0.0, NARROW], "r/t": [DEEP_NARROW, None]},
+    {"b/l": [LESS_NARROW, None], "l/t": [2.0, None], "r/t": [DEEP, None]},
+    {"b/l": [NARROW, LESS_NARROW], "l/t": [2.0, None], "r/t": [DEEP, None]},
+    {"b/l": [0.0, NARROW], "r/t": [0.0, DEEP]},
+    {"b/l": [0.0, NARROW], "r/t": [DEEP, None]},
 )
 TIMED = 10_000  # designs in the table that closed forms are timed on
 REFERENCE = (

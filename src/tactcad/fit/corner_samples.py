@@ -23,7 +23,8 @@ from .accuracy_samples import LONGEST_BODY, THICKNESS
 from .fit_samples import Columns, as_written, joined, section
 
 # b/l under which a leaf, much longer than wide, curls over all of its width, and r/t from which fillets do.
-NARROW, DEEP_NARROW = 0.7, 2.0
+# From the second b/l on it does so no more, whatever its fillets.
+NARROW, LESS_NARROW, DEEP = 0.7, 1.5, 2.0
 THICK = 6.0  # b/t under which the hinge is a bar, no leaf
 
 
@@ -36,7 +37,12 @@ def _narrow(s: HingeSection) -> np.ndarray:
 
 
 def _narrow_and_deep(s: HingeSection) -> np.ndarray:
-    return _narrow(s) & s.two_sided & (s.fillet_radius >= DEEP_NARROW * s.hinge_thickness)
+    return _narrow(s) & s.two_sided & (s.fillet_radius >= DEEP * s.hinge_thickness)
+
+
+def _wider_and_deep(s: HingeSection) -> np.ndarray:
+    narrow = (s.width >= NARROW * s.hinge_length) & (s.width < LESS_NARROW * s.hinge_length)
+    return narrow & s.two_sided & (s.fillet_radius >= DEEP * s.hinge_thickness)
 
 
 def _narrow_and_thick(s: HingeSection) -> np.ndarray:
@@ -62,6 +68,7 @@ DRAWS = {
         Draw(40, 40, 662607, _narrow),
         Draw(32, 32, 693147, _narrow_and_deep),
         Draw(600, 600, 173205, _narrow_and_thick),
+        Draw(500, 500, 141592, _wider_and_deep),
     ),
 }
 # Shares of the parameters at the low and at the high end of their intervals. For the slot's length the shares
