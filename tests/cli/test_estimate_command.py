@@ -289,3 +289,17 @@ def test_batch_of_many_designs_keeps_their_order(tmp_path):
     _, rows = batch(tmp_path, text)
     K = np.array([float(r["stiffness"]) for r in rows])
     assert np.all(np.diff(K) > 0) and len(K) == 500
+
+
+def test_size_says_both_stiffnesses_where_the_design_s_modulus_is_not_its_alloy_s(capsys):
+    """K goes with the modulus: 7075-T6's 72 000 instead of the paper's 69 000 MPa."""
+    asked = ["size", "--stiffness", "10", "--load-arm", "6"]
+    assert main(asked) == 0
+    said = capsys.readouterr().out
+    assert "every K is +4.3%: 10.43 instead of 10 N/mm" in said
+    assert main([*asked, "--json"]) == 0
+    both = json.loads(capsys.readouterr().out)
+    assert both["stiffness_factor"] == pytest.approx(72 / 69)
+    assert main([*asked, "--youngs-modulus", "72000", "--json"]) == 0
+    own = json.loads(capsys.readouterr().out)
+    assert "stiffness_factor" not in own and own["value"] < both["value"]

@@ -83,23 +83,27 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(
             f"--hinge-{args.solve}", "is what is to be found; leave it out", value=getattr(args, parameter)
         )
-    answer = _answer(args, parameter)
+    from tactcad.lab import material_text
+    from tactcad.parts.designs import load
+
+    design = load(args.design)
+    answer = _answer(args, design, parameter)
+    own = args.youngs_modulus is None and args.alloy is None  # else nobody asked for the design's material
     if args.json:
-        print(json.dumps(answer, indent=2))
+        print(json.dumps(answer | (material_text.record(design) if own else {}), indent=2))
     else:
-        print(_report(answer))
+        further = material_text.lines(design, [answer["stiffness"]]) if own else []
+        print("\n".join([_report(answer), *further]))
     return 0
 
 
-def _answer(args: argparse.Namespace, parameter: str) -> dict:
+def _answer(args: argparse.Namespace, design: Design, parameter: str) -> dict:
     from tactcad.design.materials import alloy as alloy_named
     from tactcad.mechanics import ladder, strain, strength
     from tactcad.mechanics.accuracy import expected_error_of
     from tactcad.mechanics.sizing import size
-    from tactcad.parts.designs import load
     from tactcad.parts.hinge_section import design_alloy
 
-    design = load(args.design)
     section = _section(args, design)
     alloy = alloy_named(args.alloy) if args.alloy else design_alloy(design)
     tolerance = args.tolerance or getattr(design.tolerance, parameter)
