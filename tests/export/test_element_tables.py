@@ -95,11 +95,12 @@ def test_strength_summary_against_its_own_definitions():
         yields, rated = float(r["yield_force_N"]), float(r["rated_force_N"])
         assert rated == pytest.approx(min(d.rating.force, yields / d.rating.yield_factor), rel=1e-3)
         assert float(r["yield_factor_at_rated"]) == pytest.approx(yields / rated, rel=1e-3)
-        # a rigid arm: the force that closes the gap at the tip
+        # the force that closes the gap at the tip of a rigid arm on a rigid body; where the body gives way
+        # the tip moves less, by 0.5 % at the shortest arm (tests/mechanics/test_stop.py has it exactly)
         closing = (
             float(r["stiffness_N_per_mm"]) * float(r["largest_stop_gap_mm"]) * place.load_arm / place.arm
         )
-        assert float(r["stop_closes_at_N"]) == pytest.approx(closing, rel=2e-3)
+        assert closing * 0.998 < float(r["stop_closes_at_N"]) < closing * 1.007
         stress = float(r["fillet_stress_at_overload_MPa"])
         assert float(r["yield_factor_at_overload"]) == pytest.approx(
             d.material.yield_strength / stress, rel=1e-3

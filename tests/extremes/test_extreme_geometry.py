@@ -154,7 +154,7 @@ REFUSED = {
         {"rating.overload_force": 13040.0},
         "rating.overload_force",
         "13040.0",
-        "at most 203.6",
+        "at most 219.5",
     ),
     "screws of a jaw": ({"holes.dowel_hole": 3.012 / 25}, "holes.dowel_hole", "0.12048", "from 0.2 to 20 mm"),
 }

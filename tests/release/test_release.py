@@ -43,6 +43,9 @@ REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"
 
 
+OLDER = archive_bytes({"bom.csv": b"older"}, "2026-11-20")
+
+
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
     """A folder with hardware/tiny.toml and its golden file."""
@@ -304,10 +307,10 @@ BY_GOLDEN = {
 def test_what_the_golden_file_does_not_have_is_refused_and_an_older_zip_left(case, copy, capsys):
     design, said = BY_GOLDEN[case]
     (copy / "out").mkdir()
-    (copy / "out" / NAME).write_bytes(b"older")
+    (copy / "out" / NAME).write_bytes(OLDER)
     status, out, err, there = release(copy, capsys, design=design)
     assert status == 1 and said in err and "nothing was written" in err and out == ""
-    assert there == {NAME} and (copy / "out" / NAME).read_bytes() == b"older"
+    assert there == {NAME} and (copy / "out" / NAME).read_bytes() == OLDER
 
 
 def test_without_a_golden_file_a_design_in_hardware_is_refused(copy, capsys):
@@ -330,15 +333,13 @@ def coarse_shop(tmp_path):
 
 def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys):
     (copy / "out").mkdir()
-    (copy / "out" / NAME).write_bytes(b"older")
+    (copy / "out" / NAME).write_bytes(OLDER)
     status, _, err, there = release(copy, capsys, "--shop", str(coarse_shop))
     assert status == 1 and "wire" in err and there == {NAME}
     status, out, _, there = release(copy, capsys, "--shop", str(coarse_shop), "--draft", "--json")
     record = json.loads(out)
     assert status == 0 and record["draft"] and record["failures"]
-    assert (
-        there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == b"older"
-    )
+    assert there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == OLDER
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
@@ -367,13 +368,13 @@ def test_what_does_not_read_back_is_not_published(copy, capsys, monkeypatch):
 
     monkeypatch.setattr(make, "archive_bytes", lambda files, date: archive_bytes(files, date)[:-500])
     (copy / "out").mkdir()
-    (copy / "out" / NAME).write_bytes(b"older")
+    (copy / "out" / NAME).write_bytes(OLDER)
     status, _, err, there = release(copy, capsys)
     assert (
         status == 1
         and "does not hold" in err
         and there == {NAME}
-        and (copy / "out" / NAME).read_bytes() == b"older"
+        and (copy / "out" / NAME).read_bytes() == OLDER
     )
 
 
