@@ -139,8 +139,8 @@ def end_at(case: Case, standing: str, sent: str, moments: int, every: bool) -> t
     """End runs at that many moments; what stands there at last, and how many moments came before the run's
     end.
 
-    With `every`, every second one has to make everything anew, and what may leave something behind, SIGKILL
-    alone, is followed by an undisturbed run.
+    With `every`, every second one has to make everything anew. What may leave something behind, SIGKILL
+    alone, is followed by an undisturbed run: every time, or the last time.
     """
     chance = random.Random(f"{SEED} {case.words} {sent}")
     early, seconds = 0, case.seconds
@@ -162,7 +162,7 @@ def end_at(case: Case, standing: str, sent: str, moments: int, every: bool) -> t
         assert not all(differing.values()), f"{about}: {differing}"
         assert sent == "SIGKILL" or found == visible, f"{about} left {sorted(set(found) - set(visible))}"
         standing = wanted if visible == case.whole[wanted] else standing
-        if every and sent == "SIGKILL":
+        if sent == "SIGKILL" and (every or n == moments - 1):  # the other signals are held to leave nothing
             run_after(case, wanted, about)
             standing = wanted
     return standing, early
