@@ -44,9 +44,7 @@ class ElementEstimate:
     yield_deflection: float  # mm
     rated_force: float  # N, in use
     rated_deflection: float  # mm, never passed: overload and calibration stay below
-    expected_error: (
-        float | None
-    )  # relative, of the stiffness: the largest stated; None where none was measured
+    expected_error: float | None  # of the stiffness, relative, at most; None where none was measured
 
 
 def estimate(
