@@ -67,7 +67,7 @@ def plans(changes, base="macro-array", shortened=False):
     names = ("array",) if changes else scene_names(design)
     parts = {p.part_no: p for name in names for p in make_scene(design, name).parts}
     made = [p for p in parts.values() if p.process not in ("bought", "reference")]
-    return [plan for p in made if (plan := part_plan(p, design, (FILE,), shortened=shortened))]
+    return [plan for p in made if (plan := part_plan(p, (FILE,), shortened=shortened))]
 
 
 def stated(plan):
@@ -173,7 +173,7 @@ def _axis(variable) -> str:
 def test_the_rank_sees_a_missing_and_a_repeated_dimension():
     plan = plans({"array.row_arms": [[5], [6]]})[1]
     assert "element" in plan.part.part_no
-    rows = [row for d in plan.dimensions for row in d.rows]
+    rows = [row for d in stated(plan) for row in d.rows]
     drawn = jacobian(plan, plan.conventions)
     full = rank(np.vstack([drawn, jacobian(plan, rows)]))
     for i in range(len(rows)):
@@ -236,17 +236,17 @@ def block(*features, characteristics=(), outer=None) -> Part:
 def test_a_characteristic_without_a_dimension_is_refused():
     odd = Characteristic("length of nothing", 3.0, 3.1, 2.9, key=True)
     with pytest.raises(CheckFailure, match="length of nothing"):
-        prism_plan(block(characteristics=(odd,)), variant(), ())
+        prism_plan(block(characteristics=(odd,)), ())
 
 
 def test_a_plain_block_needs_three_dimensions():
-    plan = prism_plan(block(), variant(), ())
+    plan = prism_plan(block(), ())
     assert sorted(d.text(plan.values) for d in plan.dimensions) == ["10", "30", "40"]
 
 
 def test_holes_of_one_row_share_their_extension_line():
     holes = [Hole("row", (x, 8.0, 10.0), (0, 0, -1), 3.0, 10.0, True) for x in (5.0, 15.0, 25.0)]
-    plan = prism_plan(block(*holes), variant(), ())
+    plan = prism_plan(block(*holes), ())
     texts = [d.text(plan.values) for d in plan.dimensions]
     assert texts.count("8") == 1 and "3× ⌀3" in texts
 
@@ -271,7 +271,7 @@ def test_a_disc_has_its_diameters_and_its_thickness():
         Material("steel", 7850),
         Extrusion(circle((0, 0), 20), 3.0, (circle((0, 0), 8.2),)),
     )
-    plan = prism_plan(ring, variant(), ())
+    plan = prism_plan(ring, ())
     assert sorted(d.text(plan.values) for d in plan.dimensions) == ["3", "⌀20", "⌀8.2"]
 
 

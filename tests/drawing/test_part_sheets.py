@@ -209,7 +209,7 @@ def test_a_part_larger_than_the_paper_is_refused(macro):
     part = Part(
         "LONG", "Long", "milled", Material("6061-T6", 2700), Extrusion(rectangle(0, 0, size, 50), 10.0)
     )
-    plan = prism_plan(part, macro, ())
+    plan = prism_plan(part, ())
     curves = {v.name: [Stroke(((0, 0), (size, 0)))] for v in plan.views}
     with pytest.raises(CheckFailure, match=r"LONG \(4000 x 50 mm\) finds no place on A4, A3 at 50:1 to 1:10"):
         compose(plan, curves, title_of(macro, part, False), (A4, A3))

@@ -56,7 +56,7 @@ def block(*features, openings=(), name="BLOCK") -> Part:
 
 
 def section(part: Part):
-    plan = prism_plan(part, variant(), ())
+    plan = prism_plan(part, ())
     cut = [v.section for v in plan.views if v.section]
     assert len(cut) <= 1
     return cut[0] if cut else None
@@ -238,7 +238,7 @@ def test_the_hatching_lies_in_the_material_everywhere(orders, sheets):
     for number in ("holder-body", "cart-plate", "tip-flat"):
         order, sheet, f = orders[number], sheets[number], scale_of(sheets[number])
         classifier = BRepClass3d_SolidClassifier(from_bytes(order.shape))
-        view = next(v for v in prism_plan(order.part, order.design, ()).views if v.section)
+        view = next(v for v in prism_plan(order.part, ()).views if v.section)
         (u0, v0, _, v1), loops = view.box, face_of(sheet).loops
         us, vs = zip(*(p for loop in loops for p in loop))
         # the cut face spans the part in the view's upright direction, and begins at its left
@@ -303,7 +303,7 @@ def test_the_plane_is_marked_where_the_part_is_cut(orders, sheets):
         assert len(ends) == len(heads) == 2
         (x,) = {round(p[0], 6) for end in ends for p in end.points}
         x0, y0, x1, y1 = order.part.body.outer.box
-        way = prism_plan(order.part, order.design, ()).views[0].right[0]
+        way = prism_plan(order.part, ()).views[0].right[0]
         left = x - f * (plane_of(order) - x0 if way > 0 else x1 - plane_of(order))
         low, high = sorted(p[1] for end in ends for p in end.points)[1:3]
         assert high - low == pytest.approx((y1 - y0) * f + 3.0)  # a millimetre and a half off the outline

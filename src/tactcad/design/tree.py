@@ -250,6 +250,8 @@ class Tolerance:
     load_arm: float = given(Number("mm", 1e-4, 1, "pad edges, and element in its clamp"), 0.05)
     sheet_thickness: float = given(Number("mm", 1e-4, 1, "sheet thickness"), 0.1)
     arm_height: float = given(Number("mm", 1e-4, 0.5, "arm height"), 0.02)
+    tip: float = given(Number("mm", 1e-4, 0.5, "arm's tip from the dowel hole's centre"), 0.02)
+    ledge: float = given(Number("mm", 1e-4, 0.1, "ledge over the pad's face"), 0.005)
     pad_height: float = given(Number("mm", 1e-4, 0.5, "pad height over the dowel hole"), 0.01)
     tilt: float = given(Number("degree", 0, 5, "array against object"), 0.1)
     youngs_modulus: float = given(

@@ -4,6 +4,7 @@ point."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import atan2, degrees
 
 from tactcad.contour import Arc, Contour, Line
@@ -123,10 +124,10 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
 
 
 def equal_radii(
-    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], tolerance: float | None = None
+    sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], states: str = ""
 ) -> list[Callout]:
-    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout, with plus and
-    minus `tolerance` mm or the general one."""
+    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout, under the
+    name of the characteristic that they state."""
     kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
     for name, row, arc in arcs:
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
@@ -134,8 +135,10 @@ def equal_radii(
     for some in kinds.values():
         if new := [one for one in some if sketch.account.takes(one[1])]:
             name = " and ".join(dict.fromkeys(name for name, _, _ in new))
-            limits = (tolerance, -tolerance) if tolerance else None
-            d = Dimension(name, tuple(row for _, row, _ in new), "R", limits=limits)
+            rows = tuple(row for _, row, _ in new)
+            d = replace(sketch.stating(states, rows, plain=name), sign="R")
+            if d.characteristic:
+                del sketch.unstated[states]
             callouts.append(_radius_callout(sketch, view, d, [arc for _, _, arc in new]))
     return callouts
 

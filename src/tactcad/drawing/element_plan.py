@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from tactcad.contour import Arc, Contour, Line
-from tactcad.design.tree import Design
 from tactcad.parts.description import Part
+from tactcad.parts.element import LEDGE, PAD_HEIGHT
 
 from .boxes import Box, Point
 from .callouts import equal_radii, hole_callout
@@ -81,7 +81,7 @@ class Outline:
         return segment
 
 
-def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = False) -> SheetPlan:
+def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetPlan:
     """The sheet of an element; of a `tall` one the hinge alone is enlarged, and the heights beside it stand
     with the arm.
 
@@ -91,24 +91,19 @@ def element_plan(part: Part, design: Design, notes: Sequence[str], tall: bool = 
     sketch = Sketch(part)
     for row in conventions(OUTER, o.contour):
         sketch.convention(row)
-    called = groups(rounds(part, design), sketch.values, {2: FRONT[0]})
+    called = groups(rounds(part), sketch.values, {2: FRONT[0]}, part.characteristics)
     holes = [r for g in called for r in g.holes]
     dowel = next(r for r in holes if r.label == "dowel hole")
     for r in holes:
         if r is not dowel:
             sketch.convention(Span(level(dowel.owner.place(1)), level(r.owner.place(1))))
-    hinge, left = _hinge_view(sketch, part, design, o, tall)
-    arm = _arm_view(sketch, part, design, o, *left)
+    hinge, left = _hinge_view(sketch, part, o, tall)
+    arm = _arm_view(sketch, o, *left)
     front = _front_view(sketch, part, o, called, dowel)
-    thickness = _within((size(THICKNESS),), "thickness", design.tolerance.sheet_thickness)
+    thickness = Dimension("sheet thickness", (size(THICKNESS),))
     edge = replace(side_view(sketch, part, front, [], thickness), hidden=False, datums=())
     closed(sketch)
     return SheetPlan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
-
-
-def _within(rows: tuple, name: str, tolerance: float) -> Dimension:
-    """A dimension with the tolerance that the uncertainty budget assumes."""
-    return Dimension(name, rows, limits=(tolerance, -tolerance))
 
 
 def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group], dowel: Round) -> View:
@@ -139,7 +134,7 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
         row = Span(o.y(face), o.y(other))
         linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", step.at, q))
     over = (Span(o.y("pad_face"), level(dowel.owner.place(1))),)
-    pad = sketch.must(sketch.stating("pad height over the dowel hole's centre", over))
+    pad = sketch.must(Dimension(PAD_HEIGHT, over))
     linears.append(Linear(pad, "left", o.start("pad_face"), at))
     callouts = [replace(hole_callout(sketch, view, g), datum="B" if dowel in g.holes else "") for g in called]
     callouts += _radii(sketch, view, o, ("ledge_root", "recess_root"))
@@ -153,15 +148,13 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
     )
 
 
-def _radii(
-    sketch: Sketch, view: View, o: Outline, names: Sequence[str], tolerance: float | None = None
-) -> list[Callout]:
-    """Fillets by name, equal ones together, with a tolerance of their own or the general one; none for a full
-    round, whose width defines it.
+def _radii(sketch: Sketch, view: View, o: Outline, names: Sequence[str], states: str = "") -> list[Callout]:
+    """Fillets by name, equal ones together, which state that characteristic of the part where there is one;
+    none for a full round, whose width defines it.
     """
     named = ((n, o.index[n], o.segment(n)) for n in names if n in o)
     arcs = [(n.replace("_", " "), Radius(OUTER, i), s) for n, i, s in named if isinstance(s, Arc)]
-    return equal_radii(sketch, view, arcs, tolerance)
+    return equal_radii(sketch, view, arcs, states)
 
 
 def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
@@ -170,7 +163,7 @@ def _slot(o: Outline) -> tuple[OutlineCorner, OutlineCorner]:
 
 
 def _hinge_view(
-    sketch: Sketch, part: Part, design: Design, o: Outline, tall: bool
+    sketch: Sketch, part: Part, o: Outline, tall: bool
 ) -> tuple[View, tuple[list[Linear], list[Callout]]]:
     """The hinge: thickness, slot, fillets, and the heights beside it.
 
@@ -179,7 +172,6 @@ def _hinge_view(
     """
     arm, body = _slot(o)
     (xa, back), (xb, ledge) = arm.at, body.at
-    t = design.tolerance
     one = "body_face" not in o
     flat = o.start("flat_face")[1]
     face = flat if one else o.start("body_face")[1]
@@ -200,16 +192,16 @@ def _hinge_view(
     linears, across, callouts = [], [], []
     near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
     floor, floor_y = _floor(o, "slot_floor", "slot_")
-    web = sketch.must(sketch.stating("hinge thickness", (Span(near, floor),)))
+    web = sketch.must(Dimension("hinge thickness", (Span(near, floor),)))
     across.append(Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1])))
-    length = sketch.must(_within((Span(arm.x, body.x),), "slot length", t.hinge_length))
+    length = sketch.must(Dimension("slot length", (Span(arm.x, body.x),)))
     along = Linear(length, "top", (xa, back), (xb, ledge))
-    heights = _heights(sketch, t.arm_height, o, arm, body, near)
+    heights = _heights(sketch, o, arm, body, near)
     if not tall:
         linears.append(along)
         linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
-    called = _radii(sketch, view, o, fillets, t.fillet_radius)
+    called = _radii(sketch, view, o, fillets, "fillet radius")
     if "slot_floor" not in o:
         arc = o.arc(next(n for n in fillets if n in o))
         ends = "full round" if one else "full round, both slots"
@@ -242,17 +234,17 @@ def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> Box:
 
 
 def _heights(
-    sketch: Sketch, tolerance: float, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
+    sketch: Sketch, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
 ) -> list[Linear]:
     """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
     right."""
     flat = o.start("flat_face")
-    height = sketch.must(_within((Span(o.y("flat_face"), arm.y),), "arm height", tolerance))
+    height = sketch.must(Dimension("arm height", (Span(o.y("flat_face"), arm.y),)))
     one = "body_face" not in o
     foot = flat if one else o.corner("front_slot_body_wall", "body_face").at
-    high = sketch.must(
-        Dimension("body height", (Span(o.y("flat_face") if one else o.y("body_face"), body.y),))
-    )
+    # the ledge is measured from the pad; this follows
+    rows = (Span(o.y("flat_face") if one else o.y("body_face"), body.y),)
+    high = Dimension("body height", rows, auxiliary=True)
     heights = [Linear(height, "left", flat, arm.at), Linear(high, "right", foot, body.at)]
     if one:
         return heights
@@ -284,13 +276,10 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
     )
 
 
-def _arm_view(
-    sketch: Sketch, part: Part, design: Design, o: Outline, more: Sequence[Linear], called: Sequence[Callout]
-) -> View:
+def _arm_view(sketch: Sketch, o: Outline, more: Sequence[Linear], called: Sequence[Callout]) -> View:
     """The arm: its length to the hinge's middle, pad, stop land, and what the hinge's view leaves to it."""
     slot, body = _slot(o)
     (xa, back), (xb, ledge) = slot.at, body.at
-    t = design.tolerance
     tip, pad = o.start("tip"), o.start("pad_face")
     land, flat = o.segment("stop_land"), o.start("flat_face")[1]
     margin = 0.2 * back
@@ -298,17 +287,19 @@ def _arm_view(
     view = View("arm", *FRONT, o.contour.box, label="X", window=window, room=ARM_ROOM)
     tip_x = o.x("tip")
     middle = (xa + xb) / 2
-    arm = sketch.must(_within((Span(tip_x, halfway(slot.x, body.x)),), "arm length", t.load_arm))
+    arm = sketch.must(Dimension("arm length", (Span(tip_x, halfway(slot.x, body.x)),)))
     length = sketch.must(Dimension("pad length", (Span(tip_x, level(o.point("pad_face", True).place(0))),)))
     height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
     lands = sketch.must(Dimension("stop land", (Span(tip_x, level(o.point("stop_land", False).place(0))),)))
-    gap = sketch.must(sketch.stating("stop gap", (Span(o.y("stop_land"), body.y),)))
+    gap = sketch.must(Dimension("stop gap", (Span(o.y("stop_land"), body.y),)))
+    seat = sketch.must(Dimension(LEDGE, (Span(o.y("pad_face"), body.y),)))
     linears = (
         Linear(lands, "top", land.end, land.start),
         Linear(arm, "top", land.end, (middle, max(ledge, back) + margin / 2)),
         Linear(length, "bottom", o.start("pad_face"), o.end("pad_face")),
         Linear(height, "right", o.end("pad_face"), (window[2], o.start("flat_face")[1])),
         Linear(gap, "left", land.end, (xb, ledge)),
+        Linear(seat, "right", o.end("pad_face"), (xb, ledge)),
     )
     ramp = Dimension(
         "ramp of the stop land", (Slope(o.point("land_ramp", True), o.point("land_ramp", False)),), unit="°"

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isclose
 
-from tactcad.design.tree import Design
 from tactcad.parts.description import Hole, Part, Vector
+from tactcad.parts.limits import Characteristic
 
 from .contours import axis_of
 from .keys import Owner, Quantity, Values
@@ -16,6 +16,8 @@ from .measures import size
 from .sheet_plan import Dimension
 
 LEAST_ROW = 6  # equal holes in a line that count as a regular row
+# What a hole's variables are called in characteristics.
+WORDS = {Quantity.DIAMETER: "diameter"}
 EVEN = 5e-6  # mm: steps of a row are equal within this; places are given to a nanometre
 
 
@@ -30,7 +32,7 @@ class Round:
     hole: Hole
 
 
-def rounds(part: Part, design: Design) -> list[Round]:
+def rounds(part: Part) -> list[Round]:
     """Round openings and holes of an extruded part."""
     body = part.extrusion
     holes = []
@@ -38,17 +40,7 @@ def rounds(part: Part, design: Design) -> list[Round]:
         if circle := opening.as_circle():
             (x, y), r = circle
             label = opening.segments[0].name
-            # the mounting holes' dowel hole is cut at the middle of its limits
-            upper = design.holes.dowel_hole_upper if label == "dowel_hole" else 0.0
-            hole = Hole(
-                label,
-                (x, y, body.thickness),
-                (0, 0, -1),
-                2 * r,
-                body.thickness,
-                True,
-                tolerance=f"+{upper:g}/0" if upper else "",
-            )
+            hole = Hole(label, (x, y, body.thickness), (0, 0, -1), 2 * r, body.thickness, True)
             holes.append(Round(Owner("opening", i), label.replace("_", " "), hole.at, hole.axis, hole))
     for k, f in enumerate(part.features):
         if isinstance(f, Hole):
@@ -74,16 +66,22 @@ class Group:
         return self.holes[0].axis
 
 
-def groups(holes: Sequence[Round], values: Values, eye_of: Mapping[int, Vector]) -> list[Group]:
+def groups(
+    holes: Sequence[Round],
+    values: Values,
+    eye_of: Mapping[int, Vector],
+    limits: Sequence[Characteristic] = (),
+) -> list[Group]:
     """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as
-    circles."""
+    circles. `limits` are the part's; those of a diameter stand at its holes."""
     kinds: dict[tuple, list[Round]] = {}
     for r in holes:
         h = r.hole
         side = h.axis if not _same_from_both_sides(h) else tuple(abs(a) for a in h.axis)
         kinds.setdefault((side, _spec(h)), []).append(r)
     merged = _both_ends(kinds)
-    return [_group(some, both, values, eye_of) for some, both in merged]
+    own = {c.name: c for c in limits}
+    return [_group(some, both, values, eye_of, own) for some, both in merged]
 
 
 def _same_from_both_sides(h: Hole) -> bool:
@@ -125,12 +123,18 @@ def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]
     return result
 
 
-def _group(some: list[Round], both: bool, values: Values, eye_of: Mapping[int, Vector]) -> Group:
+def _group(
+    some: list[Round],
+    both: bool,
+    values: Values,
+    eye_of: Mapping[int, Vector],
+    own: Mapping[str, Characteristic],
+) -> Group:
     h, label = some[0].hole, some[0].label
 
     def dimension(what: Quantity, sign: str, counted: bool = False) -> Dimension:
         rows = tuple(size(r.owner.size(what)) for r in some)
-        return Dimension(f"{label} {what}", rows, sign, counted=counted)
+        return Dimension(f"{label} {WORDS.get(what, what)}", rows, sign, counted=counted)
 
     limits, modelled, words = _tolerance(h.tolerance)
     fit, _, remark = words.partition(", ")
@@ -141,6 +145,13 @@ def _group(some: list[Round], both: bool, values: Values, eye_of: Mapping[int, V
     # the count of a thread stands before the thread, or before the counterbore that it is entered by
     bore = dimension(Quantity.DIAMETER, "⌀", counted=not h.thread)
     bore = replace(bore, limits=limits, modelled=modelled, fit=fit)
+    if c := own.get(bore.name):  # it is modelled between its limits
+        bore = replace(
+            bore,
+            limits=(c.upper - c.nominal, c.lower - c.nominal),
+            modelled=round(h.diameter - c.nominal, 9),
+            characteristic=c,
+        )
     used = [bore]
     depth = None if h.through else dimension(Quantity.DEPTH, "↧")
     ending = " through" if depth is None else f" {depth.text(values)}"

@@ -44,7 +44,7 @@ class Order:
 
 
 def part_plan(
-    part: Part, design: Design, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
+    part: Part, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
 ) -> SheetPlan | None:
     """What a part's sheet shows.
 
@@ -67,8 +67,8 @@ def part_plan(
     names = {s.name for s in part.body.outer}
     notes = notes_of(part, files)
     if {"pad_face", "stop_land"} <= names:
-        return None if shortened else element_plan(part, design, notes, spare)
-    return prism_plan(part, design, notes, not spare, shortened)
+        return None if shortened else element_plan(part, notes, spare)
+    return prism_plan(part, notes, not spare, shortened)
 
 
 def part_sheet(order: Order) -> DrawnSheet:
@@ -109,7 +109,7 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
 
     def plans(shortened: bool = False) -> Iterator[SheetPlan]:
         for spare in (False, True):
-            plan = part_plan(order.part, order.design, order.files, spare, shortened)
+            plan = part_plan(order.part, order.files, spare, shortened)
             if plan is None:
                 return
             yield plan

@@ -12,7 +12,6 @@ from dataclasses import replace
 
 from tactcad.contour import Contour, Line
 from tactcad.design.messages import CheckFailure
-from tactcad.design.tree import Design
 from tactcad.parts.description import Part, Pocket, Vector
 
 from .boxes import Point
@@ -32,7 +31,7 @@ BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 
 
 def prism_plan(
-    part: Part, design: Design, notes: Sequence[str], cut: bool = True, shortened: bool = False
+    part: Part, notes: Sequence[str], cut: bool = True, shortened: bool = False
 ) -> SheetPlan | None:
     """The plan of any extruded part.
 
@@ -54,14 +53,14 @@ def prism_plan(
     for name, contour in contours(part):
         for row in conventions(name, contour):
             sketch.convention(row)
-    holes = rounds(part, design)
+    holes = rounds(part)
     eye, up = _front(
         [r.axis for r in holes] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(holes) + 1)
     )
     right = View("", eye, up, (0, 0, 0, 0)).right
     below = _below_eye(holes, up)
     eyes = {2: eye, 1: below or up, 0: opposite(right)}
-    called = groups(holes, sketch.values, eyes)
+    called = groups(holes, sketch.values, eyes, part.characteristics)
     breaks, rows = None, []
     if shortened:
         x0, y0, x1, y1 = body.outer.box

@@ -80,7 +80,13 @@ class Sketch:
         return Dimension(c.name, rows, limits=limits, key=number, characteristic=c)
 
     def must(self, dimension: Dimension) -> Dimension:
-        """A dimension that has to determine something new. Raises CheckFailure where it repeats others."""
+        """A dimension that has to determine something new, with the limits of the characteristic of its name.
+        Raises CheckFailure where it repeats others."""
+        if dimension.characteristic is None and dimension.name in self.unstated:
+            stated = self.stating(dimension.name, dimension.rows)
+            dimension = replace(
+                dimension, limits=stated.limits, key=stated.key, characteristic=stated.characteristic
+            )
         if not self.new(dimension):
             raise CheckFailure(f"drawings: {self.part.part_no}: {dimension.name} is given twice")
         return dimension

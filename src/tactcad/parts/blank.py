@@ -11,10 +11,17 @@ rows are clamped alike and the stop plate has two ledges to sit on.
 from __future__ import annotations
 
 from tactcad.contour import Corner, rounded_polygon
+from tactcad.design.tree import Design
 
 from .description import Extrusion, Part
-from .element import mounting_holes, rear_corners, sheet_material
+from .element import dowel_hole_limits, mounting_holes, rear_corners, sheet_material
 from .layout import Layout
+from .limits import Datum, Geometric, within
+
+
+def blank_ledge_zone(design: Design) -> float:
+    """Width of the zone of a blank's ledge, mm: the elements' ledges lie in one as wide."""
+    return round(2 * (design.tolerance.pad_height + design.tolerance.ledge), 9)
 
 
 def blank(layout: Layout) -> Part:
@@ -38,4 +45,11 @@ def blank(layout: Layout) -> Part:
         body=Extrusion(rounded_polygon(corners), d.sheet.thickness, mounting_holes(layout)),
         colour="#aab2ba",
         notes=("burr-free, do not tumble",),
+        characteristics=(
+            within("thickness", d.sheet.thickness, d.tolerance.sheet_thickness),
+            dowel_hole_limits(d),
+        ),
+        # as far from the dowel hole as any element's ledge: pad height and ledge over the pad
+        geometric=(Geometric("ledge", "position", blank_ledge_zone(d), ("ledge",), ("A",)),),
+        datums=(Datum("A", "dowel_hole"),),
     )

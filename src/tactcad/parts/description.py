@@ -13,6 +13,9 @@ from math import pi, radians, tan
 from typing import Literal
 
 from tactcad.contour import Contour
+from tactcad.design.messages import CheckFailure
+
+from .limits import FACES, Characteristic, Datum, Geometric, contradictions
 
 Vector = tuple[float, float, float]
 Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought"]
@@ -209,17 +212,6 @@ class ModelFile:
 
 
 @dataclass(frozen=True)
-class Characteristic:
-    """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic."""
-
-    name: str
-    nominal: float
-    upper: float
-    lower: float
-    key: bool = False
-
-
-@dataclass(frozen=True)
 class Part:
     """One fabricated or bought part.
 
@@ -239,14 +231,19 @@ class Part:
         sRGB, "#rrggbb".
     finish, notes
         For the drawing.
-    characteristics
-        Toleranced dimensions.
+    characteristics, geometric, datums
+        Toleranced dimensions, geometric tolerances, and the datums that these refer to.
     purchase
         How a bought part is ordered.
     mass_override
         Mass, g, of a bought part whose body is only an envelope.
     spares
         Pieces to order beyond the scene's.
+
+    Raises
+    ------
+    CheckFailure
+        Where its limits contradict each other, or stand on what the part does not have.
     """
 
     part_no: str
@@ -259,9 +256,26 @@ class Part:
     finish: str = ""
     notes: tuple[str, ...] = ()
     characteristics: tuple[Characteristic, ...] = ()
+    geometric: tuple[Geometric, ...] = ()
+    datums: tuple[Datum, ...] = ()
     purchase: Purchase | None = None
     mass_override: float | None = None
     spares: int = 0
+
+    def __post_init__(self) -> None:
+        limits = (self.characteristics, self.geometric, self.datums)
+        if any(limits) and (wrong := list(contradictions(*limits, self.feature_names))):
+            raise CheckFailure(f"{self.part_no}: {'; '.join(wrong)}")
+
+    @property
+    def feature_names(self) -> frozenset[str]:
+        """Names of what limits and datums may stand on: contour edges, openings, holes, pockets, faces."""
+        names = {f.name for f in self.features}
+        if isinstance(self.body, Extrusion):
+            names |= {s.name for c in (self.body.outer, *self.body.openings) for s in c} | {*FACES}
+        elif isinstance(self.body, Revolution):
+            names |= {s.name for s in self.body.profile}
+        return frozenset(names)
 
     @property
     def extrusion(self) -> Extrusion:

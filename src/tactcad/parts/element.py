@@ -11,11 +11,15 @@ stop land                                      +-------------------------+ rear_
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from dataclasses import replace
+
 from tactcad.contour import Contour, Corner, circle, rounded_polygon
 from tactcad.design.tree import Design
 
-from .description import Characteristic, Extrusion, Material, Part
+from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
+from .limits import FACES, Characteristic, Datum, within
 
 BARE_METAL = "#c3c8ce"
 
@@ -35,14 +39,13 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
 
         gap = stop_gap(layout, place)
-    cut = design.element
-    e, s, allowed = place.hinge, design.stop, design.tolerance
+    outer = outline(layout, place.arm, place.hinge, gap)
     return Part(
         part_no=element_number(design, place),
         name=f"Sensing element, arm {shortest(place.arm)}",
         process="wire-cut",
         material=sheet_material(design),
-        body=Extrusion(outline(layout, place.arm, e, gap), design.sheet.thickness, mounting_holes(layout)),
+        body=Extrusion(outer, design.sheet.thickness, mounting_holes(layout)),
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
         notes=(
@@ -51,20 +54,56 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             "measure and record the hinge thickness of every element",
             *material_notes(design),
         ),
-        characteristics=(
-            Characteristic(
-                "hinge thickness", e.t, e.t + allowed.hinge_thickness, e.t - allowed.hinge_thickness, key=True
-            ),
-            Characteristic(
-                "pad height over the dowel hole's centre",
-                design.holes.height + cut.pad_height,
-                design.holes.height + cut.pad_height + allowed.pad_height,
-                design.holes.height + cut.pad_height - allowed.pad_height,
-                key=True,
-            ),
-            Characteristic("stop gap", gap, gap + s.tolerance, gap - s.tolerance, key=True),
-        ),
+        characteristics=_limits(layout, place, gap, {s.name for s in outer}),
+        datums=(Datum("A", "flat_face"), Datum("B", "dowel_hole")),
     )
+
+
+# The load arm is the arm less half the pad: its tolerance is shared so that the two give just that.
+ARM_SHARE, PAD_SHARE = 0.8, 0.4
+PAD_HEIGHT = "pad height over the dowel hole's centre"
+LEDGE = "ledge over the pad face"
+
+
+def _limits(
+    layout: Layout, place: ElementPlace, gap: float, edges: Collection[str]
+) -> tuple[Characteristic, ...]:
+    """Every limit of an element whose outline has these edges (a full round has used some up); mm."""
+    d, cut, e, t = layout.design, layout.design.element, place.hinge, layout.design.tolerance
+    over = cut.pad_height
+    floor = ("slot_floor", "flat_face" if cut.sides == "one" else "hinge_face")
+    walls = ("slot_arm_wall", "slot_body_wall")
+    fillets = ("slot_arm_fillet", "slot_body_fillet")
+    stated: tuple[Characteristic, ...] = (
+        within("hinge thickness", e.t, t.hinge_thickness, True, floor),
+        within(PAD_HEIGHT, d.holes.height + over, t.pad_height, True, ("pad_face", "dowel_hole")),
+        within("stop gap", gap, d.stop.tolerance, True, ("stop_land", "ledge")),
+        within(LEDGE, round(layout.ledge + over, 9), t.ledge, True, ("pad_face", "ledge")),
+        within("slot length", e.l, t.hinge_length, between=walls),
+        within("arm length", place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", walls[0])),
+        within("pad length", cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
+        within("arm height", e.h, t.arm_height, between=("flat_face", "arm_back")),
+        within("fillet radius", e.r, t.fillet_radius, between=fillets),
+        within("tip from dowel hole", _tip_to_dowel(layout), t.tip, between=("tip", "dowel_hole")),
+        within("sheet thickness", d.sheet.thickness, t.sheet_thickness, between=FACES),
+        dowel_hole_limits(d),
+    )
+    if "slot_floor" not in edges:  # a full round's width defines it
+        stated = tuple(c for c in stated if c.name != "fillet radius")
+    standing = {*edges, *FACES, "dowel_hole"}
+    return tuple(c if {*c.between} <= standing | {""} else replace(c, between=("", "")) for c in stated)
+
+
+def dowel_hole_limits(design: Design) -> Characteristic:
+    """Slide-fit dowel hole of elements, blanks and spacers, mm."""
+    h = design.holes
+    low, high = h.dowel_hole, round(h.dowel_hole + h.dowel_hole_upper, 9)
+    return Characteristic("dowel hole diameter", low, high, low, between=("dowel_hole", ""))
+
+
+def _tip_to_dowel(layout: Layout) -> float:
+    """mm, to the dowel hole next to the clamp edge."""
+    return round(min(layout.dowel_x) - layout.pad_inner, 9)
 
 
 def element_number(design: Design, place: ElementPlace) -> str:

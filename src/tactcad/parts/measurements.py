@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .description import Characteristic
-from .element import element, element_number
+from .element import LEDGE, PAD_HEIGHT, element, element_number
 from .layout import ElementPlace, Layout
+from .limits import Characteristic
 
 
 @dataclass(frozen=True)
@@ -33,19 +33,25 @@ WAYS = {
         "thinnest place between the hinge's two faces (mean of both edges of the sheet)",
         MICROSCOPE,
     ),
-    "pad height over the dowel hole's centre": (
+    PAD_HEIGHT: (
         "",
         "pad face over the centre of the dowel hole, square to the flat face",
         "coordinate measuring machine, or height gauge over a pin in the dowel hole",
     ),
+    LEDGE: ("", "ledge over the pad's face, square to the flat face", MICROSCOPE),
     "stop gap": ("", "stop land below the ledge, square to the flat face", MICROSCOPE),
     "slot length": ("hinge_length", "between the slot's two walls, along the arm", MICROSCOPE),
     "load arm": ("load_arm", "middle of the slot to middle of the pad's face, along the arm", MICROSCOPE),
+    "fillet radius": ("fillet_radius", "both fillets at the slot's floor (mean)", MICROSCOPE),
     "arm height": (
         "arm_height",
         "arm's back over its flat face, beside the slot",
         "micrometer or measuring microscope, 0.002",
     ),
+    "arm length": ("", "arm's tip to the middle of the slot, along the arm", MICROSCOPE),
+    "pad length": ("", "pad's face, along the arm", MICROSCOPE),
+    "tip from dowel hole": ("", "arm's tip to the centre of the dowel hole, along the arm", MICROSCOPE),
+    "dowel hole diameter": ("", "across the hole, at both faces", "plug gauges, or measuring microscope"),
     "sheet thickness": ("width", "across the element, on arm and body beside the slot", "micrometer, 0.002"),
 }
 AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance asks for")
@@ -54,7 +60,7 @@ AS_DRAWN = ("", "as dimensioned on the part's drawing sheet", "as its tolerance 
 def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurement, ...]]]:
     """Every element by number: its place, its part number, and what to measure on it.
 
-    That is its part's characteristics, then the dimensions that only the estimator needs.
+    That is its part's characteristics, and the load arm that follows from two of them.
     """
     known: dict[str, tuple[Measurement, ...]] = {}  # a long row has few kinds of element
     measured = []
@@ -62,23 +68,17 @@ def measurements(layout: Layout) -> list[tuple[ElementPlace, str, tuple[Measurem
         part_no = element_number(layout.design, place)
         if part_no not in known:
             own = element(layout, place).characteristics
-            named = {c.name for c in own}
-            rest = [c for c in _estimators(layout, place) if c.name not in named]
-            known[part_no] = tuple(_measurement(c) for c in (*own, *rest))
+            known[part_no] = tuple(_measurement(c) for c in (*own, _load_arm(own)))
         measured.append((place, part_no, known[part_no]))
     return measured
 
 
-def _estimators(layout: Layout, place: ElementPlace) -> tuple[Characteristic, ...]:
-    design, tolerance = layout.design, layout.design.tolerance
-    return tuple(
-        Characteristic(name, nominal, nominal + spread, nominal - spread)
-        for name, nominal, spread in (
-            ("slot length", place.hinge.l, tolerance.hinge_length),
-            ("load arm", place.load_arm, tolerance.load_arm),
-            ("arm height", place.hinge.h, tolerance.arm_height),
-            ("sheet thickness", design.sheet.thickness, tolerance.sheet_thickness),
-        )
+def _load_arm(limits: tuple[Characteristic, ...]) -> Characteristic:
+    """The arm's length less half the pad's, with limits that follow from theirs."""
+    named = {c.name: c for c in limits}
+    arm, pad = named["arm length"], named["pad length"]
+    return Characteristic(
+        "load arm", arm.nominal - pad.nominal / 2, arm.upper - pad.lower / 2, arm.lower - pad.upper / 2
     )
 
 

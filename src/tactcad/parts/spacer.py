@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from tactcad.contour import rectangle
 
-from .description import Characteristic, Extrusion, Part
-from .element import mounting_holes, sheet_material
+from .description import Extrusion, Part
+from .element import dowel_hole_limits, mounting_holes, sheet_material
 from .layout import Layout
+from .limits import within
 
 SPACER_TOLERANCE = 0.01  # mm, plus and minus; chosen: shim stock is rolled to less
 
@@ -30,9 +31,5 @@ def spacer(layout: Layout) -> Part:
         ),
         colour="#9aa4ae",
         notes=("burr-free, flat faces as rolled",),
-        characteristics=(
-            Characteristic(
-                "thickness", layout.spacer, layout.spacer + SPACER_TOLERANCE, layout.spacer - SPACER_TOLERANCE
-            ),
-        ),
+        characteristics=(within("thickness", layout.spacer, SPACER_TOLERANCE), dowel_hole_limits(d)),
     )

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 from tactcad.contour import rectangle
 
-from .description import Characteristic, Extrusion, Part
+from .description import Extrusion, Part
 from .layout import Layout
+from .limits import FACES, Datum, Geometric, within
 from .part_materials import STAINLESS
+
+STOP_PLATE_FLAT = 0.005  # mm; chosen: what surface grinding holds, a quarter of the usual gap's tolerances
 
 
 def stop_plate(layout: Layout) -> Part:
@@ -26,12 +29,10 @@ def stop_plate(layout: Layout) -> Part:
         colour="#565d66",
         finish="both faces ground, Ra 0.4, flat within 0.005",
         notes=("break edges 0.2", "ground face down, on the ledges"),
-        characteristics=(
-            Characteristic(
-                "thickness",
-                d.clamp.stop_plate_thickness,
-                d.clamp.stop_plate_thickness + 0.05,
-                d.clamp.stop_plate_thickness - 0.05,
-            ),
+        characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05),),
+        geometric=(
+            Geometric("flatness", "flatness", STOP_PLATE_FLAT, (FACES[0],)),
+            Geometric("parallelism", "parallelism", 2 * STOP_PLATE_FLAT, (FACES[1],), ("A",)),
         ),
+        datums=(Datum("A", FACES[0]),),
     )

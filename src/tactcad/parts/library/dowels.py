@@ -5,6 +5,7 @@ from __future__ import annotations
 from tactcad.contour import circle
 
 from ..description import Extrusion, Material, Part, Purchase
+from .fits import deviations
 from .tables import number, rows
 
 HARDENED = Material("hardened steel", 7850)
@@ -20,13 +21,12 @@ def dowel_lengths(size: str) -> tuple[float, ...]:
 
 def dowel_diameter(size: str) -> float:
     """Diameter as modelled, mm: the middle of tolerance m6."""
-    row = _ROWS[size]
-    return round(float(size) + (number(row["m6_low"]) + number(row["m6_high"])) / 2, 6)
+    return round(float(size) + sum(deviations("m6", float(size))) / 2, 6)
 
 
 def largest_dowel(size: str) -> float:
     """Upper limit of the diameter, mm."""
-    return round(float(size) + number(_ROWS[size]["m6_high"]), 6)
+    return round(float(size) + deviations("m6", float(size))[1], 6)
 
 
 def dowel(size: str, length: float) -> Part:

@@ -1,0 +1,106 @@
+"""Limits of a part: sizes with their limits, and geometric tolerances on named features and datums.
+
+A part states each limit once. Its sheet, the inspection list, the model with its annotations and the
+assembly's stack read it here. Features are named: an edge of the contour ("ledge"), an
+opening or a hole ("dowel_hole"), or one of the two faces of an extrusion (FACES).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+FACES = ("face z=0", "face z=thickness")
+Symbol = Literal["position", "flatness", "parallelism", "perpendicularity"]
+# Symbols that say nothing without a datum (ISO 1101:2017, table 1).
+NEED_DATUM = ("position", "parallelism", "perpendicularity")
+
+
+@dataclass(frozen=True)
+class Characteristic:
+    """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic.
+
+    `between` names the two features that it lies between; a feature of size alone stands first.
+    """
+
+    name: str
+    nominal: float
+    upper: float
+    lower: float
+    key: bool = False
+    between: tuple[str, str] = ("", "")
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A datum letter, and the feature that it stands on."""
+
+    letter: str
+    feature: str
+
+
+@dataclass(frozen=True)
+class Geometric:
+    """A geometric tolerance (ISO 1101).
+
+    symbol    what is controlled
+    zone      width of its zone, mm; its diameter where `round`
+    features  that it holds for, a pattern of several together
+    datums    letters, in order of precedence
+    """
+
+    name: str
+    symbol: Symbol
+    zone: float
+    features: tuple[str, ...]
+    datums: tuple[str, ...] = ()
+    round: bool = False
+
+
+def within(
+    name: str, nominal: float, tolerance: float, key: bool = False, between: tuple[str, str] = ("", "")
+) -> Characteristic:
+    """A dimension with plus and minus `tolerance`, mm."""
+    return Characteristic(name, nominal, nominal + tolerance, nominal - tolerance, key, between)
+
+
+def contradictions(
+    characteristics: Collection[Characteristic],
+    geometric: Collection[Geometric],
+    datums: Collection[Datum],
+    features: Collection[str],
+) -> Iterator[str]:
+    """What is wrong with a part's limits, a line each, with what is legal.
+
+    Parameters
+    ----------
+    characteristics, geometric, datums
+        As the part states them.
+    features
+        Names of the part's features; datums and geometric tolerances may stand on these alone.
+    """
+    known = ", ".join(sorted(set(features) - {""}))
+    for c in characteristics:
+        if not c.lower <= c.nominal <= c.upper:
+            yield (
+                f"{c.name}: limits {c.lower:g} and {c.upper:g} do not hold the nominal {c.nominal:g}; "
+                "legal: lower <= nominal <= upper"
+            )
+        for feature in (f for f in c.between if f and f not in features):
+            yield f"{c.name}: the part has no feature {feature!r}; legal: {known}"
+    letters = [d.letter for d in datums]
+    for d in datums:
+        if letters.count(d.letter) > 1:
+            yield f"datum {d.letter} stands on several features; legal: one feature a letter"
+        if d.feature not in features:
+            yield f"datum {d.letter}: the part has no feature {d.feature!r}; legal: {known}"
+    for g in geometric:
+        if g.zone <= 0:
+            yield f"{g.name}: zone of {g.zone:g} mm; legal: more than 0"
+        for feature in (f for f in g.features if f not in features):
+            yield f"{g.name}: the part has no feature {feature!r}; legal: {known}"
+        for letter in (x for x in g.datums if x not in letters):
+            yield f"{g.name}: there is no datum {letter}; legal: {', '.join(letters) or 'none is defined'}"
+        if g.symbol in NEED_DATUM and not g.datums:
+            yield f"{g.name}: {g.symbol} of {', '.join(g.features)} without datum; legal: at least one datum"
