@@ -9,7 +9,7 @@ from tactcad.parts.designs import load
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.fits import deviations, general
-from tactcad.parts.limits import Characteristic, Datum, Geometric, within
+from tactcad.parts.limits import Characteristic, DatumFeature, Geometric, within
 from tactcad.parts.measurements import measurements
 
 # Micrometres as printed in ISO 286-2:2010, tables 2 to 32.
@@ -71,7 +71,7 @@ def part(**limits):
     [
         ({"characteristics": (Characteristic("width", 4, 3.9, 4.1),)}, "lower <= nominal <= upper"),
         ({"characteristics": (within("width", 4, 0.1, between=("nose", "")),)}, "no feature 'nose'"),
-        ({"datums": (Datum("A", "nose"),)}, "no feature 'nose'"),
+        ({"datums": (DatumFeature("A", "nose"),)}, "no feature 'nose'"),
         ({"geometric": (Geometric("place", "position", 0.1, ("face z=0",)),)}, "without datum"),
         ({"geometric": (Geometric("flat", "flatness", 0.0, ("face z=0",)),)}, "more than 0"),
         ({"geometric": (Geometric("place", "position", 0.1, ("face z=0",), ("A",)),)}, "no datum A"),

@@ -16,7 +16,7 @@ from tactcad.design.tree import Design
 from .description import Extrusion, Part
 from .element import dowel_hole_limits, mounting_holes, rear_corners, sheet_material
 from .layout import Layout
-from .limits import Datum, Geometric, within
+from .limits import DatumFeature, Geometric, within
 
 
 def blank_ledge_zone(design: Design) -> float:
@@ -51,5 +51,5 @@ def blank(layout: Layout) -> Part:
         ),
         # as far from the dowel hole as any element's ledge: pad height and ledge over the pad
         geometric=(Geometric("ledge", "position", blank_ledge_zone(d), ("ledge",), ("A",)),),
-        datums=(Datum("A", "dowel_hole"),),
+        datums=(DatumFeature("A", "dowel_hole"),),
     )

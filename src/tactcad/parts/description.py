@@ -15,7 +15,7 @@ from typing import Literal
 from tactcad.contour import Contour
 from tactcad.design.messages import CheckFailure
 
-from .limits import FACES, Characteristic, Datum, Geometric, contradictions
+from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictions
 
 Vector = tuple[float, float, float]
 Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought"]
@@ -257,7 +257,7 @@ class Part:
     notes: tuple[str, ...] = ()
     characteristics: tuple[Characteristic, ...] = ()
     geometric: tuple[Geometric, ...] = ()
-    datums: tuple[Datum, ...] = ()
+    datums: tuple[DatumFeature, ...] = ()
     purchase: Purchase | None = None
     mass_override: float | None = None
     spares: int = 0

@@ -19,7 +19,7 @@ from tactcad.design.tree import Design
 
 from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
-from .limits import FACES, Characteristic, Datum, within
+from .limits import FACES, Characteristic, DatumFeature, within
 
 BARE_METAL = "#c3c8ce"
 
@@ -55,7 +55,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             *material_notes(design),
         ),
         characteristics=_limits(layout, place, gap, {s.name for s in outer}),
-        datums=(Datum("A", "flat_face"), Datum("B", "dowel_hole")),
+        datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
     )
 
 

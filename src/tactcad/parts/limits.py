@@ -33,7 +33,7 @@ class Characteristic:
 
 
 @dataclass(frozen=True)
-class Datum:
+class DatumFeature:
     """A datum letter, and the feature that it stands on."""
 
     letter: str
@@ -68,7 +68,7 @@ def within(
 def contradictions(
     characteristics: Collection[Characteristic],
     geometric: Collection[Geometric],
-    datums: Collection[Datum],
+    datums: Collection[DatumFeature],
     features: Collection[str],
 ) -> Iterator[str]:
     """What is wrong with a part's limits, a line each, with what is legal.

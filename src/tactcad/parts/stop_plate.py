@@ -10,7 +10,7 @@ from tactcad.contour import rectangle
 
 from .description import Extrusion, Part
 from .layout import Layout
-from .limits import FACES, Datum, Geometric, within
+from .limits import FACES, DatumFeature, Geometric, within
 from .part_materials import STAINLESS
 
 STOP_PLATE_FLAT = 0.005  # mm; chosen: what surface grinding holds, a quarter of the usual gap's tolerances
@@ -34,5 +34,5 @@ def stop_plate(layout: Layout) -> Part:
             Geometric("flatness", "flatness", STOP_PLATE_FLAT, (FACES[0],)),
             Geometric("parallelism", "parallelism", 2 * STOP_PLATE_FLAT, (FACES[1],), ("A",)),
         ),
-        datums=(Datum("A", FACES[0]),),
+        datums=(DatumFeature("A", FACES[0]),),
     )
