@@ -129,7 +129,7 @@ def test_dimension_lines_stand_off_the_outline(finished):
 def test_key_characteristics_are_found_in_the_pdf_and_held_against_the_model(orders, finished):
     part = orders[ELEMENT].part
     keys = [c for c in part.characteristics if c.key]
-    assert len(keys) == 3
+    assert len(keys) == 4
     (runs,) = pdf_runs(pdf(finished[ELEMENT]))
     assert key_faults(runs, keys) == []
     thinner = [replace(keys[0], nominal=keys[0].nominal - 0.001), *keys[1:]]
