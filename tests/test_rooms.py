@@ -16,6 +16,7 @@ ROOMS = (
     "fem",
     "parts",
     "scenes",
+    "assembly",
     "solids",
     "checks",
     "drawing",

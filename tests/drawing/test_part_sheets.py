@@ -141,7 +141,7 @@ def test_key_characteristics_are_found_in_the_pdf_and_held_against_the_model(ord
     bare = [run if run is not again else "0.25" for run in runs]
     assert key_faults(bare, keys) == ["K1: '0.25' is no value with limits"]
     assert f"{again!r} stands 2 times" in " ".join(key_faults([*runs, again], keys))
-    assert "K4" in key_faults(runs, [*keys, Characteristic("one more", 1.0, 1.1, 0.9, True)])[0]
+    assert "K5" in key_faults(runs, [*keys, Characteristic("one more", 1.0, 1.1, 0.9, True)])[0]
 
 
 def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro):

@@ -17,12 +17,12 @@ from OCP.TopoDS import TopoDS_Shape
 from tactcad.parts.description import vector
 from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Contact, Placement, Scene
+from tactcad.scenes.threads import thread_overlap
 from tactcad.solids.measure import bounding_box, measure, volume
 from tactcad.solids.near import Faces, boxed, faces_within, nearest
 from tactcad.solids.place import location
 
 from .sliding import stretch, zones
-from .threads import thread_overlap
 
 # Solids nearer than this touch (mm); overlaps of less volume are the rounding of touching faces (mm3).
 TOUCH_MM = 1e-5

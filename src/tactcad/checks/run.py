@@ -16,6 +16,7 @@ from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
+from .assembly import check_assembly
 from .brep import check_brep, check_step
 from .calibration_travel import check_calibration
 from .check_report import Report
@@ -63,6 +64,7 @@ def run_checks(
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
     report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
+    report.run("assembly", check_assembly, design)
     if "calibration" in scene_names:
         report.run("calibration travel", check_calibration, design)
     scenes = [make_scene(design, name) for name in scene_names]

@@ -26,6 +26,7 @@ COMMANDS = {
     "new": "write a design file to start from",
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
+    "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
     "release": "run every check, and write one zip that a shop can quote from",
     "golden": "run every check, show what changed, and write a design's golden geometry",
     "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",

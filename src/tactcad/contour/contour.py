@@ -100,9 +100,14 @@ def circle(centre: Point, diameter: float, name: str = "") -> Contour:
     return Contour((Arc(east, west, centre, True, name), Arc(west, east, centre, True, name)))
 
 
+RECTANGLE = ("lower edge", "right edge", "upper edge", "left edge")
+
+
 def rectangle(x0: float, y0: float, x1: float, y1: float) -> Contour:
-    """Counter-clockwise rectangle with corners (x0, y0) and (x1, y1), mm."""
-    return chain([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+    """Counter-clockwise rectangle with corners (x0, y0) and (x1, y1), mm; its edges are RECTANGLE's."""
+    corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    sides = zip(corners, corners[1:] + corners[:1], RECTANGLE)
+    return Contour(tuple(Line(a, b, name) for a, b, name in sides))
 
 
 def chain(points: Iterable[Point]) -> Contour:

@@ -146,11 +146,13 @@ def _group(
     bore = dimension(Quantity.DIAMETER, "⌀", counted=not h.thread)
     bore = replace(bore, limits=limits, modelled=modelled, fit=fit)
     if c := own.get(bore.name):  # it is modelled between its limits
+        remark = words if fit else remark
         bore = replace(
             bore,
             limits=(c.upper - c.nominal, c.lower - c.nominal),
             modelled=round(h.diameter - c.nominal, 9),
             characteristic=c,
+            fit="",
         )
     used = [bore]
     depth = None if h.through else dimension(Quantity.DEPTH, "↧")

@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from .shapes import Shapes
 
 # Rooms and libraries that an exported file may depend on: a change in any of them rebuilds.
-ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "solids", "drawing", "export")
+ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "assembly", "solids", "drawing", "export")
 # The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
 # is an empty stand-in for the first.
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
-LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy")
+LIBRARIES = ("build123d", KERNEL, "ezdxf", "numpy", "scipy")
 DRAWN_WITH = ("matplotlib", "reportlab")  # where drawings are asked for: font and PDF
 
 
@@ -174,7 +174,14 @@ def _rebuild(
     from tactcad.scenes import make_scene
     from tactcad.scenes.detail import at_detail
 
-    from .products import assembly_products, drawing_products, guide_products, part_products, scene_products
+    from .products import (
+        assembly_products,
+        drawing_products,
+        guide_products,
+        part_products,
+        scene_products,
+        stack_products,
+    )
     from .shapes import Shapes
 
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
@@ -182,6 +189,7 @@ def _rebuild(
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
+    products += stack_products(design, shapes)
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
@@ -88,6 +88,27 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
             )
         )
     return products
+
+
+def stack_products(design: Design, shapes: Shapes) -> list[Output]:
+    """How the limits of all parts add up: a table, and a page with bars; from one run of virtual builds."""
+
+    @cache
+    def run() -> tuple[bytes, bytes]:
+        from tactcad.assembly.stack import stack_bytes
+        from tactcad.assembly.stack_page import stack_page
+        from tactcad.assembly.virtual_build import sensor
+
+        made = sensor(design)
+        lines = made.stack()
+        title = f"{design.design.title}, revision {design.design.revision}"
+        return stack_bytes(lines), stack_page(title, made.built(1000), lines)
+
+    made_by = digest(("stack", shapes.made_by, design))
+    return [
+        Output("stack.csv", "report", "", digest((made_by, "csv")), lambda: run()[0]),
+        Output("stack.html", "report", "", digest((made_by, "html")), lambda: run()[1]),
+    ]
 
 
 def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:

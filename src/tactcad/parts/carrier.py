@@ -9,15 +9,20 @@ r"""Carrier over the end plates: takes the axis, and the set screws that hold th
 
 from __future__ import annotations
 
+from math import ceil, floor
+
 from tactcad.contour import rectangle
 from tactcad.design.present import present
 
 from .description import Extrusion, Feature, Hole, Part
+from .end_plate import SCREWS
 from .fasteners import carrier_screw
 from .layout import Layout
 from .library.screws import METRIC, counterbore_diameter
+from .limits import FACES, DatumFeature, Geometric
 from .plate import plate
 from .screw_holes import tapped_through
+from .spacer import SPACER_TOLERANCE
 
 
 def carrier(layout: Layout) -> Part:
@@ -30,7 +35,8 @@ def carrier(layout: Layout) -> Part:
     t = d.clamp.carrier_thickness
     metric = METRIC[thread]
     screw = present(carrier_screw(layout))
-    counterbore = (counterbore_diameter(thread), round(t - screw.under_head, 9))
+    wider = carrier_clearance(layout) - metric.clearance
+    counterbore = (round(counterbore_diameter(thread) + wider, 9), round(t - screw.under_head, 9))
     features: list[Feature] = []
     for sx in (-1.0, 1.0):
         for sy in (-1.0, 1.0):
@@ -39,7 +45,7 @@ def carrier(layout: Layout) -> Part:
                     "end_plate_screw",
                     (sx * layout.carrier_screw_x, sy * layout.end_plate_y, t),
                     (0, 0, -1),
-                    metric.clearance,
+                    carrier_clearance(layout),
                     t,
                     True,
                     counterbore=counterbore,
@@ -64,4 +70,37 @@ def carrier(layout: Layout) -> Part:
         "Carrier",
         Extrusion(rectangle(-length / 2, -width / 2, length / 2, width / 2), t),
         features,
+        geometric=(
+            Geometric("end plate screw holes", "position", PLACE, ("end_plate_screw",), ("A",), True),
+            Geometric("mounting threads", "position", 2 * PLACE, ("mount",), ("A",), True),
+        ),
+        datums=(DatumFeature("A", FACES[0]),),
     )
+
+
+# Zone of the screw holes' pattern, mm; chosen: drilled in one clamping.
+PLACE = 0.1
+
+
+def stack_grows(layout: Layout) -> float:
+    """By how much sheets and spacers at their limits change the stack's length, mm."""
+    n = layout.positions
+    return n * layout.design.tolerance.sheet_thickness + (n + 1) * SPACER_TOLERANCE
+
+
+def carrier_clearance(layout: Layout) -> float:
+    """Diameter of the holes for the end plates' screws, mm.
+
+    They let the end plates stand as far apart as the stack makes them, and their threads where their zones
+    allow; but no wider than leaves LEAST_RING of every head's face on the carrier.
+    """
+    m = METRIC[layout.design.clamp.screw]
+    wanted = m.d + stack_grows(layout) + SCREWS + PLACE
+    # (head - hole)/2 - (hole - d)/2 >= LEAST_RING
+    widest = (m.head - HEAD_LESS + m.d) / 2 - LEAST_RING
+    return max(m.clearance, min(floor(10 * widest + 1e-6), ceil(10 * wanted - 1e-6)) / 10)
+
+
+# Least of a head's face beside a hole, on the side where it is least, mm; chosen.
+LEAST_RING = 0.25
+HEAD_LESS = 0.2  # mm: least head diameter under the largest (ISO 4762, table 1, rounded up)

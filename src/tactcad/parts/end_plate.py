@@ -9,16 +9,19 @@ above.
 
 from __future__ import annotations
 
+from math import ceil
+
 from tactcad.contour import rectangle
 from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Feature, Hole, Part, Vector
-from .element import dowel_hole_diameter
 from .fasteners import Clamping, clamping
 from .layout import Layout
-from .library.dowels import dowel_diameter
+from .library.dowels import dowel_diameter, dowel_limits
+from .library.fits import deviations
 from .library.screws import METRIC, counterbore_diameter
+from .limits import FACES, Characteristic, DatumFeature, Geometric
 from .plate import plate
 from .screw_holes import tapped_blind, tapped_through
 
@@ -36,24 +39,23 @@ def end_plate(layout: Layout, head: bool) -> Part:
     depth = d.clamp.end_plate_thickness
     height = round(z1 - z0, 9)
     outer = rectangle(-layout.end_plate_half, 0, layout.end_plate_half, height)
+    bore = head_bore(layout) if head else _pressed(float(d.clamp.dowel))
     features: list[Feature] = []
     for side in (-1.0, 1.0):
         for i, x in enumerate(layout.screw_x):
             features.append(
                 _screw_hole(f"screw_{i + 1}", d, c, head, (side * x, d.holes.height - z0, 0.0), depth)
             )
-        for i, x in enumerate(layout.dowel_x):
+        for x in layout.dowel_x:
             features.append(
                 Hole(
-                    f"dowel_{i + 1}",
+                    "dowel_hole",
                     (side * x, d.holes.height - z0, 0.0),
                     (0, 0, 1),
-                    dowel_hole_diameter(d) if head else dowel_diameter(d.clamp.dowel),
+                    round((bore.lower + bore.upper) / 2, 6) if head else dowel_diameter(d.clamp.dowel),
                     depth,
                     True,
-                    tolerance=f"+{d.holes.dowel_hole_upper:g}/0"
-                    if head
-                    else "H7, reamed with the pin in press fit",
+                    tolerance="" if head else f"{PRESS_FIT}, the pin pressed in",
                 )
             )
         features.append(
@@ -70,7 +72,54 @@ def end_plate(layout: Layout, head: bool) -> Part:
         features,
         colour=PLATE_COLOUR,
         finish="Ra 1.6, clear anodised after machining; dowel holes masked",
+        notes=(
+            "break edges 0.2",
+            "upper edge and dowel holes of both end plates machined in one clamping; mark the pair",
+        ),
+        characteristics=(bore,),
+        geometric=(*_places(layout), *(() if head else (_square(depth),))),
+        datums=(DatumFeature("A", INNER), DatumFeature("B", "upper edge"), DatumFeature("C", "left edge")),
     )
+
+
+PRESS_FIT = "N7"  # of the pins in the tapped plate, ISO 286
+HEAD_TOLERANCE = 0.03  # mm, of the head plate's dowel holes; chosen: reamed or bored
+INNER = FACES[1]
+# Zones in mm; chosen: what a jig borer or wire holds in one clamping; of screw holes, half the clearance that
+# ISO 273 leaves an M3.
+HOLES, PAIR, SQUARE, SCREWS = 0.05, 0.01, 0.005, 0.2
+
+
+def head_bore(layout: Layout) -> Characteristic:
+    """The head plate's dowel holes: they pass over pins that lean as far as they may, and leave room to level
+    the plate."""
+    d = layout.design
+    depth = d.clamp.end_plate_thickness
+    lean = SQUARE / depth * (layout.stack + depth)
+    least = ceil(100 * (dowel_limits(d.clamp.dowel)[1] + 2 * lean + PAIR) - 1e-6) / 100
+    upper = round(least + HEAD_TOLERANCE, 6)
+    return Characteristic("dowel hole diameter", least, upper, least, between=("dowel_hole", ""))
+
+
+def _pressed(size: float) -> Characteristic:
+    low, high = deviations(PRESS_FIT, size)
+    limits = (round(size + high, 6), round(size + low, 6))
+    return Characteristic("dowel hole diameter", size, *limits, between=("dowel_hole", ""))
+
+
+def _places(layout: Layout) -> tuple[Geometric, ...]:
+    screws = tuple(f"screw_{i + 1}" for i in range(len(layout.screw_x)))
+    dowels, frame = ("dowel_hole",), ("A", "B", "C")
+    return (
+        Geometric("dowel holes", "position", HOLES, dowels, frame, True),
+        Geometric("dowel holes of the pair", "position", PAIR, dowels, ("A", "B"), True),
+        Geometric("screw holes", "position", SCREWS, screws, frame, True),
+        Geometric("carrier threads", "position", SCREWS, ("carrier",), frame, True),
+    )
+
+
+def _square(depth: float) -> Geometric:
+    return Geometric("dowel holes' squareness", "perpendicularity", SQUARE, ("dowel_hole",), ("A",), True)
 
 
 def _screw_hole(name: str, d: Design, c: Clamping, head: bool, at: Vector, depth: float) -> Hole:

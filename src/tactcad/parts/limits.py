@@ -21,6 +21,7 @@ NEED_DATUM = ("position", "parallelism", "perpendicularity")
 class Characteristic:
     """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic.
 
+    Of a fit (ISO 286) the nominal size may lie outside its limits.
     `between` names the two features that it lies between; a feature of size alone stands first.
     """
 
@@ -82,11 +83,8 @@ def contradictions(
     """
     known = ", ".join(sorted(set(features) - {""}))
     for c in characteristics:
-        if not c.lower <= c.nominal <= c.upper:
-            yield (
-                f"{c.name}: limits {c.lower:g} and {c.upper:g} do not hold the nominal {c.nominal:g}; "
-                "legal: lower <= nominal <= upper"
-            )
+        if c.lower > c.upper:
+            yield f"{c.name}: lower limit {c.lower:g} above the upper one, {c.upper:g}; legal: lower <= upper"
         for feature in (f for f in c.between if f and f not in features):
             yield f"{c.name}: the part has no feature {feature!r}; legal: {known}"
     letters = [d.letter for d in datums]

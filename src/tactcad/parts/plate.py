@@ -8,9 +8,13 @@ from collections.abc import Iterable
 
 from tactcad.design.tree import Design
 
-from .description import Characteristic, Extrusion, Feature, Part
+from .description import Extrusion, Feature, Part
+from .limits import Characteristic, DatumFeature, Geometric, within
 from .part_materials import plate_material
 
+# A plate is faced on both sides to this, plus and minus mm, so that screws through it end where they should;
+# what is thicker is a block, with general tolerances.
+THICKNESS, THICKEST = 0.05, 20.0
 RIG_COLOUR = "#8d99a6"
 ANODISED = "Ra 1.6, clear anodised after machining"
 
@@ -25,6 +29,8 @@ def plate(
     colour: str = RIG_COLOUR,
     notes: tuple[str, ...] = ("break edges 0.2",),
     characteristics: tuple[Characteristic, ...] = (),
+    geometric: tuple[Geometric, ...] = (),
+    datums: tuple[DatumFeature, ...] = (),
 ) -> Part:
     """A plate of the design's plate alloy; its part number is the design's name and `number`."""
     return Part(
@@ -37,5 +43,13 @@ def plate(
         colour=colour,
         finish=finish,
         notes=notes,
-        characteristics=characteristics,
+        characteristics=(*_thickness(body, characteristics), *characteristics),
+        geometric=geometric,
+        datums=datums,
     )
+
+
+def _thickness(body: Extrusion, own: tuple[Characteristic, ...]) -> tuple[Characteristic, ...]:
+    if body.thickness > THICKEST or any(c.name == "thickness" for c in own):
+        return ()
+    return (within("thickness", body.thickness, THICKNESS),)

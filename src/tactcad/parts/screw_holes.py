@@ -40,7 +40,7 @@ def tapped_through(name: str, thread: str, at: Vector, axis: Vector, depth: floa
 
 
 def tapped_blind(name: str, thread: str, at: Vector, axis: Vector, full: float | None = None) -> Hole:
-    """Blind thread of 1.5 d and 1 mm, or of `full`, with two pitches of run-out and the drill's cone."""
+    """Blind thread of 1.5 d and 1.5 mm, or of `full`, with two pitches of run-out and the drill's cone."""
     m = METRIC[thread]
     full = blind_thread(thread) if full is None else full
     return Hole(

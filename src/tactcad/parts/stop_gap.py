@@ -38,15 +38,22 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     """Gap between stop land and stop plate at the tip, mm.
 
     [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its
-    rated deflection under the overload force (`stop_limit`), and that leaves a land under the ledge; rounded
-    down.
+    rated deflection under the overload force (`stop_limit`) as assembled, one plate on all ledges (`seat`),
+    and that leaves a land under the ledge; rounded down.
     """
     stop = layout.design.stop
     if stop.gaps and place.arm in stop.gaps:
         return stop.gaps[place.arm]
-    widest = min(stop_limit(layout, place).gap - stop.tolerance, land_room(layout, place.hinge))
+    closing = stop_limit(layout, place).gap - stop.tolerance - seat(layout)
+    widest = min(closing, land_room(layout, place.hinge))
     step = STEP_MM if widest >= 10 * STEP_MM else STEP_MM / 10
     return round(floor(widest / step + 1e-9) * step, 6)
+
+
+def seat(layout: Layout) -> float:
+    """By how much the stop plate may lie above an element's own ledge at its stop land, mm: all other ledges
+    at their upper limit, this one at its lower, and half of that again where the plate leans."""
+    return round(3.0 * layout.design.tolerance.ledge, 9)
 
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from tactcad.checks.assembly import check_assembly
 from tactcad.checks.check_report import Report
 from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
 from tactcad.design.messages import CheckFailure
@@ -80,6 +82,9 @@ def release(
     refuse_what_is_no_zip(target)
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
+    _refuse(design, failures, draft, progress)
+    # beside the published seed, which the checks take, one that nobody could design for
+    failures += [str(f) for f in check_assembly(design, secrets.randbelow(2**32))]
     _refuse(design, failures, draft, progress)
     report = _checked(design, shop_file, progress)
     failures += [str(f) for f in report.failures]

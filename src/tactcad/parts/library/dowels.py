@@ -21,12 +21,13 @@ def dowel_lengths(size: str) -> tuple[float, ...]:
 
 def dowel_diameter(size: str) -> float:
     """Diameter as modelled, mm: the middle of tolerance m6."""
-    return round(float(size) + sum(deviations("m6", float(size))) / 2, 6)
+    return round(sum(dowel_limits(size)) / 2, 6)
 
 
-def largest_dowel(size: str) -> float:
-    """Upper limit of the diameter, mm."""
-    return round(float(size) + deviations("m6", float(size))[1], 6)
+def dowel_limits(size: str) -> tuple[float, float]:
+    """Limits of the diameter, mm."""
+    low, high = deviations("m6", float(size))
+    return (round(float(size) + low, 6), round(float(size) + high, 6))
 
 
 def dowel(size: str, length: float) -> Part:

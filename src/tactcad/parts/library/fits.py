@@ -27,8 +27,7 @@ def deviations(code: str, size: float) -> tuple[float, float]:
     Parameters
     ----------
     code
-        Fundamental deviation and grade: capitals for holes. Holes other than H and JS are those of grades
-        above 8, or of D to H, where the hole's deviation mirrors the shaft's.
+        Fundamental deviation and grade, capitals for holes: d to p, D to P, js, JS.
     size
         Nominal size, mm.
 
@@ -41,18 +40,21 @@ def deviations(code: str, size: float) -> tuple[float, float]:
     letter, grade = (match[1], match[2]) if match else ("", "")
     width_row, shaft_row = _row(_GRADES, size, code), _row(_DEVIATIONS, size, code)
     hole = letter.isupper()
-    if grade not in width_row or grade == "to" or (letter != letter.lower() and letter.lower() in "kmnp"):
-        raise ValueError(f"{code!r} is not in the tables; legal: d to p and D to H, js, JS, grades 5 to 16")
+    if grade not in width_row or letter.lower() not in {"js", *shaft_row} - {"to"}:
+        raise ValueError(f"{code!r} is not in the tables; legal: d to p and D to P, js, JS, grades 5 to 16")
     width = int(width_row[grade])
     if letter.lower() == "js":
         return (-width / 2e3, width / 2e3)
-    if letter.lower() not in shaft_row:
-        raise ValueError(f"{code!r} is not in the tables; legal: d to p and D to H, js, JS, grades 5 to 16")
     if letter == "k" and int(grade) > 7:
         return (0.0, width / 1e3)
     own = int(shaft_row[letter.lower()])
     lower, upper = (own - width, own) if letter.lower() in _BELOW else (own, own + width)
-    return (-upper / 1e3, -lower / 1e3) if hole else (lower / 1e3, upper / 1e3)
+    if not hole:
+        return (lower / 1e3, upper / 1e3)
+    # press holes of fine grades lie higher by the step to the next finer grade (ISO 286-1, 4.1.2.3)
+    fine = letter in "KMNP" and size > 3 and int(grade) <= (7 if letter == "P" else 8) and grade != "5"
+    raised = width - int(width_row[str(int(grade) - 1)]) if fine else 0
+    return ((raised - upper) / 1e3, (raised - lower) / 1e3)
 
 
 def general(size: float, grade: str = "m") -> float:

@@ -7,8 +7,9 @@ from tactcad.design.tree import Design
 from ..layout import Layout
 from ..screw_holes import corners
 
-# Screws into the carrier's threads end this far inside its far face, where the end plates lie.
-SHORT_OF_CARRIER = 0.3
+# Screws into the carrier's threads end this far inside its far face, where the end plates lie: more than the
+# screws' length (js15) and the plates may add.
+SHORT_OF_CARRIER = 0.8
 CARRIER_SCREW = 10.0
 
 

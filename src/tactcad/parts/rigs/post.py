@@ -21,7 +21,7 @@ from .stand_layout import StandLayout
 
 POST_SCREWS = corners(20.0, 5.0)  # from the post's middle
 BASE_SCREW = 16.0  # M5 through the base plate into the post, head sunk
-BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 0.5
+BASE_THREAD = BASE_SCREW - (BASE[1] - METRIC["M5"].head_height) + 1.0  # its end free at any limits
 
 
 def post(rig: StandLayout) -> Part:

@@ -9,7 +9,7 @@ from math import cos, hypot, pi
 from ..fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
 from ..finding import SAME, Finding
 from ..layout import BESIDE_SET_SCREW, CARRIER_EDGE, END_PLATE_WEB, HOLE_WEB, LEAST_GAP, SUNK, Layout
-from ..library.dowels import largest_dowel
+from ..library.dowels import dowel_limits
 from ..library.screws import (
     DRILL_REACH,
     METRIC,
@@ -47,7 +47,7 @@ def holes_inside_body(layout: Layout) -> Iterator[Finding]:
             h.height,
             f"from {low + h.web + widest / 2:g} to {high - h.web - widest / 2:g} mm",
         )
-    pin, loosest = largest_dowel(d.clamp.dowel), float(d.clamp.dowel) + 0.1
+    pin, loosest = dowel_limits(d.clamp.dowel)[1], float(d.clamp.dowel) + 0.1
     yield from at_least("holes.dowel_hole", "smaller than the dowel may be (m6)", h.dowel_hole, pin)
     if h.dowel_hole > loosest:
         yield wrong(

@@ -22,7 +22,7 @@ def thread_overlap(first: Placement, second: Placement) -> float:
 
     The screw's axis is its part's z. 0 where neither stands in a tapped hole of the other.
     """
-    return max((_ring(hole, *ends) for hole, *ends in _engaged(first, second)), default=0.0)
+    return max((_ring(hole, *ends) for hole, *ends in engaged(first, second)), default=0.0)
 
 
 def _ring(hole: Hole, start: float, end: float) -> float:
@@ -36,7 +36,7 @@ def thread_range(hole: Hole) -> tuple[float, float]:
     return start, start + hole.thread_depth
 
 
-def _engaged(first: Placement, second: Placement) -> Iterator[tuple[Hole, float, float]]:
+def engaged(first: Placement, second: Placement) -> Iterator[tuple[Hole, float, float]]:
     """Tapped holes of either part in whose axis the other one stands, and from where to where it does."""
     for tapped, screw in ((first, second), (second, first)):
         turn, low_high = np.array(tapped.rotation), _along_z(screw.part)

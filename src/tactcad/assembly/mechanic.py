@@ -1,0 +1,250 @@
+"""The virtual mechanic: puts an array together as the guide says, from parts as they were made.
+
+Pins are pressed into the tapped plate; elements slide on them; the stack stands with its pads on a surface
+plate and is clamped there, each element free within its dowel's play; the head plate is levelled within its
+own; the stop plate lies on all ledges. Parts are rigid. With several dowels a row, the first one locates.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from tactcad.mechanics import ladder
+from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.stop import tip_compliance
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import stop_gap
+
+from .contacts import nearest_pose, resting_plane
+from .variables import Array, Deviations
+
+# Variables of elements, by the field of HingeSection that each sets.
+HINGE = {
+    "element: hinge thickness": "hinge_thickness",
+    "element: slot length": "hinge_length",
+    "element: fillet radius": "fillet_radius",
+    "element: arm height": "arm_height",
+    "sheet: thickness": "width",
+}
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """Arrays put together: lengths in mm, of shape (arrays, pieces), pieces by element number unless said.
+
+    layout  the design as drawn
+    made    deviations of its parts
+    """
+
+    layout: Layout
+    made: Deviations
+
+    # --- where things are as drawn ---
+
+    @cached_property
+    def side(self) -> Array:
+        """1 for elements of row one, which stand at positive x, -1 for row two."""
+        return np.array([1.0 if p.row == 1 else -1.0 for p in self.layout.elements])
+
+    @cached_property
+    def y(self) -> Array:
+        return np.array([p.y for p in self.layout.elements])
+
+    @property
+    def dowel_x(self) -> float:
+        return min(self.layout.dowel_x)
+
+    def _of_row(self, pins: Array) -> Array:
+        """By element, of what (arrays, pins) says of the first pin of each row, rows in turn."""
+        per_row = len(self.layout.dowel_x)
+        return pins[:, np.where(self.side > 0, 0, per_row)]
+
+    # --- pins and the pads on the surface plate ---
+
+    def pin(self, axis: str, y: Array | float) -> Array:
+        """How far the first pins of both rows are off along an axis at y, (arrays, 2)."""
+        m, d = self.made, self.layout.design
+        first = [0, len(self.layout.dowel_x)]
+        root = (
+            m[f"end plates: dowel holes along {axis}"]
+            + m[f"end plate, tapped: dowel holes against the pair's along {axis}"]
+        )
+        lean = m[f"end plate, tapped: dowel holes' squareness along {axis}"] / (
+            d.clamp.end_plate_thickness / 2
+        )
+        return (root + lean * (self.layout.stack / 2 - y))[:, first]
+
+    def _pin_at_elements(self, axis: str) -> Array:
+        row = np.where(self.side > 0, 0, 1)
+        at = {y: self.pin(axis, y) for y in sorted(set(self.y))}
+        return np.column_stack([at[y][:, r] for y, r in zip(self.y, row)])
+
+    @cached_property
+    def play(self) -> Array:
+        """Diametral play of each element on its pin."""
+        h, size = self.layout.design.holes, float(self.layout.design.clamp.dowel)
+        return (
+            h.dowel_hole
+            - size
+            + self.made["element: dowel hole diameter"]
+            - self._of_row(self.made["dowel pin: diameter"])
+        )
+
+    @cached_property
+    def pose(self) -> Array:
+        """The pins' height over the surface plate, their slopes along x and y, and by how much the worst pad
+        misses the plate."""
+        points = np.column_stack([self.side * self.dowel_x, self.y])
+        heights = self.made[PAD] - self._pin_at_elements("z")
+        return nearest_pose(points, heights, self.play / 2)
+
+    @cached_property
+    def pads(self) -> Array:
+        """Height of each pad over the surface plate: what its pin carries it off; negative where it would
+        press into the plate, and so lifts the others."""
+        points = np.column_stack([self.side * self.dowel_x, self.y])
+        pin = self.pose[:, :1] + self.pose[:, 1:3] @ points.T + self._pin_at_elements("z")
+        beyond = pin - self.made[PAD]
+        return np.sign(beyond) * np.maximum(np.abs(beyond) - self.play / 2, 0.0)
+
+    @property
+    def pads_apart(self) -> Array:
+        """Highest over lowest pad, (arrays, 1)."""
+        return np.ptp(self.pads, axis=1, keepdims=True)
+
+    # --- end plates ---
+
+    @property
+    def head_misses(self) -> Array:
+        """Least radial play that the head plate's holes have left over its pins, (arrays, 1).
+
+        The plate shifts and turns within its play: two pins only ask for the distance of its holes.
+        """
+        m = self.made
+        y = -self.layout.stack / 2 - self.layout.design.clamp.end_plate_thickness / 2
+        apart = []
+        for axis in "xz":
+            pins = self.pin(axis, y)
+            holes = (
+                m[f"end plates: dowel holes along {axis}"]
+                + m[f"end plate, head: dowel holes against the pair's along {axis}"]
+            )[:, [0, len(self.layout.dowel_x)]]
+            off = pins - holes
+            apart.append((off[:, :1] - off[:, 1:]) / 2)
+        play = (m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]).min(
+            axis=1, keepdims=True
+        ) / 2
+        return play - np.abs(apart[0])  # across the pins' line the plate turns
+
+    @property
+    def press(self) -> Array:
+        """By how much each pin is larger than its hole in the tapped plate, (arrays, pins)."""
+        return self.made["dowel pin: diameter"] - self.made["end plate, tapped: dowel hole diameter"]
+
+    @property
+    def tilt(self) -> Array:
+        """The carrier's angles against the plane of the pads, along the row and across, degrees, (arrays, 2).
+
+        The head plate is levelled with the tapped one as far as the play of its holes allows.
+        """
+        m, layout = self.made, self.layout
+        first = [0, len(layout.dowel_x)]
+        y = layout.stack / 2 + layout.design.clamp.end_plate_thickness / 2
+        ends = {}
+        for which, at in (("tapped", y), ("head", -y)):
+            points = np.array([[self.dowel_x, at], [-self.dowel_x, at]])
+            pins = self.pose[:, :1] + self.pose[:, 1:3] @ points.T + self.pin("z", at)
+            hole = (
+                m["end plates: dowel holes along z"]
+                + m[f"end plate, {which}: dowel holes against the pair's along z"]
+            )
+            ends[which] = pins - hole[:, first]  # heights of its upper edge over the pins, as drawn 0
+        off = ends["head"] - ends["tapped"]
+        free = (m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]).min(
+            axis=1, keepdims=True
+        ) / 2
+        left = np.sign(off) * np.maximum(np.abs(off) - free, 0.0)
+        along = left.mean(axis=1, keepdims=True) / (2 * y)
+        across = (ends["tapped"][:, :1] - ends["tapped"][:, 1:]) / (2 * self.dowel_x)
+        return np.degrees(np.hstack([along, across]))
+
+    # --- rows ---
+
+    @cached_property
+    def tips(self) -> Array:
+        """How far each tip is off along x, away from the middle, mm."""
+        place = self.made["element: place in its dowel's play, share"] * self.play / 2
+        return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
+
+    @property
+    def row_gaps(self) -> Array:
+        """Gaps between facing tips, by index along the row; of one row, from its tips to the middle line."""
+        gap = self.layout.pad_inner + self.tips
+        one, two = gap[:, self.side > 0], gap[:, self.side < 0]
+        both = min(one.shape[1], two.shape[1])
+        return one[:, :both] + two[:, :both] if both else 2 * gap
+
+    # --- the stop ---
+
+    @cached_property
+    def lifts(self) -> Array:
+        """Stop plate over each element's own ledge, at its stop land."""
+        layout = self.layout
+        seat = layout.hold_down_x
+        points = np.column_stack([self.side * seat, self.y])
+        own = self.pads + self.made["element: ledge over the pad face"]
+        heights = own
+        blanks = layout.blanks()
+        if blanks:
+            where = [[seat if row == 1 else -seat, layout.position_y(index)] for row, index in blanks]
+            points = np.vstack([points, where])
+            pins = (
+                self.pose[:, :1]
+                + self.pose[:, 1:3]
+                @ np.array(
+                    [[self.dowel_x if row == 1 else -self.dowel_x, layout.position_y(i)] for row, i in blanks]
+                ).T
+            )
+            heights = np.hstack([own, pins + self.made["blank: ledge over the dowel hole"]])
+        plane = resting_plane(points, heights)
+        land = layout.pad_inner + layout.design.stop.land_length / 2
+        over = plane[:, :1] + plane[:, 1:2] * (self.side * land) + plane[:, 2:] * self.y
+        return over - own + self.made["stop plate: flatness"]
+
+    @cached_property
+    def gaps(self) -> Array:
+        """Stop gap of each element as assembled."""
+        drawn = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
+        return drawn + self.made["element: stop gap"] + self.lifts
+
+    # --- mechanics ---
+
+    @cached_property
+    def section(self) -> HingeSection:
+        """Hinges as made, of shape (arrays, elements)."""
+        drawn, m = hinge_section(self.layout, self.layout.elements), self.made
+        changed = {f: getattr(drawn, f) + m[name] for name, f in HINGE.items() if name in m}
+        arm = m["element: arm length"] - m["element: pad length"] / 2
+        modulus = drawn.youngs_modulus * (1.0 + m["sheet: Young's modulus, relative"])
+        full = np.minimum(changed.get("fillet_radius", drawn.fillet_radius), changed["hinge_length"] / 2)
+        return drawn.with_(
+            **{**changed, "load_arm": drawn.load_arm + arm, "youngs_modulus": modulus, "fillet_radius": full}
+        )
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """K of each element as built, N/mm; NaN beyond the estimator's range."""
+        return ladder.evaluate(self.section).stiffness
+
+    @cached_property
+    def closing_force(self) -> Array:
+        """Force at the pad that closes each stop, N; NaN as the stiffness."""
+        arm = np.array([p.arm for p in self.layout.elements])
+        return self.gaps / tip_compliance(self.section, self.stiffness, arm)
+
+
+PAD = "element: pad height over the dowel hole's centre"

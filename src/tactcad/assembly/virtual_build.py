@@ -1,0 +1,163 @@
+"""Arrays built virtually, by the thousand: how many go together, what fails, and what they are like."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.design.tree import Design
+from tactcad.parts.layout import Layout
+from tactcad.scenes import make_scene, scene_names
+
+from .mechanic import Assembled
+from .requirements import Requirement, requirements
+from .shop import Distribution, made
+from .stack import ROUNDING, SEED, StackLine, stack
+from .variables import Array, Variable
+
+# Least share of arrays that meet all requirements; below it nothing is released.
+LEAST_YIELD = 0.995
+# What decides: the worse of these. Corners are reported beside them.
+DECIDING: tuple[Distribution, ...] = ("normal", "uniform")
+AT_ONCE = 20_000  # elements in memory at a time
+
+
+@dataclass(frozen=True)
+class ElementBuilt:
+    """One element over all arrays built, normal parts: N/mm, um, mm, N; each a mean and a standard deviation,
+    the last the least."""
+
+    number: int
+    stiffness: tuple[float, float]
+    pad_height_um: tuple[float, float]
+    load_arm: tuple[float, float]
+    stop_gap: tuple[float, float]
+    stop_closes_at_least: float
+
+
+@dataclass(frozen=True)
+class Builds:
+    """Arrays that were built virtually.
+
+    count, seed  of each distribution
+    kept         by distribution: share of arrays that meet every requirement
+    failures     by distribution: how many arrays miss a requirement, by its name
+    elements     as built
+    """
+
+    count: int
+    seed: int
+    kept: dict[str, float]
+    failures: dict[str, dict[str, int]]
+    elements: tuple[ElementBuilt, ...]
+
+    @property
+    def worse(self) -> Distribution:
+        """The deciding distribution with the lower yield."""
+        return min(DECIDING, key=lambda name: self.kept[name])
+
+    @property
+    def share(self) -> float:
+        """Yield: share of arrays that meet every requirement, under the worse deciding distribution."""
+        return self.kept[self.worse]
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """What virtual builds need of a design: variables and requirements are made once."""
+
+    layout: Layout
+    variables: dict[str, Variable]
+    requirements: tuple[Requirement, ...]
+
+    def built(self, count: int, seed: int = SEED) -> Builds:
+        """`count` arrays of each distribution."""
+        kept: dict[str, float] = {}
+        failures: dict[str, dict[str, int]] = {}
+        elements: tuple[ElementBuilt, ...] = ()
+        for name in (*DECIDING, "corners"):
+            missed, arrays = self._all(count, name, np.random.default_rng(seed))
+            kept[name] = float(1.0 - np.logical_or.reduce(list(missed.values())).mean())
+            failures[name] = {r: int(m.sum()) for r, m in missed.items() if m.any()}
+            if name == "normal":
+                elements = _elements(self.layout, arrays)
+        return Builds(count, seed, kept, failures, elements)
+
+    def _all(
+        self, count: int, distribution: Distribution, rng: np.random.Generator
+    ) -> tuple[dict[str, Array], dict[str, Array]]:
+        """By requirement, which arrays miss it; and the elements' figures, (arrays, elements)."""
+        at_once = max(1, AT_ONCE // len(self.layout.elements))
+        missed: dict[str, list[Array]] = {r.name: [] for r in self.requirements}
+        figures: dict[str, list[Array]] = {}
+        for start in range(0, count, at_once):
+            some = min(at_once, count - start)
+            arrays = Assembled(self.layout, made(self.variables, some, distribution, rng))
+            for r in self.requirements:
+                bad = r.margin(r.value(arrays)).min(axis=1) < -ROUNDING
+                missed[r.name].append(np.broadcast_to(bad, (some,)))
+            if distribution == "normal":
+                for name, value in _figures(arrays).items():
+                    figures.setdefault(name, []).append(value)
+        together = {name: np.vstack(values) for name, values in figures.items()}
+        return {name: np.concatenate(values) for name, values in missed.items()}, together
+
+    def stack(self) -> list[StackLine]:
+        """The stack of every requirement, from no more arrays than take as long as 1000 of a 2 x 5."""
+        count = int(np.clip(10_000 / len(self.layout.elements), 100, 1000))
+        return stack(self.layout, self.variables, self.requirements, count)
+
+    def refusal(self, builds: Builds, lines: Sequence[StackLine]) -> str:
+        """Why a design with these builds is not released: what fails most, by how much at worst, and which
+        limit to mend; "" where enough of them meet all requirements."""
+        if builds.share >= LEAST_YIELD:
+            return ""
+        failed = builds.failures[builds.worse]
+        worst = max(failed, key=lambda name: failed[name])
+        line = next(x for x in lines if x.requirement.name == worst)
+        most = line.contributors[0] if line.contributors else None
+        return (
+            f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "
+            f"{builds.seed}) meet all requirements; needed: {100 * LEAST_YIELD:g} %. Most often missed: "
+            f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {line.shortfall:.3g} "
+            f"{line.requirement.unit})"
+            + (f"; largest contributor: {most.name}, {100 * most.share:.0f} %" if most else "")
+        )
+
+
+def sensor(design: Design) -> Sensor:
+    """A design's array and rigs, ready to be built virtually."""
+    layout = Layout(design)
+    variables, wanted = requirements(layout, [make_scene(design, name) for name in scene_names(design)])
+    return Sensor(layout, variables, tuple(wanted))
+
+
+def _figures(arrays: Assembled) -> dict[str, Array]:
+    made_, places = arrays.made, arrays.layout.elements
+    arm = np.array([p.load_arm for p in places])
+    return {
+        "stiffness": arrays.stiffness,
+        "pad_height_um": 1e3 * (arrays.pads - arrays.pads.min(axis=1, keepdims=True)),
+        "load_arm": arm + made_["element: arm length"] - made_["element: pad length"] / 2,
+        "stop_gap": arrays.gaps,
+        "closes": arrays.closing_force,
+    }
+
+
+def _elements(layout: Layout, figures: dict[str, Array]) -> tuple[ElementBuilt, ...]:
+    def of(name: str, i: int) -> tuple[float, float]:
+        return (float(figures[name][:, i].mean()), float(figures[name][:, i].std()))
+
+    return tuple(
+        ElementBuilt(
+            p.number,
+            of("stiffness", i),
+            of("pad_height_um", i),
+            of("load_arm", i),
+            of("stop_gap", i),
+            float(figures["closes"][:, i].min()),
+        )
+        for i, p in enumerate(layout.elements)
+    )
