@@ -13,14 +13,17 @@ from tactcad.scenes.scene import Placement, Scene
 
 from .boxes import Box, bounds, corners
 from .extent import placed, projected_box
+from .information import Given, for_information
 from .ink import THIN, DrawnSheet, Fill, Item, Point, Stroke, Text, arrow, bounds_of_items, moved, segment
 
 EYE: Vector = (0.0, 0.0, -1.0)
 UP: Vector = (0.0, -1.0, 0.0)
 RIGHT: Vector = (1.0, 0.0, 0.0)
 LARGEST = (130.0, 110.0)  # of the map's outlines, mm of paper
-LINE = 3.6  # least distance of labels below each other, mm of paper
-HEIGHT = 2.5
+HEIGHTS = (2.5, 1.8)  # of numbers, ISO 3098: the larger where all find room
+HEIGHT = HEIGHTS[0]
+WHITE = 0.8  # between numbers below each other, mm of paper
+BESIDE = 1.5  # from what is drawn to a number, mm of paper
 _STACKED = re.compile(r"(E|BL)\d+")
 
 
@@ -60,15 +63,17 @@ def pad(p: Placement) -> Box | None:
 def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Text]:
     """Designators beside the two rows, `half` mm of paper from the middle line, at the scale f.
 
-    Where they would stand closer than LINE some are left out, never the first and the last of a row.
+    Where they would stand too close some are left out, never the first and the last of a row.
     """
+    rows = [[p for p in stacked(scene) if p.rotation[0][0] * sign > 0] for sign in (1.0, -1.0)]
+    fitting = [h for h in HEIGHTS if all(_spaced(row, (h + WHITE) / f) == row for row in rows)]
+    height = fitting[0] if fitting else HEIGHTS[-1]
     texts = []
-    for sign in (1.0, -1.0):
-        row = [p for p in stacked(scene) if p.rotation[0][0] * sign > 0]
-        for p in _spaced(row, f):
-            y = middle(p)[1] * f - HEIGHT / 2
+    for row, sign in zip(rows, (1.0, -1.0)):
+        for p in _spaced(row, (height + WHITE) / f):
+            at = (sign * (half + BESIDE), middle(p)[1] * f - height / 2)
             name = f"{p.designator}{_arm(p)}" if arms else p.designator
-            texts.append(Text((sign * (half + 1.5), y), name, HEIGHT, "start" if sign > 0 else "end"))
+            texts.append(Text(at, name, height, "start" if sign > 0 else "end"))
     return texts
 
 
@@ -76,10 +81,11 @@ def _arm(p: Placement) -> str:
     return f", {p.part.name.rpartition(', ')[2]}" if pad(p) else " (blank)"
 
 
-def _spaced(row: Sequence[Placement], f: float) -> list[Placement]:
-    kept: list[Placement] = list(row[:1])
+def _spaced(row: Sequence[Placement], least: float) -> list[Placement]:
+    """First, last, and between them those that stand at least so far from the one kept before, mm."""
+    kept = list(row[:1])
     for p in row[1:]:
-        if abs(middle(p)[1] - middle(kept[-1])[1]) * f >= LINE:
+        if abs(middle(p)[1] - middle(kept[-1])[1]) >= least - 1e-9:
             kept.append(p)
     if row and kept[-1] is not row[-1]:
         kept[max(1, len(kept) - 1) :] = [row[-1]]
@@ -97,6 +103,40 @@ def axes(at: Point, length: float = 8.0) -> list[Item]:
         arrow(down, at, role="symbol"),
         Text((x + length + 1.0, y - HEIGHT / 2), "+x", HEIGHT),
         Text((x, y - length - HEIGHT - 1.0), "+y", HEIGHT, "middle"),
+    ]
+
+
+def dimensioned(array: Scene, view: Box, f: float) -> list[Item]:
+    """What is written on the array's view from below, whose lower left corner lies at (0, 0) at the scale f:
+    element numbers, axes, pitch and gap between the rows.
+
+    `view` is the view's box, mm.
+    """
+    x0, y0, x1, y1 = view
+    half, high = x1 * f, (y1 - y0) * f
+    names = numbers(array, f, half)
+    wide = max(t.width for t in names) + 2 * BESIDE
+    given = []
+    left, right = (
+        [box for p in stacked(array) if (box := pad(p)) and p.rotation[0][0] * s > 0] for s in (-1.0, 1.0)
+    )
+    row = left if len(left) > 1 else right
+    if len(row) > 1:
+        # beyond the numbers, so that the extension lines pass none
+        a, b = ((-wide / f, box[1] - y0) for box in row[:2])
+        given.append(Given("left", a[1] - b[1], a, b))
+    if left and right:
+        (*_, inner, top), (outer, *_) = left[0], right[0]
+        given.append(Given("top", outer - inner, (inner - x0, top - y0), (outer - x0, top - y0)))
+    box = (-wide, 0.0, (x1 - x0) * f, high)
+    corner = ((x1 - x0) * f + wide, high)
+    name = Text((corner[0] + HEIGHT, corner[1] - HEIGHT), "Sensing face", HEIGHT)
+    texts = [moved(t, -x0 * f, -y0 * f) for t in names]
+    return [
+        *texts,
+        *for_information(given, box, f),
+        name,
+        *axes((corner[0] + HEIGHT, corner[1] - 3 * HEIGHT)),
     ]
 
 

@@ -144,20 +144,20 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
     tolerance = d.tolerance.pad_height
     tight = "the nuts of the tie rods, the one at the other end held," if c.rod else "the clamping screws"
     gap = (
-        f"Check the gap between the rows' pads with feelers, {2 * layout.pad_inner:g} mm nominal; the dowels "
-        "set it, nothing is forced between the pads. "
+        f"Check the gap between the rows with feelers, {2 * layout.pad_inner:g} mm nominal: the dowels set "
+        "it, force nothing between the pads. "
         if len(d.array.row_arms) == ABREAST
         else ""
     )
     return (
-        "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the "
-        "elements' rear bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
+        "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the rear "
+        "bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
         f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. {gap}"
-        f"Measure: no pad may let a {2 * tolerance * 1e3:g} um "
-        "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
-        f"the surface plate: all within {tolerance * 1e3:g} um; in the calibration set-up the heights at "
-        "which the force gauge first reads 0.01 N show the same to a micrometre. Record them; loosen and "
-        "repeat if one is off. Do this step anew, and record anew, whenever the clamping was loosened."
+        f"No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on its back and read "
+        f"each pad with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in "
+        "the calibration set-up the heights at which the force gauge first reads 0.01 N show the same to a "
+        "micrometre. Record them; loosen and repeat if one is off, and repeat it all whenever the clamping "
+        "was loosened."
     )
 
 
