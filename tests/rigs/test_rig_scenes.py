@@ -284,7 +284,7 @@ def test_a_guide_places_every_part_once_and_shows_its_torques(name):
         placed = [d for step in scene.steps for d in step.designators]
         assert sorted(placed) == sorted(p.designator for p in scene.placements)
         page = guide.page(design, scene).decode()
-        assert page.count("<h2>") == len(scene.steps) + bool(scene.supplies)
+        assert page.count("<h2>") == len(scene.steps) + 1 + bool(scene.supplies)  # and the tools
         for p in scene.placements:
             assert re.search(rf"[> ]{p.designator}[< ]", page), p.designator
             if p.part.part_no.startswith("ISO4762-M3"):
@@ -316,7 +316,7 @@ def test_set_screws_of_a_long_array_do_not_bow_it():
 
 def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():
     (step,) = (s for s in make_scene(load("macro-array"), "array").steps if s.title == "Coplanar pads")
-    for word in ("surface plate", "gauge block of 2 mm", "lever indicator", "10 um"):
+    for word in ("surface plate", "feelers, 2 mm nominal", "lever indicator", "10 um"):
         assert word in step.text
 
 

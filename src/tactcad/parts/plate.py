@@ -12,6 +12,7 @@ from .description import Characteristic, Extrusion, Feature, Part
 from .part_materials import plate_material
 
 RIG_COLOUR = "#8d99a6"
+BREAK_EDGES = "break edges 0.2"
 ANODISED = "Ra 1.6, clear anodised after machining"
 
 
@@ -23,7 +24,7 @@ def plate(
     features: Iterable[Feature],
     finish: str = ANODISED,
     colour: str = RIG_COLOUR,
-    notes: tuple[str, ...] = ("break edges 0.2",),
+    notes: tuple[str, ...] = (BREAK_EDGES,),
     characteristics: tuple[Characteristic, ...] = (),
 ) -> Part:
     """A plate of the design's plate alloy; its part number is the design's name and `number`."""
