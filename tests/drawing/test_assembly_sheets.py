@@ -15,6 +15,7 @@ from variants import variant
 from tactcad.drawing import parts_list
 from tactcad.drawing.assembly import assembly_sheets
 from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
+from tactcad.drawing.extent import placed
 from tactcad.drawing.gate import pdf_runs
 from tactcad.drawing.ink import DrawnArc, Fill, Stroke, Text, preliminary
 from tactcad.drawing.layout_check import layout_faults
@@ -264,7 +265,45 @@ def test_overall_dimensions_are_the_solids(assembly):
     low, high = box.CornerMin(), box.CornerMax()
     sizes = [high.X() - low.X(), high.Y() - low.Y(), high.Z() - low.Z()]
     shown = [float(t.text.strip("()")) for t in sheets[0].texts if re.fullmatch(r"\([\d.]+\)", t.text)]
-    assert sorted(shown) == pytest.approx(sorted(sizes), abs=2e-3)
+    own = interfaces(scene) if scene.name == "array" else []
+    assert sorted(shown) == pytest.approx(sorted(sizes + own), abs=2e-3)
+
+
+def interfaces(scene) -> list[float]:
+    """Pitch and gap of the placed pads, and both distances of the carrier's threads for its holder, mm."""
+    at = {p.designator: p for p in scene.placements}
+    tips = {
+        d: placed(at[d], (*at[d].part.extrusion.outer.named("pad_face").start, 0.0))
+        for d in ("E1", "E2", "E6")
+    }
+    threads = [f.at for f in at["CA1"].part.features if f.name == "mount"]
+    return [
+        tips["E2"][1] - tips["E1"][1],
+        tips["E1"][0] - tips["E6"][0],
+        *(max(t[k] for t in threads) - min(t[k] for t in threads) for k in (0, 1)),
+    ]
+
+
+@pytest.mark.parametrize(
+    "assembly", [("macro-array", "array"), ("soft-tissue", "array")], ids=str, indirect=True
+)
+def test_the_sensing_face_says_which_element_stands_where(assembly):
+    """Numbers on the side and at the height of their elements, x to the right and y down, by the scale."""
+    _, scene, _, _, sheets = assembly
+    numbers = {t.text: t for t in sheets[0].texts if re.fullmatch(r"E\d+", t.text)}
+    at = {p.designator: p for p in scene.placements}
+    assert sorted(numbers) == sorted(d for d in at if re.fullmatch(r"E\d+", d))
+    scale = next(t.text for t in sheets[0].texts if re.fullmatch(r"\d+:\d+", t.text))
+    f = int(scale.split(":")[0]) / int(scale.split(":")[1])
+    first, last = min(numbers, key=lambda d: int(d[1:])), max(numbers, key=lambda d: int(d[1:]))
+    centre = (numbers[first].at[0] + numbers[last].at[0]) / 2
+    thick = at[first].part.extrusion.thickness
+    low = numbers[first].at[1] + f * placed(at[first], (0.0, 0.0, thick / 2))[1]
+    for d, text in numbers.items():
+        x, y, _ = placed(at[d], (10.0, 0.0, thick / 2))
+        assert (text.at[0] > centre) == (x > 0)
+        assert text.at[1] + f * y == pytest.approx(low, abs=1e-6)
+    assert {"+x", "+y", "Sensing face"} <= {t.text for t in sheets[0].texts}
 
 
 def test_notes_give_torques_and_the_pads_procedure(assembly):
@@ -275,7 +314,7 @@ def test_notes_give_torques_and_the_pads_procedure(assembly):
         assert f"{thread} {METRIC[thread].torque:g} N·m" in text
     if scene.name == "array":
         assert "Turn set screws in to M3 0.2 N·m" in text
-        assert "surface plate" in text and "gauge block of 2 mm" in text and "0.01 mm" in text
+        assert "surface plate" in text and "feelers, 2 mm nominal" in text and "0.01 mm" in text
         assert "E4 arm 8" in text and "E10 arm 7" in text
 
 

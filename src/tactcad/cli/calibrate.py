@@ -16,8 +16,8 @@ EXAMPLES = """\
   tactcad calibrate hardware/examples/calibration.csv                     Table 1's columns with intervals
   tactcad calibrate mine.csv --load-cell 57.04 --out cal.csv      and write them for `tactcad stiffness`
   tactcad calibrate mine.csv --load-cell 57.04+-0.5 --run-scatter 0.005   measured cell, runs known to repeat
-  tactcad calibrate mine.csv --design my-sensor.toml                      the load cell as its [calibration]
-  has it tactcad calibrate mine.csv --load-cell inf --json                       a rigid force sensor; JSON
+  tactcad calibrate mine.csv --design my-sensor.toml              the load cell of the design's [calibration]
+  tactcad calibrate mine.csv --load-cell inf --json               a rigid force sensor; JSON
 
 FILE is CSV with the columns element, run, displacement, force, signal: the stage's displacement, in mm, N
 and V; or with the unit in the name: displacement_um, force_mN, signal_mV. Lines that start with # are
@@ -30,10 +30,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--load-cell",
         metavar="K[+-U]",
         help="the force sensor's own stiffness in N/mm and the limits within which it is known, as 57.04+-1 "
-        "or "
-        "57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
-        "assumed); the "
-        "intervals hold for every load cell within them",
+        "or 57.04+-2%% (inf for a rigid one; default the paper's 57.04; limits where none are given: 2 %%, "
+        "assumed); the intervals hold for every load cell within them",
     )
     parser.add_argument(
         "--design",
@@ -46,8 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="S",
         help="relative standard deviation of an element's slope from run to run, where you know it (0.01 "
-        "for 1 %%); "
-        "without it the runs tell, and for a single run 0.01 is assumed",
+        "for 1 %%); without it the runs tell, and for a single run 0.01 is assumed",
     )
     parser.add_argument(
         "--level", type=float, default=0.95, metavar="P", help="level of the intervals (default 0.95)"
@@ -87,7 +84,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _load_cell(given: str | None, design: str | None) -> LoadCell:
-    """What is typed, else the design's, else the paper's with limits that are assumed."""
+    """The load cell of --load-cell or of the design's [calibration]; without either the paper's, with limits
+    that are assumed."""
     from tactcad.lab.load_cell import LoadCell
 
     if design is None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from tactcad.design.tree import Design
 from tactcad.parts import seating
 from tactcad.parts.layout import Layout
+from tactcad.scenes.array_steps import COPLANAR
 from tactcad.scenes.scene import Scene
 
 from .guide import page_path, torque
 
 LONGEST_ROW = 8  # elements named on the sheet
-COPLANAR = "Coplanar pads"  # the step that decides whether the array measures what it should
 
 
 def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
@@ -24,16 +24,15 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
     lines += _rows(design, scene)
     if torques := _torques(design, scene, "ISO4762-"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
+    if torques := _torques(design, scene, "ISO4032-"):
+        lines.append(f"Tighten nuts of property class A2-70, lubricated, to {torques}")
     if any(part.part_no.startswith("ISO4026-") for part in scene.parts):
         torques = _torques(design, scene, "ISO4026-")
         how = f"to {torques}" if torques else seating.words(Layout(design))
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
         if step.title == COPLANAR:
-            within = f"{design.tolerance.pad_height:g} mm"
-            lines.append(
-                f"All pads in one plane within {within}, by a gauge block and a surface plate. {step.text}"
-            )
+            lines.append(f"All pads in one plane within {design.tolerance.pad_height:g} mm. {step.text}")
     lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
     lines.append(
         "Dimensions in parentheses are for information; "

@@ -136,6 +136,9 @@ def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
             products.append(
                 picture(f"{n:02d}", f"{scene.name}, step {n}: {step.title}", (*standing, *coming), coming)
             )
+    if face := guide.sensing_face_map(scene):
+        path = guide.picture_path(scene, guide.MAP)
+        products.append(Output(path, "picture", "", digest(("guide map", face)), lambda: face))
     page = guide.page(design, scene)
     products.append(Output(guide.page_path(scene), "report", "", digest(("guide", page)), lambda: page))
     return products

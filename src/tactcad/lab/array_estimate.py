@@ -18,10 +18,8 @@ from tactcad.parts.layout import ElementPlace, Layout
 
 @dataclass(frozen=True)
 class ElementEstimate:
-    """One element at one force. Strain and stress are None where the stress would pass the yield strength.
-
-    gauge_strain is None too where the grid does not fit a two-sided hinge.
-    """
+    """One element at one force. Deflection, strain and stress are None above yield; gauge_strain also where
+    the grid does not fit a two-sided hinge."""
 
     number: int
     arm: float  # mm
@@ -32,8 +30,8 @@ class ElementEstimate:
     deflection: float | None  # mm
     gauge_strain: float | None  # mean under the gauge's grid
     peak_strain: float | None  # at the slot-side fillet
-    stress: float | None  # MPa, the largest principal one there at mid-width
-    gauge_strain_error: float | None  # relative, the largest that is stated; None where none was measured
+    stress: float | None  # MPa, the largest principal one there
+    gauge_strain_error: float | None  # relative, at most; None where none was measured
     peak_strain_error: float | None
     stress_error: float | None
     elastic: bool
@@ -50,10 +48,27 @@ class ElementEstimate:
 def estimate(
     layout: Layout, rung: str, force: float | None = None, mesh: int | None = None
 ) -> list[ElementEstimate]:
-    """Every element of the layout, by number; force in N, by default the design's rating; `mesh` the density
-    of rung fem-solid's finer mesh.
+    """Estimate every element of a design.
 
-    Raises CheckFailure where an element lies outside the rung's range.
+    Parameters
+    ----------
+    layout : Layout
+    rung : str
+        Of the ladder.
+    force : float, optional
+        On each pad, N; by default the design's rating.
+    mesh : int, optional
+        Density of rung fem-solid's finer mesh.
+
+    Returns
+    -------
+    list of ElementEstimate
+        By number.
+
+    Raises
+    ------
+    CheckFailure
+        An element lies outside the rung's range.
     """
     design = layout.design
     force = design.rating.force if force is None else force
@@ -68,8 +83,8 @@ def estimate(
 def estimate_sections(
     layout: Layout, section: HingeSection, rung: str, force: float
 ) -> list[ElementEstimate]:
-    """Every element of the layout by a closed form, with the dimensions in `section` (arrays over the
-    elements) instead of the design's. Raises CheckFailure where one lies outside the rung's range."""
+    """`estimate` by a closed form, with the dimensions in `section` (arrays over the elements) instead of the
+    design's."""
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
     errors = strain_errors.stated(section, grid, rung)
     strains = _closed_form_strains(section, rung, grid)
@@ -77,8 +92,25 @@ def estimate_sections(
 
 
 def choose_rung(layout: Layout, accuracy: float) -> Choice:
-    """The quickest rung that keeps the relative accuracy of stiffness at every element, each distinct one
-    counted once in the expected time as it is solved once. Raises CheckFailure where there is none."""
+    """The quickest rung that estimates every element's stiffness to a relative accuracy.
+
+    Equal elements are solved once and count once in the expected time.
+
+    Parameters
+    ----------
+    layout : Layout
+    accuracy : float
+        Relative error of the stiffness, at most.
+
+    Returns
+    -------
+    Choice
+
+    Raises
+    ------
+    CheckFailure
+        No rung is that accurate at every element.
+    """
     places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
     names = [f"element {p.number}" for p in places.values()]
     return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
@@ -90,8 +122,7 @@ class _PerNewton:
 
     gauge: Array
     fillet: Array
-    largest_stress: Array  # principal, at mid-width
-    fillet_stress: Array  # means over the width
+    fillet_stress: Array  # largest over the width
     face_stress: Array
 
 
@@ -99,14 +130,13 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
     peak = strain.peak(s, 1.0, rung)
     try:
         gauge = strain.gauge(s, 1.0, grid, rung)
-    except CheckFailure:  # a grid that climbs a two-sided hinge's fillets: stiffness and strength still stand
+    except CheckFailure:  # the grid reaches onto a two-sided hinge's fillets: only the gauge has no estimate
         gauge = np.array(np.nan)
     if rung in ladder.FITTED:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
-    else:  # these rungs know no fillet
+    else:  # these rungs have no fillet
         stress = face = peak * s.youngs_modulus
-    largest = strain.largest_stress(s, 1.0) if rung == "solid" else stress
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, largest, stress, face)))
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
 
 
 def _by_elements(
@@ -117,7 +147,8 @@ def _by_elements(
     grid: float,
     mesh: int | None,
 ) -> tuple[Array, _PerNewton]:
-    """Finite elements on each distinct contour, cut at clamp edge and load line."""
+    """Stiffness (N/mm) and strains by finite elements on each distinct contour, cut at clamp edge and load
+    line."""
     from tactcad.fem import fem_ladder as elements
     from tactcad.fem.convergence import SOLID_MESH
     from tactcad.fem.shape import cut_element
@@ -132,12 +163,13 @@ def _by_elements(
             solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
         solutions.append(solved[key])
     read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
+    share = strain.peak_share(section) if rung == "fem-plane" else 1.0
     return np.array([r.stiffness for r in solutions]), _PerNewton(
         np.array([float(r.gauge) for r in read]),
         np.array([r.fillet_strain for r in read]),
-        np.array([r.fillet_stress for r in read]),
-        np.array([r.fillet_stress for r in flat]),
-        np.array([r.face_stress for r in flat]),
+        # at mid-width, but no less than the width's mean; in plane stress there is nothing but the mean
+        share * np.array([max(a.fillet_stress, b.fillet_stress) for a, b in zip(read, flat)]),
+        share * np.array([max(a.face_stress, b.face_stress) for a, b in zip(read, flat)]),
     )
 
 
@@ -154,14 +186,14 @@ def _estimates(
     stiffness_error = np.broadcast_to(stiffness_error, len(layout.elements))
     rows = []
     for i, place in enumerate(layout.elements):
-        yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
+        stress = float(per_newton.fillet_stress[i])
+        yield_force = alloy.yield_strength / stress
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
 
         def at(value: float, elastic: bool = elastic) -> float | None:
             return float(value) * force if elastic and np.isfinite(value) else None
 
-        stress = float(per_newton.largest_stress[i])
         rows.append(
             ElementEstimate(
                 number=place.number,
@@ -197,7 +229,7 @@ def _known(value: float) -> float | None:
 
 @dataclass(frozen=True)
 class UncutComparison:
-    """Plane-stress stiffness (N/mm) of one element's whole contour, and of the model cut from it."""
+    """Plane-stress stiffness (N/mm) of one element: of its whole contour, and of the model cut from it."""
 
     number: int
     uncut: float
@@ -205,8 +237,11 @@ class UncutComparison:
 
 
 def compare_uncut(layout: Layout) -> UncutComparison:
-    """The element with the shortest arm, whose pad and ledge weigh most: with pad, land and holes, held
-    between its spacers and pressed evenly on the pad, against the arm cut off at the load line."""
+    """Compare the model with the whole contour at the element where they differ most, the shortest arm's.
+
+    The whole contour has pad, land and holes, is held between its spacers and pressed evenly on the pad; the
+    model is held at the clamp edge, and its arm is cut off at the load line.
+    """
     from tactcad.fem.convergence import converged_plane
     from tactcad.fem.shape import cut_element
     from tactcad.fem.uncut import uncut_compliance

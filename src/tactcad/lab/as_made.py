@@ -1,11 +1,11 @@
-"""Stiffness, strain and strength of the elements as made: the measured dimensions in the estimator, beside
-the nominal ones.
+"""Stiffness, strain and strength of the elements as made: estimates from measured dimensions, beside those
+from the nominal ones.
 
-The intervals are for 95 %: the half-widths of the dimensions (k = 2) carried through the estimator one by
-one, added as squares. Of a dimension that was not measured it is the tolerance, as in the design's
-[tolerance]; of one that was measured with no uncertainty given it is nought. What no sheet asks for
-(fillets, the lot's modulus, the cut's layer, the clamp) has its tolerance too. The model's own error is not
-in them.
+The intervals are for 95 %. The half-width (k = 2) of each dimension is propagated through the estimator by
+itself, and the results are added as squares. The half-width of a dimension that was not measured is its
+tolerance in the design's [tolerance]; that of one measured without an uncertainty is zero. What the sheet
+does not ask for (fillet radius, modulus of the lot, recast layer, clamp) enters with its tolerance. The
+model's own error is not included.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ INTERVALS = ("stiffness", "gauge_strain", "yield_force")
 
 @dataclass(frozen=True)
 class AsMade:
-    """One element by the design, and by its measured dimensions with intervals (low, high) of its stiffness,
-    gauge strain, yield force and rated force; None where the value itself is None."""
+    """One element, estimated from the design's dimensions and from its measured ones."""
 
     number: int
     nominal: ElementEstimate
     made: ElementEstimate
+    # low and high of `made`'s stiffness, gauge_strain, yield_force, rated_force; None where the value is None
     intervals: dict[str, tuple[float, float] | None]
     readings: tuple[Reading, ...]
 
@@ -42,15 +42,33 @@ class AsMade:
 def as_made(
     layout: Layout, readings: Sequence[Reading], rung: str, force: float | None = None
 ) -> list[AsMade]:
-    """Every element of the layout by a closed form (`rung`); force in N, by default the design's rating.
+    """Estimates of every element as designed and as made.
 
-    Raises CheckFailure where an element, as designed or as made, lies outside the rung's range.
+    Parameters
+    ----------
+    layout : Layout
+    readings : sequence of Reading
+        Every dimension of every element, as `read_sheet` gives them.
+    rung : str
+        A closed form of the ladder.
+    force : float, optional
+        On each pad, N; by default the design's rating.
+
+    Returns
+    -------
+    list of AsMade
+        In the order of the layout's elements.
+
+    Raises
+    ------
+    CheckFailure
+        An element, as designed or as made, lies outside the rung's range.
     """
     force = layout.design.rating.force if force is None else force
     designed = hinge_section(layout, layout.elements)
     of = {p.number: tuple(r for r in readings if r.number == p.number) for p in layout.elements}
-    entering = list(dict.fromkeys(r.dimension.enters for r in readings if r.dimension.enters))
-    table = {name: [_of_dimension(of[p.number], name) for p in layout.elements] for name in entering}
+    parameters = list(dict.fromkeys(r.dimension.enters for r in readings if r.dimension.enters))
+    table = {name: [_of_dimension(of[p.number], name) for p in layout.elements] for name in parameters}
     values = {name: np.array([_value(r) for r in column]) for name, column in table.items()}
     halves = {name: np.array([_half_width(r) for r in column]) for name, column in table.items()}
     section = designed.with_(**values)
@@ -82,7 +100,7 @@ def _half_widths(
 ) -> Array:
     """Half-widths of the estimates in INTERVALS, shape (len(INTERVALS), elements).
 
-    For each dimension it is half of what moving it by its own half-width, both ways, changes.
+    A dimension contributes half the difference between the estimates with it at either end of its half-width.
     """
     tolerance = layout.design.tolerance
     unmeasured = {
@@ -92,9 +110,8 @@ def _half_widths(
 
     def at(moved: HingeSection) -> Array:
         rows = estimate_sections(layout, moved, rung, force)
-        return np.array(
-            [[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float
-        )  # None: NaN
+        # None becomes NaN
+        return np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
 
     squares = np.zeros((len(INTERVALS), len(layout.elements)))
     for dimension, half in (halves | unmeasured).items():
@@ -113,11 +130,11 @@ def _half_widths(
 def _intervals(
     layout: Layout, made: ElementEstimate, half_widths: Array
 ) -> dict[str, tuple[float, float] | None]:
-    found: dict[str, tuple[float, float] | None] = {}
+    intervals: dict[str, tuple[float, float] | None] = {}
     for name, half in zip(INTERVALS, half_widths.tolist()):
         value = getattr(made, name)
-        found[name] = None if value is None or half != half else (value - half, value + half)
+        intervals[name] = None if value is None or half != half else (value - half, value + half)
     safety = layout.design.rating.yield_factor
-    low, high = present(found["yield_force"])
-    found["rated_force"] = (min(made.force, low / safety), min(made.force, high / safety))
-    return found
+    low, high = present(intervals["yield_force"])
+    intervals["rated_force"] = (min(made.force, low / safety), min(made.force, high / safety))
+    return intervals

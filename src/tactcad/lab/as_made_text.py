@@ -33,7 +33,8 @@ THICKNESS = "hinge thickness"
 
 
 def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
-    """A line an element, then what is outside its tolerance, what is undecided, and what was not measured."""
+    """A table of the elements; below it, dimensions outside their tolerance, undecided ones, those that were
+    not measured, and elements above yield."""
     cells = [[h for h, _ in HEADINGS], [u for _, u in HEADINGS], *map(_cells, rows)]
     widths = [max(len(line[i]) for line in cells) for i in range(len(HEADINGS))]
     lines = [
@@ -75,7 +76,7 @@ def _said(r: Reading) -> str:
 
 
 def _missing(readings: Sequence[Reading]) -> list[str]:
-    """Which dimensions were left blank, and which were measured with no uncertainty given, by name."""
+    """A line for each dimension that was left blank, or measured without an uncertainty, on any element."""
     lines = []
     for name in dict.fromkeys(r.dimension.name for r in readings):
         named = [r for r in readings if r.dimension.name == name]
@@ -99,8 +100,8 @@ def _plastic(rows: Sequence[AsMade]) -> list[str]:
 
 
 def document(design: Design, rung: str, rows: Sequence[AsMade]) -> dict[str, Any]:
-    """The elements under the names of `tactcad estimate --json`, with `nominal` and `intervals` (95 %) beside
-    them."""
+    """The record for JSON: elements with the fields of `tactcad estimate --json` as made, their `nominal`
+    estimates and `intervals` (95 %), and every reading."""
     readings = [r for row in rows for r in row.readings]
     return {
         "design": design.name,

@@ -28,10 +28,28 @@ ADDED_BY_ACCURACY = ("mesh",)
 def estimate_file(
     source: str | Path, target: str | Path, rung: str, accuracy: float | None = None
 ) -> tuple[int, int]:
-    """Estimate every row of `source` into `target`; returns how many are in range, and how many there are.
+    """Estimate the stiffness of every row of a table of designs.
 
-    With an `accuracy` every row is answered by the quickest rung that keeps it there, whatever `rung` says.
-    Raises InputError (file:line:column) where the table is malformed; nothing is then written.
+    Parameters
+    ----------
+    source : str or Path
+        CSV with the columns of `section.REQUIRED` (mm, MPa); others are copied.
+    target : str or Path
+        The same table with the ADDED columns, stiffness in N/mm.
+    rung : str
+        Of the ladder, for every row.
+    accuracy : float, optional
+        Relative; with it every row gets the quickest rung that keeps to it, instead of `rung`.
+
+    Returns
+    -------
+    in_range, rows : int
+        Rows that got a stiffness, and rows in all.
+
+    Raises
+    ------
+    InputError
+        The table is malformed (file:line:column); nothing is written.
     """
     header, rows, section = read_table(Path(source))
     if accuracy is None:
@@ -58,18 +76,17 @@ def estimate_file(
 
 @dataclass(frozen=True)
 class Answer:
-    """Of one row: stiffness (N/mm), the chosen model and what it promises, or the reason why there is
-    none."""
+    """The estimate of one row, or the reason why there is none."""
 
-    stiffness: float
+    stiffness: float  # N/mm; nan without one
     model: str
-    mesh: int | None
-    expected_error: float
-    reason: str
+    mesh: int | None  # density, of rung fem-solid
+    expected_error: float  # relative, at most
+    reason: str  # "" with an estimate
 
 
 def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
-    """Every design by the quickest rung that keeps the relative accuracy there."""
+    """Every design of the section's arrays by the quickest rung that keeps to the relative accuracy."""
     choices = choose_each(section, accuracy)
     refused = [c if isinstance(c, str) else "" for c in choices]
     answers = [Answer(math.nan, "", None, math.nan, why) for why in refused]
@@ -83,8 +100,8 @@ def estimate_rows_to(section: HingeSection, accuracy: float) -> list[Answer]:
 
 
 def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> tuple[list[float], list[str]]:
-    """Stiffness (N/mm, NaN where refused) and reason ("" where not) of every design; `mesh` as
-    fem-solid's."""
+    """Stiffness of every design of the section's arrays (N/mm; NaN where refused) and the reason of each
+    refusal ("" elsewhere). `mesh` is the density of rung fem-solid's mesh."""
     if rung not in ladder.FINITE_ELEMENTS:
         result = ladder.evaluate(section, rung)
         return result.stiffness.ravel().tolist(), result.reason.ravel().tolist()
@@ -103,7 +120,10 @@ def estimate_rows(section: HingeSection, rung: str, mesh: int | None = None) -> 
 
 
 def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
-    """Header, rows as text, and the section of arrays. Raises InputError where the table is malformed."""
+    """Header, rows as text, and the dimensions of all rows as one section of arrays.
+
+    Raises InputError where the table is malformed.
+    """
     table = csv_table.read_table(path, "a table of designs (CSV)", MOST_BYTES, comments=False)
     for name in ADDED:
         if name in table.header:
@@ -132,7 +152,7 @@ def _side(table: Table, line: int, side: str) -> str:
 
 
 def _answer(stiffness: float, model: str, reason: str, error: float) -> list[str]:
-    """The ADDED columns of a row; no error where none was measured."""
+    """A row's cells for the ADDED columns; the error is left blank where none was measured."""
     number = "" if reason else repr(stiffness)
     return [
         number,

@@ -2,13 +2,14 @@
 
 The stage's displacement X is shared by two springs, element K and load cell K_c, so F = k X + c with k = K
 K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, and the series spring is
-removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k. Regressing on d = X - F/K_c,
-as the paper did, puts the force's noise on both axes; that estimate is given beside it.
+removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k, with k and v the slopes of
+force and signal. Regressing on d = X - F/K_c, as the paper did, puts the force's noise on both axes; that
+estimate is given beside it.
 
-Three things besides noise go into every interval. Runs differ: the slopes' scatter is always taken from run
-to run (Student's t with one degree of freedom fewer than runs), for one run from an assumed scatter. The load
-cell is known within limits: the interval holds for every cell within them. Readings before contact are found
-and left out.
+Every interval covers more than noise. Runs differ: the slopes' variance is taken from the runs' own slopes
+(Student's t with one degree of freedom fewer than runs); with a single run it is assumed. The load cell's
+stiffness is known within limits: the interval holds for every value within them. Readings before contact are
+detected and left out.
 """
 
 from __future__ import annotations
@@ -37,9 +38,9 @@ from tactcad.lab.regression import (
     t_quantile,
 )
 
-FALSE_ALARM = 0.01  # chance of naming any outlier in a file without one
-# Scatter of an element's slope from run to run, relative, one standard deviation, where one run tells nothing
-# of it. Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
+FALSE_ALARM = 0.01  # probability that an outlier is reported in a file that has none
+# Assumed standard deviation of an element's slope from run to run, relative, where there is a single run.
+# Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
 
 
@@ -55,7 +56,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Outlier:
-    """A reading that the line does not explain."""
+    """A reading too far from the fitted line to be noise."""
 
     element: int
     run: int
@@ -69,10 +70,10 @@ class ElementCalibration:
     """Table 1's row of one element. Stiffness N/mm, deflection mm, force N, signal V."""
 
     element: int
-    readings: int
+    readings: int  # number used
     runs: int
     stiffness: Estimate
-    stiffness_as_paper: Estimate  # average of the runs, F against d
+    stiffness_as_paper: Estimate  # runs averaged, F regressed on d
     signal_per_deflection: Estimate
     signal_per_deflection_as_paper: Estimate
     signal_per_force: Estimate
@@ -82,7 +83,7 @@ class ElementCalibration:
     max_deflection: float
     max_force: float
     max_signal_change: float
-    linearity_force: float  # largest deviation of the averaged readings over full scale, ratio
+    linearity_force: float  # largest deviation of the averaged readings from their line, over full scale
     linearity_signal: float
     outliers: tuple[Outlier, ...]
     notes: tuple[str, ...]
@@ -97,37 +98,47 @@ def calibrate(
     run_scatter: float | None = None,
     tell: Callable[[int, int, str], None] = lambda done, total, what: None,
 ) -> list[ElementCalibration]:
-    """One row an element, in the order of the file.
+    """Stiffness and sensitivity of every element, with intervals.
 
     Parameters
     ----------
+    readings : CalibrationReadings
+        Displacement (mm), force (N) and signal (V) of all elements.
     load_cell : LoadCell
         Stiffness of the force sensor with its limits (N/mm); inf for a rigid one.
     level : float
-        Of every interval.
+        Confidence level of every interval, from 0.5 to below 1.
+    drop_outliers : bool
+        Leave outliers out of the fit; they are reported either way.
     run_scatter : float, optional
-        Relative standard deviation of an element's slope from run to run, where it is known. Without it the
-        runs of the file tell, or, for an element with one run, `RUN_SCATTER` is assumed.
-    tell
-        Hears of every element before it is fitted.
+        Relative standard deviation of an element's slope from run to run, where it is known. By default it
+        is estimated from the file's runs; for an element with a single run `RUN_SCATTER` is assumed.
+    tell : callable
+        Called with (elements done, elements in all, name of the next one) before each element.
+
+    Returns
+    -------
+    list of ElementCalibration
+        One for each element, in the order of the file.
 
     Raises
     ------
     InputError
-        A level or a scatter out of range, an element whose readings are those of no spring.
+        A level or a scatter out of range; readings in contact too few for a line; readings that an elastic
+        element behind this load cell cannot give.
     """
     require_level(level)
     if run_scatter is not None and not 0 <= run_scatter < 1:
         raise InputError("run scatter", "out of range", value=run_scatter, legal="from 0 to below 1")
     parts = groups(readings.element)
     ready: list[_InContact] = []
-    for number, here in parts:
+    for number, rows in parts:
         tell(len(ready), len(parts), f"element {number}")
-        ready.append(_in_contact(readings, number, here))
+        ready.append(_in_contact(readings, number, rows))
     by_force, by_signal = (
         noise.weights([noise.Readings(e.x, e.travel, e.y[:, k], e.run) for e in ready]) for k in (0, 1)
     )
-    alarm = FALSE_ALARM / (2 * len(parts))  # force and signal of every element have their chance
+    alarm = FALSE_ALARM / (2 * len(parts))  # each element is tested twice, for force and for signal
     return [
         _element(e, (w_force, w_signal), load_cell, level, drop_outliers, run_scatter, alarm)
         for e, w_force, w_signal in zip(ready, by_force, by_signal)
@@ -136,27 +147,27 @@ def calibrate(
 
 @dataclass(frozen=True)
 class _InContact:
-    """An element's readings in contact, and what has been noted so far."""
+    """An element's readings in contact, and the notes made so far."""
 
     number: int
-    where: str
-    x: np.ndarray  # mm
-    travel: np.ndarray  # from the element's smallest displacement, mm
+    where: str  # file and element, for messages
+    x: np.ndarray  # displacement, mm
+    travel: np.ndarray  # displacement from the element's smallest one, mm
     y: np.ndarray  # force N, signal V
     run: np.ndarray
     line: np.ndarray  # in the file
     notes: tuple[str, ...]
 
 
-def _in_contact(all_: CalibrationReadings, number: int, here: np.ndarray) -> _InContact:
+def _in_contact(all_: CalibrationReadings, number: int, rows: np.ndarray) -> _InContact:
     notes: list[str] = []
     where = f"{all_.path}: element {number}"
-    start = all_.displacement[here].min()
-    here = _touching(all_, here, notes)
-    x, run = all_.displacement[here], all_.run[here]
-    y = np.column_stack([all_.force[here], all_.signal[here]])
+    start = all_.displacement[rows].min()
+    rows = _touching(all_, rows, notes)
+    x, run = all_.displacement[rows], all_.run[rows]
+    y = np.column_stack([all_.force[rows], all_.signal[rows]])
     _require_line(where, x, run)
-    return _InContact(number, where, x, x - start, y, run, all_.line[here], tuple(notes))
+    return _InContact(number, where, x, x - start, y, run, all_.line[rows], tuple(notes))
 
 
 def _element(
@@ -209,13 +220,13 @@ def _element(
     )
 
 
-def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> np.ndarray:
-    """Which of an element's readings are surely in contact."""
-    x = all_.displacement[here]
-    first, left_out = first_in_contact(x, all_.force[here], all_.run[here])
-    kept = here[steps(x) >= first]
+def _touching(all_: CalibrationReadings, rows: np.ndarray, notes: list[str]) -> np.ndarray:
+    """The rows, out of an element's, that are surely in contact."""
+    x = all_.displacement[rows]
+    first, left_out = first_in_contact(x, all_.force[rows], all_.run[rows])
+    kept = rows[steps(x) >= first]
     if left_out > 1:
-        above = len(here) - len(kept)
+        above = len(rows) - len(kept)
         what = f"the force of {above} readings lies above the line of the others; they are left out"
         notes.append(f"no contact before {first * 1e3:g} um: {what}")
     if not left_out:
@@ -226,7 +237,7 @@ def _touching(all_: CalibrationReadings, here: np.ndarray, notes: list[str]) -> 
 
 
 def _require_line(where: str, x: np.ndarray, run: np.ndarray) -> None:
-    """Raise InputError where the readings in contact leave no noise about a line."""
+    """Raise InputError where the readings in contact are too few to show any scatter about their line."""
     if spare_steps(x, run) < 1:
         raise InputError(
             where,
@@ -237,7 +248,8 @@ def _require_line(where: str, x: np.ndarray, run: np.ndarray) -> None:
 
 
 def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tuple[np.ndarray, float]:
-    """Covariance of the two slopes and its degrees of freedom: noise, and what differs from run to run."""
+    """Covariance of the slopes of force and signal, and its degrees of freedom: from the runs' own slopes, or
+    from the noise about the line and a scatter from run to run that is given or assumed."""
     if run_scatter is None and lines.runs > 1:
         return lines.between, lines.runs - 1
     assumed = RUN_SCATTER if run_scatter is None else run_scatter
@@ -248,7 +260,7 @@ def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tu
     known = np.diag((assumed * lines.slope) ** 2) * float((lines.run_share**2).sum())
     noise = lines.covariance
     total = noise + known
-    with np.errstate(divide="ignore"):  # Welch and Satterthwaite; what is assumed counts as known
+    with np.errstate(divide="ignore"):  # Welch and Satterthwaite; an assumed scatter counts as known
         dof = lines.dof * float((np.diag(total) / np.diag(noise)).min()) ** 2
     return total, min(dof, KNOWN)
 
@@ -263,12 +275,12 @@ def _require_spring(
     outliers: tuple[Outlier, ...],
 ) -> None:
     """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series, or
-    the signal (y[:, 1], V) that of a gauge on it.
+    the signal (y[:, 1], V) that of a gauge on the spring.
 
-    slope: of force and signal over displacement, N/mm and V/mm; half_width: of the first one's interval.
+    `slope` is of force and signal over displacement (N/mm, V/mm), `half_width` that of the force's slope.
     """
-    still = np.abs(slope) * np.ptp(x) <= rounding(y)
-    for name, unit, unchanged in zip(("force", "signal"), "NV", still):
+    constant = np.abs(slope) * np.ptp(x) <= rounding(y)
+    for name, unit, unchanged in zip(("force", "signal"), "NV", constant):
         if unchanged:
             raise InputError(
                 where,
@@ -290,7 +302,7 @@ def _require_spring(
             legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
         )
     far = [str(o.line) for o in outliers if o.quantity == "force"]
-    if far and not 0 < k < load_cell.ends[1]:  # of noise alone it may be so
+    if far and not 0 < k < load_cell.ends[1]:  # without outliers noise alone can bring k there: no refusal
         does = "falls with displacement" if k <= 0 else "rises by more than the load cell can"
         raise InputError(
             where,
@@ -301,9 +313,8 @@ def _require_spring(
 
 
 def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
-    """The transform of k is monotonic, so the interval's ends transform exactly; each with the load cell that
-    takes it furthest.
-    """
+    """K = k K_c/(K_c - k), N/mm. It rises with k and falls with K_c, so each end of the interval comes from
+    that end of k and the load cell at the limit that widens it."""
     low, high = k - t * se, k + t * se
     softest, stiffest = load_cell.ends
     if low <= 0:
@@ -326,7 +337,8 @@ def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[s
 def _sensitivities(
     k: float, v: float, covariance: np.ndarray, load_cell: LoadCell, t: float
 ) -> tuple[Estimate, Estimate]:
-    """K_v = v/(1 - k/K_c), for every load cell within its limits, and K_v/K = v/k, both by Fieller."""
+    """K_v = v/(1 - k/K_c) for every load cell within its limits, and K_v/K = v/k: ratios of two estimates,
+    with Fieller's interval."""
     to_force = np.array([[0.0, 1.0], [1.0, 0.0]])
 
     def ratio(matrix: np.ndarray, bottom: float) -> Estimate:
@@ -344,7 +356,7 @@ def _sensitivities(
 
 
 def _correlation(k: float, v: float, covariance: np.ndarray, load_cell: float) -> float:
-    """Correlation of K and K_v by their derivatives."""
+    """Correlation of K and K_v, linearised in k and v."""
     share = 1 - k / load_cell
     jacobian = np.array([[1 / share**2, 0.0], [v / load_cell / share**2, 1 / share]])
     c = jacobian @ covariance @ jacobian.T
@@ -353,9 +365,8 @@ def _correlation(k: float, v: float, covariance: np.ndarray, load_cell: float) -
 
 
 def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean readings at each displacement (equal within 1e-9 mm) that every run has; all readings where none
-    is shared.
-    """
+    """Mean over the runs at each displacement (equal within 1e-9 mm) that every run has; all readings as they
+    are where fewer than three displacements are shared."""
     step, index = np.unique(steps(x), return_inverse=True)
     count = np.bincount(index)
     shared = count == len(np.unique(run))
@@ -368,7 +379,8 @@ def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray
 def _as_paper(
     x: np.ndarray, y: np.ndarray, load_cell: float, level: float, notes: list[str]
 ) -> tuple[Estimate, Estimate]:
-    """Slopes with intercept of the averaged readings against d = X - F/K_c, each with its own t interval."""
+    """K and K_v as the paper took them: slopes of the averaged force and signal over d = X - F/K_c, each with
+    its t interval."""
     d = x - y[:, 0] / load_cell
     lines = fit_lines(d, y, np.zeros(len(d), int))
     t = t_quantile(level, lines.dof)

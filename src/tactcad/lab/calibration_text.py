@@ -32,7 +32,7 @@ LOAD_CELL_HALF_WIDTH = Field("load_cell_half_width", "N/mm", 0, 1e9)
 
 
 def to_text(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -> str:
-    """A table for the terminal, outliers and notes below."""
+    """A table for the terminal with outliers and notes below it; `level` is that of the intervals."""
     head = (
         "element",
         "runs",
@@ -95,7 +95,7 @@ def _range(e: Estimate, digits: int = 3) -> str:
 
 
 def to_json(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -> str:
-    """Everything, infinities as text."""
+    """All fields of every element as JSON, infinities as text; `level` is that of the intervals."""
     data = {
         "schema": SCHEMA,
         "load_cell_stiffness_N_per_mm": load_cell.stiffness,
@@ -108,8 +108,12 @@ def to_json(rows: list[ElementCalibration], load_cell: LoadCell, level: float) -
 
 
 def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
-    """Table 1's columns with standard errors: what `read` takes. Raises CheckFailure where a stiffness is
-    not bounded.
+    """Table 1's columns with standard errors as CSV, which `read` reads back.
+
+    Raises
+    ------
+    CheckFailure
+        The readings of an element do not bound its stiffness.
     """
     for r in rows:
         if not (0 < r.stiffness.value < inf and isfinite(r.stiffness.standard_error)):
@@ -164,10 +168,22 @@ def to_csv(rows: list[ElementCalibration], load_cell: LoadCell) -> str:
 
 
 def read(path: str) -> Sensitivity:
-    """A calibration from CSV or JSON, as `to_csv` and `to_json` write it; a table without uncertainties
-    counts as exact.
+    """A calibration from the CSV of `to_csv` or the JSON of `to_json`.
 
-    Raises InputError: an element twice, a stiffness that is not positive, a sensitivity of zero.
+    Parameters
+    ----------
+    path : str
+        Read as JSON where it ends in .json. Values without a column of uncertainties count as exact.
+
+    Returns
+    -------
+    Sensitivity
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        Not such a file; an element that is listed twice; a value out of its range; a sensitivity of zero.
     """
     if path.endswith(".json"):
         return _from_json(path)

@@ -1,7 +1,7 @@
-"""The object's stiffness that makes equation (1) agree over some elements, with its interval.
+"""The object stiffness for which equation (1) agrees best over some elements, with its interval.
 
-f + x s is the same for all elements, x = K_obj: two of them give Fieller's interval, more the generalised
-least squares of the pairs that share a reference.
+Equation (1): f + x s is the same for all elements, x = K_obj. Two elements give Fieller's interval; more give
+the generalised least squares of the pairs that share a reference.
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ from tactcad.lab.regression import KNOWN, t_quantile
 
 Misfit = Callable[[np.ndarray], np.ndarray]
 
-DISAGREE = 0.01  # probability below which the elements are said to disagree
-ANGLES = 721  # scan of the projective line of K_obj
-# Weight of what the elements have in common against an element's own degrees of freedom. Chosen: ten times
-# the two degrees that three runs leave, since weights that follow such variances make the interval too
-# narrow.
+DISAGREE = 0.01  # probability below which the elements are reported to disagree
+ANGLES = 721  # of the first scan over all K_obj from -inf to inf
+# Degrees of freedom given to the elements' common covariance, against those of an element's own. Chosen: ten
+# times the two that three runs leave; weights from variances that uncertain make the interval too narrow.
 PRIOR_DOF = 20.0
 NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 and V2/N2
 
@@ -30,8 +29,8 @@ NO_VARIANCE = np.finfo(float).tiny ** 0.5  # of a slope without noise, V2/mm2 an
 class Interval:
     """K_obj (N/mm) within [low, high]; high is inf and low 0 where the data do not bound it.
 
-    estimate may be negative or inf: then no soft object explains the readings. empty: no K_obj >= 0 lies
-    within it.
+    A negative or infinite `estimate` means that no object of finite positive stiffness fits the readings
+    best; `empty`, that no K_obj >= 0 lies within the interval.
     """
 
     estimate: float
@@ -56,7 +55,8 @@ class Interval:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Per unit approach: deflection s and force f by element, covariance of (f, s) by element, [n, 2, 2]."""
+    """Deflection s (mm) and force f (N) of each element per unit approach, with the covariance of (f, s),
+    [element, 2, 2], in its two parts and the degrees of freedom of each."""
 
     element: np.ndarray
     s: np.ndarray
@@ -71,25 +71,42 @@ class Slopes:
         return self.from_signal + self.from_calibration
 
     def coupled(self, share: np.ndarray) -> Slopes:
-        """What equation (1) sees where each pad also sinks by share[i, j] of what the force on pad j does
-        there: p = s_i + sum_j share_ij f_j/x, with 1 on the diagonal.
+        """The slopes that satisfy equation (1) where the pads are coupled through the object.
+
+        Pad i sinks by share[i, j] of what the same force on i itself would do: the approach is
+        s_i + sum_j share_ij f_j/x, with 1 on the diagonal, so the sum takes the place of f_i.
         """
         return replace(self, f=self.f + (share - np.diag(np.diag(share))) @ self.f)
 
 
 def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> tuple[Interval, float, float]:
-    """K_obj that makes f + x s most equal over the members (default all), its interval, p of their
-    disagreement, and the factor by which that widens the standard error.
+    """The K_obj (N/mm) that makes f + x s most equal over some elements.
 
-    Two members: the interval is Fieller's. The line of x is closed at infinity (x = scale tan(angle)), so
-    that an interval that runs through infinity is found like any other.
+    With two elements the interval is Fieller's. The search runs over an angle, x = scale tan(angle), so that
+    an interval that runs through infinity is treated like any other.
+
+    Parameters
+    ----------
+    slopes : Slopes
+    level : float
+        Confidence level of the interval.
+    members : list of int, optional
+        Indices of the elements, by default all.
+
+    Returns
+    -------
+    interval : Interval
+    disagreement_p : float
+        Probability that noise alone makes the elements disagree this much; 1 with two elements.
+    widened : float
+        Factor on the standard error because they disagree; 1 where they do not.
     """
     m = list(range(len(slopes.s))) if members is None else members
     f, s, c = slopes.f[m], slopes.s[m], slopes.covariance[m]
     if len(m) > 2:
         c = slopes.from_signal[m] + _moderated(slopes, m)
     scale = float(np.median(np.abs(f / s)))
-    # without noise in K and K_v, f + x s of an element has no variance at x = -K: hold it above zero there
+    # without noise in K and K_v, f + x s of an element has no variance at x = -K: keep it above zero there
     smallest = np.maximum(1e-14 * c[:, 0, 0], NO_VARIANCE)
     angle = np.linspace(-pi / 2, pi / 2, ANGLES)
 
@@ -104,7 +121,7 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     least = float(misfit(np.array([best]))[0])
     extra = len(m) - 2
     inflation, dof = scatter(slopes, m, c, scale * tan(best))
-    # the variances are estimates themselves: F, not chi-squared
+    # the variances are estimated too, hence F and not chi-squared
     p = float(fdtrc(extra, dof, least / extra / inflation)) if extra > 0 else 1.0
     widened = (least / extra) ** 0.5 if p < DISAGREE else 1.0
     dof = extra if widened > 1 else dof
@@ -113,16 +130,18 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
 
 
 def hull(best: Interval, others: Sequence[Interval]) -> Interval:
-    """The smallest interval about all of them that are not empty, with the estimate of the first."""
-    held = [i for i in (best, *others) if not i.empty]
-    if not held:
+    """The smallest interval that covers all that are not empty, with the estimate of `best`."""
+    covered = [i for i in (best, *others) if not i.empty]
+    if not covered:
         return best
-    return Interval(best.estimate, min(i.low for i in held), max(i.high for i in held))
+    return Interval(best.estimate, min(i.low for i in covered), max(i.high for i in covered))
 
 
 def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
-    """Covariances of (f, s) by the calibration that weigh the elements: each one's own, with few degrees of
-    freedom, drawn towards what all of them have relative to their size (as Smyth 2004 does with variances).
+    """Covariances of (f, s) by the calibration, [element, 2, 2], from which the elements' weights are made.
+
+    An element's own covariance has few degrees of freedom; it is averaged with the one that all elements
+    have in common relative to their size (as Smyth 2004 does with variances).
     """
     size = np.stack([slopes.f[m], slopes.s[m]], -1)
     size = size[:, :, None] * size[:, None, :]
@@ -133,8 +152,24 @@ def _moderated(slopes: Slopes, m: list[int]) -> np.ndarray:
 
 
 def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
-    """Variance of the x that makes f + x s most equal under weights from c, by the elements' own covariances,
-    over the one that c would give; and its degrees of freedom (Welch and Satterthwaite).
+    """By how much weights from c understate the variance of x, and that variance's degrees of freedom.
+
+    Parameters
+    ----------
+    slopes : Slopes
+    m : list of int
+        Indices of the elements.
+    c : array, [element, 2, 2]
+        Covariances of (f, s) from which the weights are made.
+    x : float
+        K_obj, N/mm, at which f + x s is most equal.
+
+    Returns
+    -------
+    inflation : float
+        Variance of x by the elements' own covariances, over the one by `c`.
+    dof : float
+        Welch and Satterthwaite's.
     """
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
     w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), NO_VARIANCE)
@@ -152,7 +187,7 @@ def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[floa
 
 
 def _minimum(misfit: Misfit, angle: np.ndarray) -> float:
-    """Least point of a function on the closed line of angles, by ever finer scans."""
+    """The angle at which a function with period pi is least, by ever finer scans."""
     step = angle[1] - angle[0]
     best = float(angle[np.argmin(misfit(angle))])
     for _ in range(12):
@@ -163,7 +198,7 @@ def _minimum(misfit: Misfit, angle: np.ndarray) -> float:
 
 
 def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interval:
-    """The connected set about `best` where the misfit keeps below the limit, cut to K_obj >= 0."""
+    """The connected set around `best` where the misfit stays below the limit, cut to K_obj >= 0."""
     edges = []
     for direction in (-1.0, 1.0):
         offset = np.linspace(0.0, pi, 2 * ANGLES)
@@ -177,7 +212,7 @@ def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interv
             inner, outer = fine[first - 1], fine[first]
         edges.append(direction * inner)
     estimate = _value(best, scale)
-    # On the line of angles K_obj >= 0 is [0, pi/2], repeated every pi.
+    # K_obj >= 0 is the angles from 0 to pi/2, repeated every pi
     start = best - pi * np.floor((best + pi / 2) / pi)
     low, high = start + edges[0], start + edges[1]
     for shift in (0.0, pi, -pi):
@@ -192,7 +227,7 @@ def _interval(misfit: Misfit, best: float, limit: float, scale: float) -> Interv
 
 
 def _value(angle: float, scale: float) -> float:
-    """K_obj of an angle; inf at a right angle."""
+    """K_obj (N/mm) at an angle; inf at a right angle."""
     reduced = angle - pi * np.floor((angle + pi / 2) / pi)
     return (
         inf if abs(reduced - pi / 2) < 1e-15 or abs(reduced + pi / 2) < 1e-15 else float(scale * tan(reduced))

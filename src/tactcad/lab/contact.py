@@ -1,9 +1,9 @@
-"""Which readings are surely in contact: where within a step the pad began to touch nobody knows.
+"""Which readings are surely in contact.
 
-The slopes are taken from the second displacement on. A gap of a few micrometres at the start is within one
-step, biases a slope by per cents when its reading is kept, and a test that would find it misses it just where
-it is about as large as the noise: intervals then hold too seldom. A gap beyond the first step is large, and a
-test finds it.
+Where within the first step the pad began to touch is not known. A gap of a few micrometres biases a slope by
+per cents if that step's reading is kept, and a statistical test misses gaps about as large as the noise, so
+that intervals would hold less often than their level says. Hence the first displacement is always left out.
+A gap beyond the first step is large, and a test detects it.
 """
 
 from __future__ import annotations
@@ -15,18 +15,21 @@ from scipy.special import stdtr
 
 from tactcad.lab.regression import fit_lines, spare_steps, steps
 
-BEFORE = 0.001  # chance of leaving out a further step that was in contact
-IN_CONTACT = 0.6  # share of the steps, the largest ones, that are taken to be in contact
-FEWEST = 4  # displacements from which on the first can be spared
-
-
-# Of a ramp that was read at more displacements, neighbours count as one step: each step tried costs a fit of
-# all readings and has its chance of a false alarm, together IN_CONTACT leaves 16 of them, 1.6 %.
+BEFORE = 0.001  # probability that a test leaves out a step that was in contact
+IN_CONTACT = 0.6  # share of the steps, the largest ones, that are assumed to be in contact
+FEWEST = 4  # displacements at which the first can be left out
+# A ramp read at more displacements is grouped into so many steps: each step tested costs a fit of all
+# readings and can raise a false alarm. With IN_CONTACT, 16 of 40 are tested: 1.6 % in all.
 MOST = 40
 
 
 def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple[float, int]:
-    """The smallest displacement from which on the readings lie on one line.
+    """The smallest displacement at which the readings are surely in contact.
+
+    Before contact the force lies above the line of the later readings, extended to smaller displacements.
+    Going down from the largest displacements, the first step whose readings lie above that line in any run
+    (one-sided t test) is left out with all before it. At least three steps and 60 % of them are kept; of
+    three displacements none is left out.
 
     Parameters
     ----------
@@ -36,12 +39,9 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
     Returns
     -------
     first : float
-        mm: the second displacement, or a further one. Before contact the force is above the line, carried on
-        to there: from the largest displacements down, a step is left out, with all before it, where its
-        readings lie above the line of those beyond it in any run (one-sided t test). At least three steps,
-        and 60 % of them, stay; of three displacements none is left out.
+        mm; the second displacement unless the test leaves out more.
     left_out : int
-        How many steps lie before it.
+        Number of steps before it.
     """
     step, index = np.unique(steps(x), return_inverse=True)
     if len(step) > MOST:
@@ -57,10 +57,12 @@ def first_in_contact(x: np.ndarray, force: np.ndarray, run: np.ndarray) -> tuple
 
 
 def _on_line(x: np.ndarray, force: np.ndarray, run: np.ndarray, beyond: np.ndarray, at: np.ndarray) -> bool:
-    """Whether the readings `at` one step lie on, or below, the line through those `beyond` it, in every
-    run; runs are numbered from 0."""
-    here, known = (np.bincount(run[rows], minlength=run.max() + 1) for rows in (at, beyond))
-    both = (here > 0) & (known > 0)
+    """Whether the readings `at` one step lie on or below the line through those `beyond` it in every run.
+
+    `at` and `beyond` mark readings (True or False each); runs are numbered from 0.
+    """
+    at_step, later = (np.bincount(run[rows], minlength=run.max() + 1) for rows in (at, beyond))
+    both = (at_step > 0) & (later > 0)
     if not both.any() or spare_steps(x[beyond], run[beyond]) < 1:
         return True
     lines = fit_lines(x[beyond], force[beyond, None], run[beyond])
@@ -68,12 +70,12 @@ def _on_line(x: np.ndarray, force: np.ndarray, run: np.ndarray, beyond: np.ndarr
 
     def apart(v: np.ndarray) -> np.ndarray:
         """Mean at the step less that beyond it, by run."""
-        means = [np.bincount(run[rows], v[rows], len(both))[both] for rows in (at, beyond)]
-        return means[0] / here[both] - means[1] / known[both]
+        sums = [np.bincount(run[rows], v[rows], len(both))[both] for rows in (at, beyond)]
+        return sums[0] / at_step[both] - sums[1] / later[both]
 
     away = apart(x)
     excess = apart(force) - lines.slope[0] * away
-    spread = (noise * (1 / here[both] + 1 / known[both]) + lines.covariance[0, 0] * away**2) ** 0.5
-    above = excess > 1e-12 * np.abs(force).max()  # readings without noise lie on the line to rounding
+    spread = (noise * (1 / at_step[both] + 1 / later[both]) + lines.covariance[0, 0] * away**2) ** 0.5
+    above = excess > 1e-12 * np.abs(force).max()  # readings without noise differ from the line by rounding
     chance = stdtr(lines.dof, -excess / np.maximum(spread, 1e-300))
     return not (above & (chance < BEFORE / both.sum())).any()

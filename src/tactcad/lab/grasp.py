@@ -1,16 +1,16 @@
-"""Object stiffness from grasp readings: per pair by Fieller, combined over all elements with their
-covariance.
+"""Object stiffness K_obj from grasp readings: for each pair of elements, and for all of them together.
 
-One approach p(load) moves every pad, so signal = offset + g p: pad height and tilt go into the offset, and
-errors of the load, friction and relaxation into p, which all elements share. With s = g/K_v (deflection)
-and f = K s (force) per unit approach, equation (1) is f + x s = the same for all elements, x = K_obj. A
-pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All elements together give
-the x that makes f + x s most equal; pairs that share a reference element are correlated, and this is their
-generalised least squares.
+All pads move by the same approach p(load), so signal = offset + g p: an element's pad height and tilt go into
+its offset; errors of the load, friction and relaxation go into p, which all elements share. With s = g/K_v
+(deflection) and f = K s (force) per unit approach, equation (1) says that f + x s is the same for all
+elements, x = K_obj. A pair gives equation (3), x = (f_r - f_m)/(s_m - s_r), with Fieller's interval. All
+elements together give the x that makes f + x s most equal: the generalised least squares of the pairs, which
+are correlated because they share a reference element.
 
-Two things act on all elements at once and are known within limits only: the load cell of the calibration, and
-how far the pads feel each other through the object, from separate springs to an elastic half-space. Every
-interval holds for all of that: it is the hull of the intervals at the limits.
+Two quantities act on all elements at once and are known within limits only: the stiffness of the
+calibration's load cell, and how far the pads sink under each other's force, from not at all (separate
+springs) to as much as on an elastic half-space. The intervals are evaluated at these limits, and the interval
+given is the smallest that covers all of them.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from tactcad.lab.readings import GraspReadings
 from tactcad.lab.regression import require_level, t_quantile
 from tactcad.lab.sensitivity import Sensitivity
 
-STRAY = 1e-4  # probability, over all elements, below which one is said not to follow the others
-COUPLED = (0.25, 0.5, 1.0)  # shares of the coupling that are tried: K_obj need not be extreme at the largest
+STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
+COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
 @dataclass(frozen=True)
 class Pair:
-    """One measuring element against the reference: R with its interval, K_obj with Fieller's."""
+    """One measuring element against the reference: the deflection ratio R and K_obj, with intervals."""
 
     measuring: int
     reference: int
@@ -41,24 +41,26 @@ class Pair:
     ratio_low: float
     ratio_high: float
     object: Interval
-    object_by_noise: Interval  # noise and calibration alone
-    condition: float  # of K_obj in R, at the estimate
+    object_by_noise: Interval  # by noise and calibration alone, without what is known within limits
+    condition: float  # relative change of K_obj over that of R, at the estimate
 
 
 @dataclass(frozen=True)
 class Grasp:
-    """What one sample's readings say."""
+    """The evaluation of one sample's readings; K_obj in N/mm."""
 
     sample: int
     pairs: tuple[Pair, ...]
     combined: Interval
-    combined_by_noise: Interval  # noise and calibration alone
-    combined_by_limits: tuple[tuple[str, Interval], ...]  # what is known within limits, one after the other
-    noise: float  # of one signal about the common approach, V
+    combined_by_noise: Interval  # by noise and calibration alone
+    combined_by_limits: tuple[
+        tuple[str, Interval], ...
+    ]  # with each quantity known within limits added in turn
+    noise: float  # standard deviation of one signal about the common approach, V
     dof: int
-    disagreement_p: float  # of so much disagreement between the elements by noise alone
-    widened: float  # factor on the combined standard error for it
-    loads: int
+    disagreement_p: float  # probability that noise alone makes the elements disagree this much
+    widened: float  # factor on the combined standard error because they disagree; 1 where they do not
+    loads: int  # number used
     dropped_loads: int
     notes: tuple[str, ...]
 
@@ -75,17 +77,28 @@ def evaluate(
 
     Parameters
     ----------
+    readings : GraspReadings
+        Signals (V) of its elements at every load.
+    calibration : Sensitivity
+        Of these elements at least.
     reference : int, optional
         Number of the reference element; by default the stiffest of those read.
+    level : float
+        Confidence level of every interval, from 0.5 to below 1.
     coupling : array, [element, element], optional
         Largest displacement of a pad by the force on another, over that by the same force on itself, in the
-        order of `readings.element`; the object's is taken to lie between nothing and this. Without it the
-        pads are taken to be on separate springs.
+        order of `readings.element`; the object's is taken to lie between zero and this. Without it the pads
+        are taken to press on separate springs.
+
+    Returns
+    -------
+    Grasp
 
     Raises
     ------
     InputError
-        An element without calibration, fewer than two elements or three loads in contact.
+        An element without calibration or with a constant signal, a reference that was not read, fewer than
+        two elements or than three loads above zero.
     """
     require_level(level)
     touching = readings.load > 0
@@ -105,10 +118,10 @@ def evaluate(
     signal = readings.signal[:, touching]
     slopes, noise = common_slopes(readings.element, signal, calibration)
     smallest = np.finfo(float).tiny ** 0.5  # its square still has digits
-    for still in slopes.element[np.abs(slopes.s) < smallest][:1]:
+    for constant in slopes.element[np.abs(slopes.s) < smallest][:1]:
         raise InputError(
             f"{readings.path}: sample {readings.sample}",
-            f"element {still}: its signal does not change with the load",
+            f"element {constant}: its signal does not change with the load",
         )
     number = int(readings.element[np.argmax(slopes.f / slopes.s)]) if reference is None else reference
     if number not in readings.element:
@@ -163,8 +176,8 @@ def _limits(
     slopes: Slopes,
     coupling: np.ndarray | None,
 ) -> dict[str, list[Slopes]]:
-    """The slopes at the limits of what acts on all elements, by name; the later names on top of the earlier
-    ones."""
+    """The slopes at the limits of each quantity that acts on all elements, by its name; each entry also
+    includes the limits of the entries before it."""
     at: dict[str, list[Slopes]] = {}
     cells = [slopes]
     if (calibration.load_cell_half_width > 0).any():
@@ -174,25 +187,45 @@ def _limits(
         at["with the load cell's limits"] = cells[1:]
     if coupling is not None:
         at["with coupling of the pads too"] = [
-            there.coupled(share * shape)
+            uncoupled.coupled(share * shape)
             for shape in (coupling, _even(coupling))
             for share in COUPLED
-            for there in cells
+            for uncoupled in cells
         ]
     return at
 
 
 def _even(coupling: np.ndarray) -> np.ndarray:
-    """The same coupling between any two pads, as strong as the given one is on average."""
+    """A coupling that is equal between any two pads: the mean of the given one."""
     n = len(coupling)
     return np.full((n, n), (coupling.sum() - np.trace(coupling)) / (n * (n - 1)))
 
 
 def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitivity) -> tuple[Slopes, float]:
-    """Slopes of all elements against their common approach, and the noise of one signal (V).
+    """Slopes of all elements over their common approach, and the noise of one signal (V).
 
-    signal[element, state] less each element's mean is g p + noise, equal noise in every channel: its best
-    rank-one approximation. Errors of p are errors of all g alike, which K_obj does not see.
+    signal[element, state] less each element's mean is g p + noise, with equal noise in every channel: g p is
+    its best rank-one approximation. An error of p scales all g alike, and K_obj does not depend on it.
+
+    Parameters
+    ----------
+    element : array, [element]
+        Numbers.
+    signal : array, [element, state]
+        V, in contact.
+    calibration : Sensitivity
+        Of these elements at least.
+
+    Returns
+    -------
+    slopes : Slopes
+    noise : float
+        Standard deviation, V.
+
+    Raises
+    ------
+    InputError
+        An element without calibration.
     """
     rows = [_row(calibration, int(n)) for n in element]
     centred = signal - signal.mean(1, keepdims=True)
@@ -214,9 +247,8 @@ def common_slopes(element: np.ndarray, signal: np.ndarray, calibration: Sensitiv
 
 
 def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
-    """Elements whose signals do not follow the approach that the others share (F test against the others'
-    noise).
-    """
+    """A note for each element whose signal does not follow the approach that the others share: an F test of
+    its residual against the others' noise."""
     n, each = len(element), signal.shape[1] - 2
     if n < 3:
         return []
@@ -227,7 +259,7 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
         _, size, vt = np.linalg.svd(rest, full_matrices=False)
         noise = (size[1:] ** 2).sum() / (each * (n - 2))
         g = centred[i] @ vt[0]
-        # the others' approach is known to noise/size[0] at each load, and g carries that over
+        # the others' approach is known to noise/size[0] at each load; g carries that error into this residual
         own = ((centred[i] - g * vt[0]) ** 2).sum() / each / (1 + (g / size[0]) ** 2)
         if noise > 0 and fdtrc(each, each * (n - 2), own / noise) < STRAY / n:
             notes.append(
@@ -266,11 +298,11 @@ def _pair(slopes: Slopes, limits: list[Slopes], m: int, r: int, level: float) ->
 
 
 def _row(calibration: Sensitivity, number: int) -> int:
-    found = np.flatnonzero(calibration.element == number)
-    if not len(found):
+    rows = np.flatnonzero(calibration.element == number)
+    if not len(rows):
         raise InputError(
             calibration.path,
             f"element {number} of the grasp is not there",
             legal=str(calibration.element.tolist()),
         )
-    return int(found[0])
+    return int(rows[0])

@@ -13,10 +13,11 @@ from tactcad.lab.plain import plain
 SCHEMA = "tactcad-stiffness-1"
 
 
-def to_text(found: list[Grasp], level: float) -> str:
-    """Each sample: pairs, then the combined value, then what must be known about it."""
+def to_text(samples: list[Grasp], level: float) -> str:
+    """For each sample K_obj of all elements, a table of its pairs, then limits and notes; `level` is that of
+    the intervals."""
     lines = []
-    for g in found:
+    for g in samples:
         c = g.combined
         lines += [
             f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {level:.0%} interval {_interval(c)} "
@@ -63,14 +64,14 @@ def to_text(found: list[Grasp], level: float) -> str:
     return "\n".join(lines)
 
 
-def to_json(found: list[Grasp], level: float) -> str:
-    """Everything; an end that is not bounded is 'inf'."""
-    samples: list[Any] = [plain(g) for g in found]
-    for sample, g in zip(samples, found):
-        sample["combined"]["verdict"] = g.combined.verdict
-        for pair, p in zip(sample["pairs"], g.pairs):
+def to_json(samples: list[Grasp], level: float) -> str:
+    """All fields of every sample as JSON; an end that is not bounded is 'inf'."""
+    records: list[Any] = [plain(g) for g in samples]
+    for record, g in zip(records, samples):
+        record["combined"]["verdict"] = g.combined.verdict
+        for pair, p in zip(record["pairs"], g.pairs):
             pair["object"]["verdict"] = p.object.verdict
-    data = {"schema": SCHEMA, "level": level, "units": "mm, N, V", "samples": samples}
+    data = {"schema": SCHEMA, "level": level, "units": "mm, N, V", "samples": records}
     return json.dumps(data, indent=1, allow_nan=False) + "\n"
 
 

@@ -1,6 +1,6 @@
-"""Reads a filled-in inspection sheet back. Every refusal names file, line and column.
+"""Reads an inspection sheet that was filled in. Every refusal names file, line and column.
 
-Rows and columns may stand in another order, and there may be further columns.
+Rows and columns may be in any order, and there may be further columns.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tactcad.parts.measurements import Measurement, measurements
 
 NEEDED = tuple(c for c in COLUMNS if c not in ("key", "where", "how"))
 LIMITS = ("nominal", "lower", "upper")
-FACTOR = 5.0  # a measured value further from its nominal is no measurement of it, but another unit or a slip
+FACTOR = 5.0  # a value further from its nominal, up or down, is in another unit or mistyped
 SLIP = "the decimal point slipped"
 UNITS_TAKEN = (
     (1e3, "in micrometres"),
@@ -26,21 +26,18 @@ UNITS_TAKEN = (
     (10.0, SLIP),
     (0.1, SLIP),
 )
-WIDEST = 5.0  # an uncertainty of more times the tolerance is another unit or a slip
+WIDEST = 5.0  # an uncertainty of more tolerances than this is in another unit or mistyped
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What the sheet says of one dimension of one element; mm, None where the cell is blank.
+    """One row of the sheet: a dimension of an element. None where the cell is blank."""
 
-    `uncertainty` is expanded, k = 2. `line` is the sheet's.
-    """
-
-    number: int
+    number: int  # of the element
     dimension: Measurement
-    measured: float | None
-    uncertainty: float | None
-    line: int
+    measured: float | None  # mm
+    uncertainty: float | None  # mm, expanded, k = 2
+    line: int  # of the sheet
 
     @property
     def verdict(self) -> str:
@@ -58,16 +55,30 @@ class Reading:
 
 
 def read_sheet(path: str | Path, layout: Layout) -> list[Reading]:
-    """Every row of the sheet, by element number and in the order of its dimensions.
+    """Every row of an inspection sheet.
 
-    Raises InputError where the file is not this design's sheet, whole and unchanged but for what was filled
-    in.
+    Parameters
+    ----------
+    path : str or Path
+    layout : Layout
+        Of the design that the sheet was exported with.
+
+    Returns
+    -------
+    list of Reading
+        By element number, and for each element in the order of its dimensions.
+
+    Raises
+    ------
+    InputError
+        The file is not this design's sheet with every row, has something changed that was not to be filled
+        in, or holds a measured value or an uncertainty that cannot be one.
     """
     table = read_table(path, "an inspection sheet (CSV)", comments=False)
     require_columns(table, NEEDED)
     rows = [_Row(table, line, cells) for line, cells in table.records]
-    own = (row[name] for row in rows for name in LIMITS)
-    commas = table.delimiter != "," and decimal_commas(own)
+    preset = (row[name] for row in rows for name in LIMITS)
+    commas = table.delimiter != "," and decimal_commas(preset)
     known = {
         (p.designator, m.name): (p.number, part_no, m) for p, part_no, ms in measurements(layout) for m in ms
     }
@@ -124,7 +135,7 @@ def _identified(row: _Row, layout: Layout, known: dict) -> tuple[str, str]:
 
 
 def _check_unchanged(row: _Row, part_no: str, dimension: Measurement, commas: bool) -> None:
-    """What the sheet came with is still there."""
+    """Raise InputError where the row's preset cells differ from the exported sheet's."""
     for name, meant in (("part_no", part_no), ("unit", UNIT)):
         if row[name] != meant:
             raise row.refusal(name, "not what the sheet came with", legal=meant)
@@ -155,9 +166,9 @@ def _reading(row: _Row, number: int, dimension: Measurement, commas: bool) -> Re
 
 
 def _guess(ratio: float) -> str:
-    """What such a value looks like, where that can be told."""
-    found = [text for factor, text in UNITS_TAKEN if 0.8 < ratio / factor < 1.25]
-    return f" ({found[0]}?)" if found else ""
+    """The likely mistake in a value that is `ratio` times its nominal, in brackets; "" where none fits."""
+    likely = [text for factor, text in UNITS_TAKEN if 0.8 < ratio / factor < 1.25]
+    return f" ({likely[0]}?)" if likely else ""
 
 
 def _number(row: _Row, name: str, commas: bool) -> float:

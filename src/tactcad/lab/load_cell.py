@@ -1,4 +1,4 @@
-"""The force sensor that gives way in series with the element: its stiffness, and how well it is known."""
+"""The force sensor, a spring in series with the element: its stiffness, and how well it is known."""
 
 from __future__ import annotations
 
@@ -7,14 +7,20 @@ from math import inf, isinf
 
 from tactcad.design.messages import InputError
 
-# Relative half-width to which a load cell's stiffness is taken to be known where nothing is said: chosen,
-# after one measurement with weights and a micrometer.
+# Relative half-width assumed of a load cell's stiffness that is given without limits. Chosen: what one
+# measurement with weights and a micrometer reaches.
 CELL_ACCURACY = 0.02
 
 
 @dataclass(frozen=True)
 class LoadCell:
-    """The force sensor's own stiffness and the limits within which it lies, N/mm: stiffness +- half_width."""
+    """The force sensor's own stiffness, known to lie within stiffness +- half_width; both N/mm.
+
+    Raises
+    ------
+    InputError
+        A stiffness that is not positive, limits that reach zero.
+    """
 
     stiffness: float
     half_width: float = 0.0
@@ -32,7 +38,13 @@ class LoadCell:
 
     @classmethod
     def parse(cls, text: str) -> LoadCell:
-        """From "57.04", "57.04+-1", "57.04+-2%" or "inf". Without limits `CELL_ACCURACY` is assumed."""
+        """From "57.04", "57.04+-1", "57.04+-2%" or "inf"; without limits `CELL_ACCURACY` is assumed.
+
+        Raises
+        ------
+        InputError
+            The text is none of these.
+        """
         value, _, limits = text.replace("\N{PLUS-MINUS SIGN}", "+-").partition("+-")
         try:
             stiffness = float(value)
@@ -53,7 +65,20 @@ class LoadCell:
 
 
 def series_removed(slope: float, load_cell: float) -> float:
-    """Stiffness of the element behind a load cell: k K_c/(K_c - k), N/mm; inf where k reaches K_c."""
+    """Stiffness of the element alone, k K_c/(K_c - k), from that of element and load cell in series.
+
+    Parameters
+    ----------
+    slope : float
+        k: force over the stage's displacement, N/mm.
+    load_cell : float
+        K_c, N/mm; inf for a rigid one.
+
+    Returns
+    -------
+    float
+        N/mm; inf where k is no less than K_c.
+    """
     if isinf(load_cell):
         return slope
     return slope * load_cell / (load_cell - slope) if slope < load_cell else inf

@@ -1,4 +1,5 @@
-"""What a design's material has otherwise than its name says, and what stiffness its name would give."""
+"""Properties of a design's material that differ from its alloy's in the table, and the stiffness that the
+table's Young's modulus would give."""
 
 from __future__ import annotations
 
@@ -9,29 +10,28 @@ from tactcad.design.tree import Design
 
 
 def stiffness_factor(design: Design) -> float | None:
-    """Stiffness with the table's Young's modulus over that with the design's: their ratio, since both models
-    and elements are linear; None where the design has the table's."""
+    """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli, since
+    the elements are linear; None where the design has the table's."""
     return next((d.table / d.value for d in design.differences if d.name == "youngs_modulus"), None)
 
 
 def lines(design: Design, stiffness: Sequence[float]) -> list[str]:
-    """A line a property that differs, with its source; that of Young's modulus with both stiffnesses
-    (N/mm)."""
-    found = [f"material: {d}" + (f" ({d.origin})" if d.origin else "") for d in design.differences]
+    """A line for each property that differs, with its source; for Young's modulus also the largest and the
+    smallest stiffness (N/mm) with either modulus."""
+    differing = [f"material: {d}" + (f" ({d.origin})" if d.origin else "") for d in design.differences]
     factor = stiffness_factor(design)
     if factor is not None:
         most, least = max(stiffness), min(stiffness)
-        found.append(
+        differing.append(
             f"with {design.material.alloy}'s own modulus every K is {factor - 1:+.1%}: {most * factor:.4g} "
             f"instead of {most:.4g} N/mm"
             + (f", {least * factor:.4g} instead of {least:.4g}" if least != most else "")
         )
-    return found
+    return differing
 
 
 def record(design: Design) -> dict[str, Any]:
-    """The same for JSON: `material_differences`, and `stiffness_factor` to the table's modulus where it
-    differs."""
+    """The differences for JSON: `material_differences`, and `stiffness_factor` where the modulus differs."""
     differences = [
         {"property": d.name, "value": d.value, "table": d.table, "relative": d.relative, "origin": d.origin}
         for d in design.differences

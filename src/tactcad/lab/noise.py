@@ -1,8 +1,8 @@
-"""How much a reading scatters: one law for all elements of a file, since the same sensors read them.
+"""The variance of a reading: one law for all elements of a file, since the same sensors read them.
 
-variance = a + b slope^2 + c (slope travel)^2, none of the three below zero: the read-out's own noise, the
-stage's (the same error of displacement is more force on a stiff element), and what grows with the reading (a
-sensor's per cent of value). An element alone has too few readings to tell a noise that grows from an outlier
+variance = a + b slope^2 + c (slope travel)^2 with a, b, c >= 0: the read-out's own noise, the stage's (the
+same error of displacement gives more force on a stiff element), and noise that grows with the reading (a
+sensor's per cent of value). One element has too few readings to distinguish noise that grows from an outlier
 at its largest reading.
 """
 
@@ -16,33 +16,31 @@ from scipy.optimize import nnls
 
 from tactcad.lab.regression import fit_lines
 
-# A squared residual counts up to so many times its variance (three standard deviations), so that a bad
-# reading is no noise that grows; of normal noise that takes away 1 % of the squares' mean.
+# Squared residuals are capped at so many variances (three standard deviations), so that a bad reading is not
+# taken for noise that grows. For normal noise the cap lowers the mean square by 1 %.
 STRANGE = 9.0
-FITS = 2  # of the lines: by equal weights, then by those found, since noisy readings turn a line off the rest
-ROUNDS = 6  # fits of the law, each weighted by and held against the one before; after five nothing moves
-RANGE = 100.0  # of the variances of one element
+FITS = 2  # of the lines: with equal weights, then with the law's, so that noisy readings do not tilt them
+ROUNDS = 6  # fits of the law, each weighted and capped by the one before; it stops changing after five
+RANGE = 100.0  # largest over smallest variance allowed within one element
 MEDIAN = 0.455  # of chi-squared with one degree of freedom, over its mean
 
 
 @dataclass(frozen=True)
 class Readings:
-    """One element's readings of force (N) or signal (V): displacement (mm), the same from where the element
-    began (mm), what was read, number of the run.
-    """
+    """One element's readings of force or signal; arrays, [reading]."""
 
-    x: np.ndarray
-    travel: np.ndarray
-    y: np.ndarray
+    x: np.ndarray  # displacement, mm
+    travel: np.ndarray  # displacement from the element's smallest one, mm
+    y: np.ndarray  # force, N, or signal, V
     run: np.ndarray
 
 
 def weights(elements: Sequence[Readings]) -> list[np.ndarray]:
-    """1/variance of every reading, element by element."""
-    found = [np.ones(len(e.x)) for e in elements]
+    """1/variance of every reading (1/N2 or 1/V2), one array for each element."""
+    weight = [np.ones(len(e.x)) for e in elements]
     for _ in range(FITS):
-        found = _by_law(elements, found)
-    return found
+        weight = _by_law(elements, weight)
+    return weight
 
 
 def _by_law(elements: Sequence[Readings], weight: list[np.ndarray]) -> list[np.ndarray]:
@@ -66,9 +64,10 @@ def _by_law(elements: Sequence[Readings], weight: list[np.ndarray]) -> list[np.n
 
 
 def _normal_form(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Square r and c with |r v - c|^2 = |a v - b|^2 but for a constant, from one pass over the readings.
+    """Square r, and c, such that |r v - c|^2 and |a v - b|^2 differ by a constant: least squares of many
+    readings as one of few.
 
-    By the eigenvalues of a^T a, since columns may be equal (one element: read-out and stage look alike).
+    By the eigenvalues of a^T a, since columns can be equal: with one element those of a and b are.
     """
     eigenvalue, vector = np.linalg.eigh(a.T @ a)
     root = np.sqrt(np.maximum(eigenvalue, np.finfo(float).eps * eigenvalue[-1]))
@@ -76,7 +75,8 @@ def _normal_form(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _start(square: np.ndarray) -> float:
-    """Variance of an element's readings by the median of their squares, the mean where that is nought."""
+    """First guess of an element's variance, from the median of its squared residuals; their mean where the
+    median is zero."""
     return float(np.median(square)) / MEDIAN or float(square.mean())
 
 

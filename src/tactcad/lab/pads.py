@@ -1,4 +1,4 @@
-"""Where the pads of an array stand, and how far they can feel each other through what they press on."""
+"""Where the pads of an array stand, and how much they are coupled through the object they press on."""
 
 from __future__ import annotations
 
@@ -13,20 +13,18 @@ from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 
-INCOMPRESSIBLE = 0.5  # of soft tissue and rubber; a half-space's shares do not depend on it
+INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it
 
 
 def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of the pads' centres, mm, in the order of the elements; row two is row one turned by 180
-    degrees."""
+    """x and y of the pads' centres, arrays [element], mm. Row two is row one turned by 180 degrees."""
     side = np.array([1.0 if p.row == 1 else -1.0 for p in layout.elements])
     y = np.array([p.y for p in layout.elements])
     return side * layout.design.array.row_pitch / 2, side * y
 
 
 def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray | None:
-    """Displacement of each pad by the force on another over that by the same force on itself, [element,
-    element].
+    """Displacement of each pad by the force on another, over that by the same force on itself.
 
     Parameters
     ----------
@@ -35,7 +33,12 @@ def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray |
     readings : GraspReadings
         Its elements, in their order.
     share : float
-        Of the coupling by an elastic half-space, 0 to 1; 0 gives None.
+        Of the coupling by an elastic half-space, from 0 to 1.
+
+    Returns
+    -------
+    array, [element, element], or None
+        Ratios, in the order of `readings.element`; None where the share is 0.
 
     Raises
     ------

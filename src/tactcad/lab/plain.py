@@ -1,4 +1,4 @@
-"""Records as JSON holds them."""
+"""Records as values that JSON can hold."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from math import isfinite
 
 import numpy as np
 
-UNREPORTED = {
-    "unreported": True
-}  # metadata of a field that is a picture's raw material, left out of the JSON
+# Metadata of a field that only pictures are drawn from: it is left out of the JSON.
+UNREPORTED = {"unreported": True}
 
 
 def plain(value: object) -> object:
-    """Dataclasses, arrays and numbers as JSON's kinds; numbers that JSON lacks as 'nan', 'inf', '-inf'."""
+    """Dataclasses, arrays and NumPy numbers as dicts, lists and numbers; 'nan', 'inf', '-inf' as text, which
+    JSON has no numbers for."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {
             f.name: plain(getattr(value, f.name))

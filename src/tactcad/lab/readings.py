@@ -18,7 +18,8 @@ ELEMENT = Field("element", "1", 1, 100_000, integer=True)
 RUN = Field("run", "1", 0, 1_000_000, integer=True)
 SAMPLE = Field("sample", "1", 0, 1_000_000, integer=True)
 
-# unit -> factor to mm, N, V. The ranges catch a column in another unit: no calibration travels 10 mm.
+# By quantity: suffix of a column's name -> factor to the unit that follows, and the largest value, beyond
+# which a column is in another unit (no calibration travels 10 mm).
 UNITS = {
     "displacement": ({"": 1.0, "_mm": 1.0, "_um": 1e-3}, "mm", 10.0),
     "force": ({"": 1.0, "_N": 1.0, "_mN": 1e-3}, "N", 1000.0),
@@ -29,31 +30,48 @@ UNITS = {
 
 @dataclass(frozen=True)
 class CalibrationReadings:
-    """One row a reading; displacement of the stage (mm), force (N), signal (V), line in the file."""
+    """Readings of a calibration; arrays, [reading]."""
 
-    element: np.ndarray
+    element: np.ndarray  # its number
     run: np.ndarray
-    displacement: np.ndarray
-    force: np.ndarray
-    signal: np.ndarray
-    line: np.ndarray
+    displacement: np.ndarray  # of the stage, mm
+    force: np.ndarray  # N
+    signal: np.ndarray  # V
+    line: np.ndarray  # in the file
     path: str = "readings"
 
 
 @dataclass(frozen=True)
 class GraspReadings:
-    """Signals (V) of all elements at every load of one sample: signal[element, state]."""
+    """Signals of all elements at every load on one sample; a state is one load of one run."""
 
     sample: int
-    element: np.ndarray
-    load: np.ndarray  # N, by state
-    run: np.ndarray  # by state
-    signal: np.ndarray
+    element: np.ndarray  # numbers, [element]
+    load: np.ndarray  # N, [state]
+    run: np.ndarray  # [state]
+    signal: np.ndarray  # V, [element, state]
     path: str = "readings"
 
 
 def calibration(path: str | Path) -> CalibrationReadings:
-    """Readings of `tactcad calibrate`. Raises InputError with file, line and column."""
+    """Read the readings for `tactcad calibrate`.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV with the columns element, run, displacement, force, signal.
+
+    Returns
+    -------
+    CalibrationReadings
+        In the order of the file.
+
+    Raises
+    ------
+    InputError
+        A malformed table, a displacement twice in a run, too few readings of an element, displacements with
+        their sign reversed; with file, line and column.
+    """
     rows, scaled = _read(path, (ELEMENT, RUN), ("displacement", "force", "signal"))
     refuse_duplicates(
         rows,
@@ -70,17 +88,17 @@ def calibration(path: str | Path) -> CalibrationReadings:
         rows.lines,
         rows.path,
     )
-    for number, here in groups(out.element):
-        runs, at = len(np.unique(out.run[here])), np.unique(steps(out.displacement[here]))
-        if len(here) < runs + 3 or len(at) < 3:
+    for number, own in groups(out.element):
+        runs, at = len(np.unique(out.run[own])), np.unique(steps(out.displacement[own]))
+        if len(own) < runs + 3 or len(at) < 3:
             raise InputError(
-                rows.where(int(here[-1]), "element"),
+                rows.where(int(own[-1]), "element"),
                 f"too few readings of element {number}",
-                value=len(here),
+                value=len(own),
                 legal="three more than runs, at three displacements at least",
             )
-        least = int(here[np.argmin(out.displacement[here])])
-        if -out.displacement[least] > out.displacement[here].max():
+        least = int(own[np.argmin(out.displacement[own])])
+        if -out.displacement[least] > out.displacement[own].max():
             raise InputError(
                 rows.where(least, scaled["displacement"][0]),
                 f"element {number} is pressed to negative displacements: the column's sign is reversed",
@@ -91,17 +109,31 @@ def calibration(path: str | Path) -> CalibrationReadings:
 
 
 def groups(number: np.ndarray) -> list[tuple[int, np.ndarray]]:
-    """Every number in the order of its first row, with its rows."""
+    """Each different number with the indices of its rows, in the order of the first of them."""
     order = np.argsort(number, kind="stable")
     numbers, first = np.unique(number[order], return_index=True)
-    found = list(zip(numbers.tolist(), np.split(order, first[1:])))
-    return sorted(found, key=lambda group: group[1][0])
+    return sorted(zip(numbers.tolist(), np.split(order, first[1:])), key=lambda group: group[1][0])
 
 
 def grasps(path: str | Path) -> list[GraspReadings]:
-    """Readings of `tactcad stiffness`, one entry a sample. Raises InputError with file, line and column.
+    """Read the readings for `tactcad stiffness`.
 
-    Every element must be read at every load of a run, so that one approach of the array moves all of them.
+    Every element must be read at every load of a run, since one approach of the array moves all of them.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV with the columns element, load, signal; run and sample where there are several.
+
+    Returns
+    -------
+    list of GraspReadings
+        One for each sample, in the order of the file.
+
+    Raises
+    ------
+    InputError
+        A malformed table, a reading twice or missing; with file, line and column.
     """
     rows, scaled = _read(path, (ELEMENT,), ("load", "signal"), optional=(RUN, SAMPLE))
     run, sample = (
@@ -113,22 +145,23 @@ def grasps(path: str | Path) -> list[GraspReadings]:
     element = rows.values("element").astype(int)
     load, signal = (rows.values(name) * factor for name, factor in scaled.values())
     return [
-        _grasp(rows, number, here, element[here], load[here], run[here], signal[here])
-        for number, here in groups(sample)
+        _grasp(rows, number, own, element[own], load[own], run[own], signal[own])
+        for number, own in groups(sample)
     ]
 
 
 def _grasp(
     rows: Rows,
     sample: int,
-    here: np.ndarray,
+    own: np.ndarray,
     element: np.ndarray,
     load: np.ndarray,
     run: np.ndarray,
     signal: np.ndarray,
 ) -> GraspReadings:
-    """The grid of one sample's signals; elements and states in the order of their first rows."""
-    state = np.empty(len(here), [("run", int), ("load", float)])
+    """One sample's signals, [element, state], from its `own` rows; elements and states in the order of their
+    first rows."""
+    state = np.empty(len(own), [("run", int), ("load", float)])
     state["run"], state["load"] = run, load
     elements, row = _numbered(element)
     states, column = _numbered(state)
@@ -137,7 +170,7 @@ def _grasp(
     if np.isnan(grid).any():
         e, s = np.argwhere(np.isnan(grid))[0]
         raise InputError(
-            rows.where(int(here[-1]), "element"),
+            rows.where(int(own[-1]), "element"),
             f"element {elements[e]} has no signal at load {states['load'][s]:g} N",
             legal="every element at every load",
         )
@@ -145,7 +178,7 @@ def _grasp(
 
 
 def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The different keys in the order of their first rows, and the place of every row's key among them."""
+    """The different keys in the order of their first rows, and for every row the index of its key."""
     unique, first, index = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first)
     return unique[order], np.argsort(order)[index]
@@ -154,7 +187,7 @@ def _numbered(keys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _read(
     path: str | Path, fixed: tuple[Field, ...], measured: tuple[str, ...], optional: tuple[Field, ...] = ()
 ) -> tuple[Rows, dict[str, tuple[str, float]]]:
-    """Rows, and for each measured quantity its column's name and factor to mm, N, V."""
+    """The table's rows, and for each measured quantity its column's name and factor to mm, N or V."""
     table = read_table(path, "readings (CSV)")
     scaled = {quantity: _column_of(table, quantity) for quantity in measured}
     fields = []
@@ -168,9 +201,10 @@ def _read(
 
 
 def _column_of(table: Table, quantity: str) -> tuple[str, float]:
-    """The quantity's column and its factor to mm, N, V; the plain name where there is none.
+    """The name of the quantity's column and its factor to mm, N or V; where the table has none, the plain
+    name, which `numeric` then reports as missing.
 
-    Raises InputError where there are two: nothing would say which one counts.
+    Raises InputError where there are two: nothing says which one counts.
     """
     known = {quantity + suffix: factor for suffix, factor in UNITS[quantity][0].items()}
     names = [name for name in table.header if name in known]

@@ -1,7 +1,7 @@
-"""Straight lines through repeated runs: common slope, an intercept a run, two responses at once.
+"""Straight lines through repeated runs: one slope, an intercept for each run, several responses at once.
 
 Sources: weighted least squares and its t interval (any statistics text); Fieller 1954 for the ratio of two
-normal estimates; Rosner 1983 for the generalised extreme Studentized deviate test.
+normal estimates; Rosner 1983 for the generalised extreme Studentized deviate (ESD) test.
 """
 
 from __future__ import annotations
@@ -14,27 +14,24 @@ from scipy.special import stdtrit
 
 from tactcad.design.messages import InputError
 
-KNOWN = 1e6  # degrees of freedom of what counts as known
+KNOWN = 1e6  # degrees of freedom of a variance that counts as known
 
 
 @dataclass(frozen=True)
 class Lines:
-    """Common slopes of the responses y[:, k] against x, with one intercept a run.
+    """Slopes of the responses y[:, k] over x, common to all runs, with an intercept for each run."""
 
-    covariance: of the slopes by the scatter about the lines, [k, k], with dof degrees of freedom; residual:
-    [reading, k]; leverage: by reading. run_slope: [run, k]; between: covariance of the common slopes by the
-    scatter of the runs' own slopes, [k, k], with one degree of freedom fewer than runs (nan with one run).
-    """
-
-    slope: np.ndarray
-    covariance: np.ndarray
-    intercept: np.ndarray  # mean of the runs' intercepts, by k
-    residual: np.ndarray
-    leverage: np.ndarray
-    weight: np.ndarray
-    dof: int
-    run_slope: np.ndarray
-    run_share: np.ndarray  # of each run in the common slopes
+    slope: np.ndarray  # [k]
+    covariance: np.ndarray  # of the slopes, from the scatter about the lines, [k, k]
+    intercept: np.ndarray  # mean of the runs' intercepts, [k]
+    residual: np.ndarray  # [reading, k]
+    leverage: np.ndarray  # [reading]
+    weight: np.ndarray  # [reading], 1 on average
+    dof: int  # degrees of freedom of `covariance`
+    run_slope: np.ndarray  # each run's own slopes, [run, k]
+    run_share: np.ndarray  # weight of each run in the common slopes, [run], 1 in sum
+    # covariance of the common slopes from the scatter of the runs' own, [k, k], with one degree of freedom
+    # fewer than runs; nan with one run
     between: np.ndarray
 
     @property
@@ -44,14 +41,13 @@ class Lines:
 
 
 def steps(x: np.ndarray) -> np.ndarray:
-    """Displacements, mm: those that agree within 1e-9 mm are one step."""
+    """Displacements (mm) rounded to 1e-9 mm, so that those of one step are equal."""
     return np.round(x, 9)
 
 
 def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
-    """How many steps there are, each counted in every run, beyond those that give every run its intercept and
-    all of them a slope; below 0 there is no line.
-    """
+    """Number of steps, counted in every run, less the number of parameters of the lines: an intercept for
+    each run and a common slope. Below 0 there is no line, at 0 no scatter about it."""
     at = steps(x)
     order = np.lexsort((at, run))
     another_run = np.diff(run[order]) != 0
@@ -60,8 +56,22 @@ def spare_steps(x: np.ndarray, run: np.ndarray) -> int:
 
 
 def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray | None = None) -> Lines:
-    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x; weights need only be right in
-    proportion.
+    """Weighted least squares of y[:, k] = intercept[run, k] + slope[k] x.
+
+    Parameters
+    ----------
+    x : array, [reading]
+    y : array, [reading, k]
+        k responses.
+    run : array, [reading]
+        Number of the reading's run.
+    weight : array, [reading], optional
+        Proportional to 1/variance; by default equal.
+
+    Returns
+    -------
+    Lines
+        Slopes in units of y over those of x.
     """
     w = np.ones(len(x)) if weight is None else weight / weight.mean()
     runs, index = np.unique(run, return_inverse=True)
@@ -101,32 +111,44 @@ def fit_lines(x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray 
 
 
 def rounding(y: np.ndarray) -> np.ndarray:
-    """Scatter below which the readings of each response y[:, k] differ by rounding only."""
+    """Difference below which readings of a response y[:, k] differ by rounding only; array, [k]."""
     return np.maximum(1e-13 * np.abs(y).max(0), np.finfo(float).tiny ** 0.5)
 
 
 def require_level(level: float) -> None:
-    """Raises InputError for a level of intervals that is none."""
+    """Raise InputError for a confidence level outside 0.5 to 1."""
     if not 0.5 <= level < 1:
         raise InputError("level", "out of range", value=level, legal="from 0.5 to below 1")
 
 
 def t_quantile(level: float, dof: float) -> float:
-    """Half-width factor of a two-sided interval of that level."""
+    """Half-width of a two-sided interval of that level, in standard errors."""
     return float(stdtrit(dof, 0.5 + level / 2))
 
 
 def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) -> tuple[float, float]:
-    """Fieller's interval of top/bottom from two normal estimates with their 2 x 2 covariance.
+    """Fieller's interval of the ratio of two normal estimates.
 
-    (-inf, inf) where the data do not tell the bottom from zero.
+    Parameters
+    ----------
+    top, bottom : float
+        The estimates.
+    covariance : array, [2, 2]
+        Of (top, bottom).
+    t : float
+        Half-width in standard errors (`t_quantile`).
+
+    Returns
+    -------
+    low, high : float
+        -inf and inf where `bottom` cannot be distinguished from zero.
     """
     a = bottom * bottom - t * t * covariance[1, 1]
     b = top * bottom - t * t * covariance[0, 1]
     if a <= 0:
         return -inf, inf
     (tt, tb), (_, bb) = covariance
-    # b b - a c with c = top^2 - t^2 tt, without the difference of (top bottom)^2 from itself
+    # b b - a c with c = top^2 - t^2 tt, written so that (top bottom)^2 is not subtracted from itself
     along = top * top * bb - 2 * top * bottom * tb + bottom * bottom * tt
     root = t * sqrt(max(along + t * t * (tb * tb - tt * bb), 0.0))
     return (b - root) / a, (b + root) / a
@@ -135,19 +157,30 @@ def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) 
 def extreme_deviates(
     x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray, alpha: float = 0.01
 ) -> list[int]:
-    """Readings that the line does not explain (generalised ESD), at most a tenth of them; largest first.
+    """Outliers about the line, by the generalised ESD test.
 
-    x, y, run, weight: as fit_lines, one response. alpha is the chance of naming any reading where all are
-    good. The search ends after PATIENCE readings in a row that the line does explain.
+    The search ends after PATIENCE removed readings in a row that are no outliers.
+
+    Parameters
+    ----------
+    x, y, run, weight : arrays, [reading]
+        As for `fit_lines`, with one response.
+    alpha : float
+        Probability that a reading is reported where all are good.
+
+    Returns
+    -------
+    list of int
+        Indices of at most a tenth of the readings, the furthest off first.
     """
     n = len(x)
     left = _Left(x, y, run, weight)
     smallest = float(rounding(y[:, None])[0])
     removed: list[int] = []
-    named = 0
+    outliers = 0
     for step in range(max(1, n // 10)):
         dof = n - step - left.runs - 1
-        if dof < 2 or step - named > PATIENCE or left.sxx <= np.finfo(float).tiny:
+        if dof < 2 or step - outliers > PATIENCE or left.sxx <= np.finfo(float).tiny:
             break
         scale = sqrt(left.sum_of_squares() / dof)
         if scale <= smallest:
@@ -156,22 +189,21 @@ def extreme_deviates(
         t = float(stdtrit(dof - 1, 1 - alpha / (2 * (n - step))))
         removed.append(worst)
         if deviate / scale > t * sqrt(dof / (dof - 1 + t * t)):
-            named = step + 1
+            outliers = step + 1
         left.remove(worst)
-    return removed[:named]
+    return removed[:outliers]
 
 
-# A cluster of so many bad readings may hide one another; each further one costs time on good data only. All
-# of a tenth are tried where an element has up to 200 readings.
+# So many bad readings close together may hide one another; trying more costs time and, on good data, finds
+# nothing. Of up to 200 readings a whole tenth is tried.
 PATIENCE = 20
 
 
 class _Left:
-    """A line with an intercept a run through the readings that are left, brought up to date as one is taken
-    out.
+    """The fit of one response to the readings that are left, updated as readings are removed one by one.
 
-    Means of a run and the common slope move in closed form (deletion of one row of least squares), so that a
-    step costs a few sums and no fit.
+    The runs' means and the slope change in closed form (least squares with one row deleted), so that a
+    removal costs a few sums and no fit.
     """
 
     def __init__(self, x: np.ndarray, y: np.ndarray, run: np.ndarray, weight: np.ndarray) -> None:
@@ -187,25 +219,26 @@ class _Left:
         return float(self.w @ self.residual**2)
 
     def worst(self) -> tuple[int, float]:
-        """The reading with the largest weighted residual for its leverage, and that ratio."""
+        """Index of the reading with the largest weighted residual after scaling by its leverage, and that
+        residual."""
         unexplained = np.maximum(1 - self.w * (1 / self.total + self.x**2 / self.sxx), 1e-12)
         square = self.w * self.residual**2 / unexplained
         i = int(square.argmax())
         return i, sqrt(square[i])
 
     def remove(self, i: int) -> None:
-        """Take reading i out; it stays in the arrays as a run of its own without residual."""
+        """Remove reading i: it stays in the arrays as a run of its own without residual."""
         x, r, w, total = (float(v[i]) for v in (self.x, self.residual, self.w, self.total))
-        here = self.run == self.run[i]
+        same_run = self.run == self.run[i]
         self.run[i], self.x[i], self.residual[i], self.total[i] = -1 - i, 0.0, 0.0, w
-        here[i] = False
-        if not here.any():
+        same_run[i] = False
+        if not same_run.any():
             self.runs -= 1
             return
         rest = total - w
         self.sxx -= w * x * x * total / rest
-        turned = -w * x * r * total / rest / self.sxx if self.sxx > 0 else 0.0  # what the slope gains
-        self.residual -= turned * self.x
-        self.residual[here] += w * (r - turned * x) / rest
-        self.x[here] += w * x / rest
-        self.total[here] = rest
+        change = -w * x * r * total / rest / self.sxx if self.sxx > 0 else 0.0  # of the slope
+        self.residual -= change * self.x
+        self.residual[same_run] += w * (r - change * x) / rest
+        self.x[same_run] += w * x / rest
+        self.total[same_run] = rest

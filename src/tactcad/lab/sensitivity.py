@@ -1,4 +1,4 @@
-"""A calibration as the evaluation of grasps takes it."""
+"""The part of a calibration that the evaluation of grasps needs."""
 
 from __future__ import annotations
 
@@ -11,25 +11,27 @@ from tactcad.design.messages import InputError
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """A calibration by element: K (N/mm), K_v (V/mm), standard errors, their correlation, degrees of freedom;
-    the load cell that stood in series, N/mm, and the half-width of its limits.
-    """
+    """A calibration; arrays, [element]."""
 
-    element: np.ndarray
-    stiffness: np.ndarray
-    stiffness_se: np.ndarray
-    signal_per_deflection: np.ndarray
+    element: np.ndarray  # numbers
+    stiffness: np.ndarray  # K, N/mm
+    stiffness_se: np.ndarray  # standard error
+    signal_per_deflection: np.ndarray  # K_v, V/mm
     signal_per_deflection_se: np.ndarray
-    correlation: np.ndarray
-    dof: np.ndarray
-    load_cell: np.ndarray
-    load_cell_half_width: np.ndarray
+    correlation: np.ndarray  # of K and K_v
+    dof: np.ndarray  # degrees of freedom of both standard errors
+    load_cell: np.ndarray  # stiffness of the load cell that was in series, N/mm
+    load_cell_half_width: np.ndarray  # of its limits, N/mm
     path: str = "calibration"
 
     def at_load_cell_limit(self, sign: float) -> Sensitivity:
-        """What the same readings give with the load cell at its lower (sign -1) or upper (1) limit.
+        """The calibration that the same readings give with the load cell at its lower (sign -1) or upper (1)
+        limit.
 
-        Raises InputError where the softest cell would have given way as much as cell and element together.
+        Raises
+        ------
+        InputError
+            At that limit the load cell is no stiffer than element and cell in series were measured to be.
         """
         cell = self.load_cell + sign * self.load_cell_half_width
         old = 1 / (1 + self.stiffness / self.load_cell)  # 1 - k/K_c, as k = K K_c/(K + K_c)

@@ -1,4 +1,4 @@
-"""Readings with known truth: what a calibration and a grasp would give, noise included.
+"""Simulated readings of a calibration and a grasp, noise included, of an array whose true values are known.
 
 For coverage tests, for the example files and for Figure 6.
 """
@@ -12,25 +12,23 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Truth:
-    """What the simulated array is: by element, K (N/mm), K_v (V/mm), V_0 (V)."""
+    """The simulated array's true values; arrays, [element]."""
 
-    element: np.ndarray
-    stiffness: np.ndarray
-    signal_per_deflection: np.ndarray
-    zero_signal: np.ndarray
+    element: np.ndarray  # numbers
+    stiffness: np.ndarray  # K, N/mm
+    signal_per_deflection: np.ndarray  # K_v, V/mm
+    zero_signal: np.ndarray  # V_0, V
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard deviations: of single readings' force (N), displacement (mm) and signal (V); and relative, of
-    the reading (force, and what the signal changes by) and of a run's slopes.
-    """
+    """Standard deviations."""
 
-    force: float = 0.003
-    displacement: float = 0.0005
-    signal: float = 0.0005
-    of_reading: float = 0.0
-    of_run: float = 0.0
+    force: float = 0.003  # N, of a reading
+    displacement: float = 0.0005  # mm, of a reading
+    signal: float = 0.0005  # V, of a reading
+    of_reading: float = 0.0  # relative: of a reading's force, and of its signal's change
+    of_run: float = 0.0  # relative: of a run's slopes
 
 
 def calibration_rows(
@@ -42,12 +40,29 @@ def calibration_rows(
     rng: np.random.Generator,
     gap: float = 0.0,
 ) -> np.ndarray:
-    """Rows of element, run, displacement (mm), force (N), signal (V): the stage presses cell and element in
-    series, in each run after a way of up to `gap` (mm) through air.
+    """Readings of a calibration: in every run the stage presses load cell and element in series.
+
+    Parameters
+    ----------
+    truth : Truth
+    load_cell : float
+        Stiffness of the load cell, N/mm.
+    displacement : array, [step]
+        Of the stage, mm.
+    runs : int
+    noise : Noise
+    rng : numpy.random.Generator
+    gap : float
+        Largest way through air before contact, mm; each run's is drawn from 0 to this.
+
+    Returns
+    -------
+    array, [reading, 5]
+        Element, run, displacement (mm), force (N), signal (V).
     """
     share = load_cell / (load_cell + truth.stiffness)
     shape = (len(truth.element), runs, len(displacement))
-    more = rng.spawn(1)[0]  # whatever a lab has besides even noise leaves the other draws as they are
+    more = rng.spawn(1)[0]  # a generator of its own, so that a gap or relative noise leaves the other draws
     pressed = np.maximum(displacement - gap * more.random((*shape[:2], 1)), 0.0)
     deflection = share[:, None, None] * (pressed + noise.displacement * rng.standard_normal(shape))
     true_force = truth.stiffness[:, None, None] * deflection * _factors(noise, shape, more)
@@ -61,7 +76,7 @@ def calibration_rows(
 
 
 def _factors(noise: Noise, shape: tuple[int, int, int], rng: np.random.Generator) -> np.ndarray:
-    """By what force or signal differ from a spring's, run by run and reading by reading."""
+    """Factors on the true force or signal, one part drawn for each run, one for each reading."""
     of_run = 1 + noise.of_run * rng.standard_normal((*shape[:2], 1))
     return of_run * (1 + noise.of_reading * rng.standard_normal(shape))
 
@@ -69,11 +84,29 @@ def _factors(noise: Noise, shape: tuple[int, int, int], rng: np.random.Generator
 def approach(
     load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, pad_height: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Approach (mm) and deflections [element, load] (mm) of elements in parallel on one sample.
+    """Approach and deflections of elements in parallel on one sample.
 
-    Each element in contact deflects by (z + h) x/(K + x) after equation (1), x the object's stiffness under
-    one pad and h the height by which its pad stands out; one that hangs back takes no load. The sum of the
-    forces is the load.
+    By equation (1) an element in contact deflects by (z + h) x/(K + x), with z the approach and x the
+    object's stiffness under one pad; one that is not yet in contact carries no load. The forces add up to
+    the load.
+
+    Parameters
+    ----------
+    load : array, [load]
+        N.
+    stiffness : array, [element]
+        K, N/mm.
+    object_stiffness : float
+        x, N/mm.
+    pad_height : array, [element], optional
+        h: by how much each pad stands out, mm; by default all are level.
+
+    Returns
+    -------
+    z : array, [load]
+        mm.
+    deflection : array, [element, load]
+        mm.
     """
     h = np.zeros_like(stiffness) if pad_height is None else pad_height
     share = object_stiffness / (stiffness + object_stiffness)
@@ -90,8 +123,18 @@ def approach(
 def coupled_deflection(
     load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
 ) -> np.ndarray:
-    """Deflections [element, load] (mm) where each pad also sinks by share[i, j] of what the force on pad j
-    does there; 1 on the diagonal.
+    """Deflections (mm), [element, load], of elements whose pads are coupled through the sample.
+
+    Parameters
+    ----------
+    load : array, [load]
+        N.
+    stiffness : array, [element]
+        N/mm.
+    object_stiffness : float
+        Under one pad, N/mm.
+    share : array, [element, element]
+        Displacement of pad i by the force on pad j, over that by the same force on i; 1 on the diagonal.
     """
     force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
     return np.outer(force / stiffness, load / force.sum())
@@ -105,7 +148,8 @@ def grasp_signals(
     rng: np.random.Generator,
     pad_height: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Signals [element, load] (V) of a grasp; noise is that of the averaged reading, V."""
+    """Signals (V) of a grasp, [element, load]: those of `approach`'s deflections, with a standard deviation
+    of `noise` (V, of the averaged reading)."""
     _, deflection = approach(load, truth.stiffness, object_stiffness, pad_height)
     clean = truth.zero_signal[:, None] + truth.signal_per_deflection[:, None] * deflection
     return clean + noise * rng.standard_normal(clean.shape)

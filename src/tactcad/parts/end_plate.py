@@ -16,13 +16,13 @@ from tactcad.design.present import present
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Feature, Hole, Part, Vector
-from .fasteners import Clamping, clamping
+from .fasteners import Clamping, clamping, dowel_depth
 from .layout import Layout
 from .library.dowels import dowel_diameter, dowel_limits
 from .library.fits import deviations
 from .library.screws import METRIC, counterbore_diameter
 from .limits import FACES, Characteristic, DatumFeature, Geometric
-from .plate import plate
+from .plate import BREAK_EDGES, plate
 from .screw_holes import tapped_blind, tapped_through
 
 PLATE_COLOUR = "#7c8794"
@@ -63,22 +63,32 @@ def end_plate(layout: Layout, head: bool) -> Part:
                 "carrier", d.clamp.screw, (side * layout.carrier_screw_x, height, depth / 2), (0, -1, 0)
             )
         )
-    kind = "head" if head else "tapped"
+    kinds = ("sliding fit", "press fit") if c.rod else ("head", "tapped")
+    kind = kinds[0] if head else kinds[1]
     return plate(
         d,
-        f"end-plate-{kind}",
+        f"end-plate-{kind.replace(' ', '-')}",
         f"End plate, {kind}",
         Extrusion(outer, depth),
         features,
         colour=PLATE_COLOUR,
         finish="Ra 1.6, clear anodised after machining; dowel holes masked",
         notes=(
-            "break edges 0.2",
+            BREAK_EDGES,
+            *(() if head else (_dowels_stand(layout, c),)),
             "upper edge and dowel holes of both end plates machined in one clamping; mark the pair",
         ),
         characteristics=(bore,),
         geometric=(*_places(layout), *(() if head else (_square(depth),))),
         datums=(DatumFeature("A", INNER), DatumFeature("B", "upper edge"), DatumFeature("C", "left edge")),
+    )
+
+
+def _dowels_stand(layout: Layout, c: Clamping) -> str:
+    deep = dowel_depth(layout)
+    return (
+        f"dowels {layout.design.clamp.dowel} m6 are pressed in on assembly from the stack's side, "
+        f"{deep:g} deep: {c.dowel - deep:g} stand out"
     )
 
 

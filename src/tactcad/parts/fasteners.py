@@ -68,6 +68,11 @@ def _dowel(layout: Layout) -> float:
     )
 
 
+def dowel_depth(layout: Layout) -> float:
+    """How deep a dowel stands in each end plate, from the inner face, mm."""
+    return round((clamping(layout).dowel - layout.stack) / 2, 9)
+
+
 @dataclass(frozen=True)
 class CarrierScrew:
     """Length, and the carrier's material under its sunk head, mm."""

@@ -16,6 +16,7 @@ from .part_materials import plate_material
 # what is thicker is a block, with general tolerances.
 THICKNESS, THICKEST = 0.05, 20.0
 RIG_COLOUR = "#8d99a6"
+BREAK_EDGES = "break edges 0.2"
 ANODISED = "Ra 1.6, clear anodised after machining"
 
 
@@ -27,7 +28,7 @@ def plate(
     features: Iterable[Feature],
     finish: str = ANODISED,
     colour: str = RIG_COLOUR,
-    notes: tuple[str, ...] = ("break edges 0.2",),
+    notes: tuple[str, ...] = (BREAK_EDGES,),
     characteristics: tuple[Characteristic, ...] = (),
     geometric: tuple[Geometric, ...] = (),
     datums: tuple[DatumFeature, ...] = (),

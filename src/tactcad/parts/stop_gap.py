@@ -17,29 +17,33 @@ from .layout import ElementPlace, HingeShape, Layout
 
 # Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
 STEP_MM = 0.005
-# The ramp keeps this height of straight edge: none shorter than a wire or the kernel tells from a point.
+# Least height (mm) of the ramp's straight edge: a shorter one is no longer an edge to wire and CAD kernel.
 STRAIGHT_RAMP = 0.005
 
 
 @dataclass(frozen=True)
 class StopLimit:
-    """What an element's stop must do.
+    """The widest gap that an element's stop may have, and the largest overload that any gap protects from."""
 
-    gap       mm, the widest at the tip that keeps the hinge within its rated deflection, tolerance and all
-    overload  N, the most that the narrowest stop worth cutting (tolerance and a step) could keep from the
-              hinge
-    """
-
-    gap: float
-    overload: float
+    gap: float  # mm at the tip, as made: it keeps the hinge within its rated deflection
+    overload: float  # N, with the narrowest gap worth cutting: its tolerance both ways and a step
 
 
 def stop_gap(layout: Layout, place: ElementPlace) -> float:
-    """Gap between stop land and stop plate at the tip, mm.
+    """Gap between stop land and stop plate at the arm's tip.
 
-    [stop.gaps] where it names the arm, else the widest that with its tolerance keeps the hinge within its
-    rated deflection under the overload force (`stop_limit`) as assembled, one plate on all ledges (`seat`),
-    and that leaves a land under the ledge; rounded down.
+    Parameters
+    ----------
+    layout : Layout
+    place : ElementPlace
+        One of its elements.
+
+    Returns
+    -------
+    float
+        mm. The value of [stop.gaps] where it lists the arm; else, rounded down to a step, the widest that
+        with its tolerance keeps the hinge within its rated deflection under the overload force
+        (`stop_limit`) and leaves a land under the ledge (`land_room`).
     """
     stop = layout.design.stop
     if stop.gaps and place.arm in stop.gaps:
@@ -57,13 +61,24 @@ def seat(layout: Layout) -> float:
 
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:
-    """The element's `StopLimit`: at the rated deflection, d_y/rating.deflection_factor with d_y that at yield
-    of the fillet, carried from the load line to the tip (`tip_compliance`). The stop plate gives way as its
-    beams say, or by `give` mm/N.
+    """The limits of an element's stop, at the hinge's rated deflection.
 
-    Stiffness from the solid rung; beyond the range of its fit from the section integral, which has none and
-    errs to a narrower gap: where both hold, it is 0.93 to 3.8 times as stiff, 1.02 in the median (20 000
-    random designs).
+    That is d_y/rating.deflection_factor, with d_y the deflection at which the fillet yields, converted from
+    the load line to the tip (`tip_compliance`). The stiffness is the solid rung's; beyond the range of its
+    fit it is the section integral's, which has no range and errs to a narrower gap: where both hold, it is
+    0.93 to 3.8 times as stiff, 1.02 in the median (20 000 random designs).
+
+    Parameters
+    ----------
+    layout : Layout
+    place : ElementPlace
+        One of its elements.
+    give : float, optional
+        Compliance of the stop, mm/N; by default that of the stop plate's beams.
+
+    Returns
+    -------
+    StopLimit
     """
     design = layout.design
     own = own_parameters(place.hinge, place.load_arm, place.body_length)
@@ -97,7 +112,7 @@ def _limit(
     tolerance: float,
     give: float,
 ) -> StopLimit:
-    """`stop_limit` of the section with these parameters, whose fillet may bear `stress` (MPa)."""
+    """`stop_limit` of the section with these parameters, whose fillet may have `stress` (MPa)."""
     section = HingeSection.of(**dict(parameters))
     fitted = ladder.evaluate(section, "solid")
     K = fitted.stiffness if fitted.valid else ladder.stiffness(section, "section")

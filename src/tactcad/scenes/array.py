@@ -8,7 +8,6 @@ from types import MappingProxyType
 
 from tactcad.design.present import present
 from tactcad.design.tree import Design
-from tactcad.parts import seating
 from tactcad.parts.blank import blank
 from tactcad.parts.carrier import carrier
 from tactcad.parts.consumables import array_supplies
@@ -21,21 +20,23 @@ from tactcad.parts.library import dowels, screws
 from tactcad.parts.spacer import spacer
 from tactcad.parts.stop_plate import stop_plate
 
+from .array_steps import (
+    CARRIER,
+    COPLANAR,
+    FIRST_PLATE,
+    HOLD_DOWN,
+    OTHER_PLATE,
+    STACK,
+    STOP_PLATE,
+    array_steps,
+    first_on_first,
+)
 from .builder import Builder
-from .scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Scene, Step
+from .scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
 ROW = {1: AGAINST_Y, 2: ALONG_Y}
-# Steps of the assembly, as the guide names them.
-GAUGES = "Gauges"
-FIRST_PLATE = "End plate and dowels"
-STACK = "Stack"
-OTHER_PLATE = "Other end plate"
-COPLANAR = "Coplanar pads"
-STOP_PLATE = "Stop plate"
-CARRIER = "Carrier"
-HOLD_DOWN = "Hold the stop plate down"
 
 
 def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), stops: bool = True) -> Scene:
@@ -52,8 +53,10 @@ def array(design: Design, instead: Mapping[int, Part] = MappingProxyType({}), st
     """
     layout = Layout(design)
     b = _placed(layout, instead, stops)
-    steps = [replace(step, designators=tuple(b.placed_in.get(step.title, ()))) for step in _steps(layout)]
-    return replace(b.scene("array", cover=_cover(b)), steps=tuple(steps))
+    at = {p.designator: p for p in b.placements}
+    placed = {title: [at[name] for name in names] for title, names in b.placed_in.items()}
+    placed[STACK] = first_on_first(placed[STACK])
+    return replace(b.scene("array", cover=_cover(b)), steps=array_steps(layout, placed))
 
 
 def without_gaps(design: Design) -> Scene:
@@ -71,7 +74,6 @@ def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder
     _carrier_screws(b, layout)
     if stops:
         _stop_plate(b, layout, on_ledge)
-    b.placed_in[STACK].reverse()  # built up from the second end plate
     return b
 
 
@@ -171,98 +173,3 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
         name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)
         b.meet(name, plate)
         b.meet(name, "CA1", "thread")
-
-
-def _steps(layout: Layout) -> tuple[Step, ...]:
-    """Steps that put the array together and make its pads coplanar, in order, without the parts that they
-    place.
-    """
-    d = layout.design
-    gap, stack = 2 * layout.pad_inner, layout.stack
-    width = stack + 2 * d.clamp.end_plate_thickness
-    tolerance = d.tolerance.pad_height
-    return (
-        Step(
-            GAUGES,
-            (),
-            (0, 0, 0),
-            "Measure and record the hinge thickness of every element. Bond a gauge on each flat face, its "
-            "grid centred on the hinge within 0.1 mm, carrier trimmed to "
-            f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, "
-            "and lay them in the wire recess towards the rear end.",
-        ),
-        Step(
-            FIRST_PLATE,
-            (),
-            (0, 0.6 * width, 0),
-            "Press the dowels square into the tapped end plate (H7, light press). Stand the plate on its "
-            "outer face.",
-        ),
-        Step(
-            STACK,
-            (),
-            (0, -1.5 * stack - 20.0, 0),
-            "Slide spacer, element, spacer, ... on the dowels, each row in the order of its numbers. "
-            "Nothing is tight yet.",
-            fan=True,
-        ),
-        Step(
-            OTHER_PLATE,
-            (),
-            (0, -1.5 * stack - 20.0 - width, 0),
-            "Slide the counterbored end plate on the dowels.",
-        ),
-        Step(
-            COPLANAR,
-            (),
-            (0, -1.5 * stack - 40.0 - 1.6 * width, 0),
-            f"Set the stack pads down on a surface plate (grade 1 or better). Put a gauge block of {gap:g} "
-            "mm between the rows' pads. Press the elements' rear bodies down with a bar of rubber so that "
-            "every pad stands on the plate, then tighten the clamping screws crosswise, in three rounds: a "
-            f"third, two thirds, the whole torque. Measure: no pad may let a {2 * tolerance * 1e3:g} um "
-            "feeler pass. Then turn the array on its back and read each pad with a lever indicator against "
-            f"the surface plate: all within {tolerance * 1e3:g} um; in the calibration set-up the heights at "
-            "which the force gauge first reads 0.01 N show the same to a micrometre. Record them; loosen and "
-            "repeat if one is off.",
-        ),
-        Step(
-            STOP_PLATE,
-            (),
-            (0, 0, 0.8 * width),
-            (
-                "An array that is still to be calibrated goes to that set-up without stop plate and set "
-                "screws, its carrier on: the stops would "
-                "close before the end of the travel. Afterwards take the carrier off again. "
-                if d.calibration
-                else ""
-            )
-            + "Wipe ledges and plate. Lay the stop plate on the ledges, ground face down.",
-        ),
-        Step(
-            CARRIER,
-            (),
-            (0, 0, 1.4 * width),
-            "Screw the carrier on both end plates. On the surface plate again: the pads must not have moved.",
-        ),
-        Step(
-            HOLD_DOWN,
-            (),
-            (0, 0, 2.1 * width),
-            f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a "
-            "drop of thread lacquer. Check each stop: push every pad with a "
-            "plastic rod; it must give way and come to a stop, with "
-            + ", ".join(
-                sorted(
-                    {f"{g:g} mm at arm {a:g}" for a, g in _gaps(layout)}, key=lambda s: float(s.split()[-1])
-                )
-            )
-            + f" (within {d.stop.tolerance:g} mm) on the lever indicator at the tip.",
-        ),
-    )
-
-
-def _gaps(layout: Layout) -> set[tuple[float, float]]:
-    """Arm length and stop gap of every kind of element, mm."""
-    from tactcad.parts.stop_gap import stop_gap  # numpy
-
-    return {(p.arm, stop_gap(layout, p)) for p in layout.elements}

@@ -107,9 +107,11 @@ class Builder:
         title: str,
         explode: Vector,
         text: str,
-        fan: bool = False,
+        fan: int = 0,
         bench: bool = False,
         aside: tuple[str, ...] = (),
+        tools: tuple[str, ...] = (),
+        elements: bool = False,
     ) -> None:
         """Close a step: it takes what was placed since the step before; parts of a subassembly are ready."""
         names = tuple(p.designator for p in self.placements[self._stepped :])
@@ -125,6 +127,8 @@ class Builder:
                 aside,
                 frozenset(self._ready & set(names)),
                 self._unit,
+                tools,
+                elements,
             )
         )
 

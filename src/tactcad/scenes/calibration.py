@@ -18,6 +18,7 @@ from tactcad.parts.rigs.stand_layout import StandLayout
 from tactcad.parts.rigs.stiffness import series_give
 
 from .array import array
+from .array_steps import flatness_tools
 from .builder import Builder
 from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
 from .scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene
@@ -61,8 +62,11 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         "Calibrate, then fit the stop plate",
         (0, 0, 0),
         _limits(design)
-        + " Afterwards take the array off its mount and the carrier off the array, and go on with the step "
-        "Stop plate of the array's own guide. Zero every signal anew.",
+        + " Afterwards take the array off its mount and the carrier off the array. Read the pads' heights on "
+        "the surface plate again, as in the step Coplanar pads of the array's own guide, and go on there "
+        "with the step Stop plate. Zero every signal anew.",
+        tools=flatness_tools(rig.array),
+        elements=True,
     )
     if pose.height == 0:
         b.meet(contact, f"E{pose.element}")

@@ -31,6 +31,7 @@ CORNERS = tuple((sx, sy) for sx in (-1, 1) for sy in (-1, 1))
 STAND = "BP1"  # the base plate
 AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
+SQUARE = "precision square, 100 mm"
 
 
 def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
@@ -53,6 +54,7 @@ def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
             if stages
             else " Set the cart on the plate: it must roll at a breath, and stand still where it is left."
         ),
+        tools=(SQUARE,),
     )
     return post
 
@@ -97,7 +99,8 @@ def place_cart(
                 if sy > 0
                 else ""
             ),
-            fan=True,
+            fan=2,
+            tools=("surface plate, grade 1 or better", "feelers, 20 um"),
         )
     h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
     body = b.place("HB", rigs.holder_body(rig), (roll, 0, rig.cart_top))
@@ -109,7 +112,7 @@ def place_cart(
         "Holder's body and seal",
         (0, 0, 60),
         "Grease the O-ring with a trace of silicone grease and lay it in the body's groove.",
-        fan=True,
+        fan=1,
     )
     fitting = b.place(
         "HF", rigs.hose_fitting(), (roll, -rig.holder_side / 2, top - rig.port_depth), AGAINST_Y
@@ -132,7 +135,7 @@ def place_cart(
         "Lid on, four screws through lid and body into the cart, crosswise. Close the holes with tape: with "
         "the pump shut off, the vacuum must not fall by more than a tenth in a minute. The hose hangs slack "
         "in a loop: it may not pull the cart.",
-        fan=True,
+        fan=1,
     )
     object_ = b.place("SA", rigs.sample(rig, dents, depth), (roll, 0, rig.lid_top))
     b.meet(lid, object_)
@@ -188,6 +191,7 @@ def place_force_axis(
         f"post's rows at z = {zs - STAGE_HOLE:g} and {zs + STAGE_HOLE:g} mm, then the other two. It must run "
         "square to the base plate: 0.01 mm on the whole travel against a square.",
         aside=(moving,),
+        tools=(SQUARE, "lever indicator, 1 um, on a stand"),
     )
     b.group("axis")
     back = y - 2 * STAGE_PLATE

@@ -171,6 +171,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
         (0, -140, -35),
         "Screw the finished array (its own guide) under the foot. Leads leave along x in a loose loop to "
         "the post.",
+        elements=True,
     )
     for sx in (-1, 1):
         for sy in (-1, 1):

@@ -64,21 +64,24 @@ class Motion:
 class Step:
     """A step of the assembly: what is put in place, from which side (mm, for the exploded view), and how.
 
-    `fan` spreads the step's parts over the outer half of that way, in their order. A `bench` step is done
-    away from what stands already. `aside` parts are driven or taken out of the way during the step; `ready`
-    ones were put together before. `unit` names the sub-assembly of the scene that the step belongs to; empty
-    where the scene is one.
+    `fan` spreads the step's parts over the outer half of that way, in their order, so many abreast; 0: all
+    come together. A `bench` step is done away from what stands already. `aside` parts are driven or taken out
+    of the way during the step; `ready` ones were put together before. `unit` names the sub-assembly of the
+    scene that the step belongs to; empty where the scene is one. `tools` are what it needs besides the
+    drivers of its screws. A step on `elements` handles them one by one: which is which must be seen.
     """
 
     title: str
     designators: tuple[str, ...]
     explode: Vector
     text: str
-    fan: bool = False
+    fan: int = 0
     bench: bool = False
     aside: tuple[str, ...] = ()
     ready: frozenset[str] = frozenset()
     unit: str = ""
+    tools: tuple[str, ...] = ()
+    elements: bool = False
 
 
 @dataclass(frozen=True)
