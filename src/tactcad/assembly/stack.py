@@ -17,7 +17,6 @@ from .requirements import Requirement
 from .shop import made
 from .variables import Array, Deviations, Variable
 
-
 HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_high", "sigma", "yield")
 CONTRIBUTORS = 5  # columns of the table; a stack's further ones are small
 SEED = 20261122  # published: the day on which stacks were first made

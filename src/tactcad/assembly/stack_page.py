@@ -81,7 +81,8 @@ def _bar(line: StackLine) -> str:
     return (
         f'<svg width="{WIDTH:g}" height="{HEIGHT:g}" role="img" aria-label="from {line.worst_low:.4g} to '
         f'{line.worst_high:.4g}">'
-        f'<rect x="{left}" y="5" width="{max(right - left, 1.0):.1f}" height="{HEIGHT - 10:g}" fill="#dcebdc"/>'
+        f'<rect x="{left}" y="5" width="{max(right - left, 1.0):.1f}" height="{HEIGHT - 10:g}" '
+        'fill="#dcebdc"/>'
         f'<line x1="{x(line.worst_low)}" x2="{x(line.worst_high)}" y1="{y}" y2="{y}" stroke="#1c2733"/>'
         f'<line x1="{x(three[0])}" x2="{x(three[1])}" y1="{y}" y2="{y}" stroke="#31618f" stroke-width="7"/>'
         f'<circle cx="{x(line.nominal)}" cy="{y}" r="4" fill="#fff" stroke="#1c2733"/></svg>'

@@ -11,7 +11,7 @@ COUNT = 1000
 
 
 def check_assembly(design: Design, *seeds: int) -> list[Finding]:
-    """A finding for each seed of chance (by default the published one) whose arrays go together too seldom."""
+    """A finding for each seed of chance, by default the published one, whose arrays fail too often."""
     made, found = sensor(design), []
     for seed in seeds or (SEED,):
         builds = made.built(COUNT, seed)

@@ -22,9 +22,9 @@ EXAMPLES = """\
   tactcad build soft-tissue --count 10000  more of them: the yield to a fraction of a percent
   tactcad build my-sensor.toml --seed 7 --json
 
-Every dimension of every part is drawn within its limits, the array is put together as its guide says, and what
-does not go together is counted, with the limit to mend. Exit status 1 where fewer than 99.5 % of the arrays meet
-all requirements, under normal or uniform parts; corners are for information."""
+Every dimension of every part is drawn within its limits, the array is put together as its guide says, and
+what does not go together is counted, with the limit to mend. Exit status 1 where fewer than 99.5 % of the
+arrays meet all requirements, under normal or uniform parts; corners are for information."""
 
 MOST = 1_000_000
 

@@ -19,6 +19,7 @@ STOP_PLATE = "Stop plate"
 CARRIER = "Carrier"
 HOLD_DOWN = "Hold the stop plate down"
 
+LEVEL = 0.01  # mm; chosen: 0.02 degrees over the smallest stack, what a lever indicator tells with ease
 ABREAST = 2  # rows that are stacked side by side
 
 
@@ -152,10 +153,12 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
     return (
         "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the rear "
         "bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
-        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. {gap}"
+        f"{tight} crosswise, in three rounds: a third, two thirds, the whole torque. Before the last round "
+        "tap the head end plate until its upper edge is as high over the surface plate as the other's, at both "
+        f"ends within {LEVEL:g} mm. {gap}"
         f"No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on its back and read "
-        f"each pad with a lever indicator against the surface plate: all within {tolerance * 1e3:g} um; in "
-        "the calibration set-up the heights at which the force gauge first reads 0.01 N show the same to a "
+        f"each pad with a lever indicator against the surface plate: all within {2 * tolerance * 1e3:g} um; "
+        "in the calibration set-up the heights at which the force gauge first reads 0.01 N show the same to a "
         "micrometre. Record them; loosen and repeat if one is off, and repeat it all whenever the clamping "
         "was loosened."
     )
@@ -183,12 +186,15 @@ def _stop_plate(layout: Layout) -> str:
 
 
 def _hold_down(layout: Layout) -> str:
+    from tactcad.parts.stop_gap import seat  # numpy
+
     gaps = sorted(_gaps(layout), key=lambda pair: pair[0])
     return (
         f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a drop of thread lacquer. "
         "Read the pads' heights once more. Check each stop: push every pad with a plastic rod; it must give "
         f"way and come to a stop, with {', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} "
-        f"(within {layout.design.stop.tolerance:g} mm) on the lever indicator at the tip."
+        f"(to {layout.design.stop.tolerance:g} mm less, or {layout.design.stop.tolerance + seat(layout):g} "
+        "mm more, one plate lying on all ledges) on the lever indicator at the tip."
     )
 
 
