@@ -61,6 +61,8 @@ def deflected_element(layout: Layout, place: ElementPlace, deflection: float, ro
         body=Extrusion(outer, part.extrusion.thickness, part.extrusion.openings),
         notes=("deflected state, for collision checks only",),
         characteristics=(),
+        geometric=(),
+        datums=(),
         finish="",
     )
 

@@ -10,7 +10,7 @@ DETAILS = ("full", "envelope")
 
 
 def envelope(part: Part) -> Part:
-    """The part without holes and pockets: a shape that contains the part. Its mass stays the part's.
+    """The part without holes, pockets and limits: a shape that contains the part. Its mass stays the part's.
 
     It is a reference shape: no cut file or drawing is made of it.
     """
@@ -21,6 +21,9 @@ def envelope(part: Part) -> Part:
         part,
         body=body,
         features=(),
+        characteristics=(),
+        geometric=(),
+        datums=(),
         mass_override=part.mass,
         process=part.process if part.bought else "reference",
     )
