@@ -25,12 +25,19 @@ def resting_plane(points: Array, heights: Array) -> Array:
     -------
     Array
         (arrays, 3): height at the origin and slopes along both axes, so that the plane is nowhere below a
-        point and as low at the origin as it can be.
+        point and as low at the origin as it can be; of planes that rock over two points, the one that is
+        nowhere far above any.
     """
     n = len(points)
-    design = np.column_stack([np.ones(n), points])
+    plane = np.column_stack([np.ones(n), points])
+    most = np.ones((n, 1))  # the largest distance over a point, which only decides between equals
+    design = np.vstack([np.hstack([-plane, 0.0 * most]), np.hstack([plane, -most])])
     free = (None, None)
-    return _blocks(-design, -heights, [1.0, 0.0, 0.0], [free, free, free])
+    limits = np.hstack([-heights, heights])
+    return _blocks(design, limits, [1.0, 0.0, 0.0, ROCKING], [free, free, free, free])[:, :3]
+
+
+ROCKING = 1e-3
 
 
 def nearest_pose(points: Array, heights: Array, play: Array) -> Array:

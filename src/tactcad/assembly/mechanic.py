@@ -191,29 +191,30 @@ class Assembled:
     # --- the stop ---
 
     @cached_property
+    def ledges(self) -> Array:
+        """Height of each ledge over its nominal one, pads on the surface plate."""
+        return self.pads + self.made["element: ledge over the pad face"]
+
+    @cached_property
+    def plate(self) -> Array:
+        """The stop plate's underside over the ledges' nominal plane: height in the middle, slopes along x and y,
+        (arrays, 3). It lies on elements and blanks, where the set screws press."""
+        layout, seat = self.layout, self.layout.hold_down_x
+        points, heights = np.column_stack([self.side * seat, self.y]), self.ledges
+        if blanks := layout.blanks():
+            way = np.array([1.0 if row == 1 else -1.0 for row, _ in blanks])
+            y = np.array([layout.position_y(index) for _, index in blanks])
+            pins = self.pose[:, :1] + self.pose[:, 1:3] @ np.array([way * self.dowel_x, y])
+            points = np.vstack([points, np.column_stack([way * seat, y])])
+            heights = np.hstack([heights, pins + self.made["blank: ledge over the dowel hole"]])
+        return resting_plane(points, heights)
+
+    @cached_property
     def lifts(self) -> Array:
         """Stop plate over each element's own ledge, at its stop land."""
-        layout = self.layout
-        seat = layout.hold_down_x
-        points = np.column_stack([self.side * seat, self.y])
-        own = self.pads + self.made["element: ledge over the pad face"]
-        heights = own
-        blanks = layout.blanks()
-        if blanks:
-            where = [[seat if row == 1 else -seat, layout.position_y(index)] for row, index in blanks]
-            points = np.vstack([points, where])
-            pins = (
-                self.pose[:, :1]
-                + self.pose[:, 1:3]
-                @ np.array(
-                    [[self.dowel_x if row == 1 else -self.dowel_x, layout.position_y(i)] for row, i in blanks]
-                ).T
-            )
-            heights = np.hstack([own, pins + self.made["blank: ledge over the dowel hole"]])
-        plane = resting_plane(points, heights)
-        land = layout.pad_inner + layout.design.stop.land_length / 2
-        over = plane[:, :1] + plane[:, 1:2] * (self.side * land) + plane[:, 2:] * self.y
-        return over - own + self.made["stop plate: flatness"]
+        land = self.layout.pad_inner + self.layout.design.stop.land_length / 2
+        over = self.plate[:, :1] + self.plate[:, 1:2] * (self.side * land) + self.plate[:, 2:] * self.y
+        return over - self.ledges + self.made["stop plate: flatness"]
 
     @cached_property
     def gaps(self) -> Array:
