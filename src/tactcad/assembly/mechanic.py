@@ -197,8 +197,8 @@ class Assembled:
 
     @cached_property
     def plate(self) -> Array:
-        """The stop plate's underside over the ledges' nominal plane: height in the middle, slopes along x and y,
-        (arrays, 3). It lies on elements and blanks, where the set screws press."""
+        """The stop plate's underside over the ledges' nominal plane: height in the middle and
+        slopes along x and y, (arrays, 3). It lies on elements and blanks, where the set screws press."""
         layout, seat = self.layout, self.layout.hold_down_x
         points, heights = np.column_stack([self.side * seat, self.y]), self.ledges
         if blanks := layout.blanks():
