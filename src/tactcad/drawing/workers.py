@@ -1,5 +1,5 @@
-"""Drawings made in parallel on the machine's cores, by processes that end with the export, however it
-ends.
+"""Work in processes that end with the export, however it ends: drawings, in parallel on the machine's cores;
+and what the kernel may crash on.
 """
 
 from __future__ import annotations
@@ -99,6 +99,18 @@ def all_written(
                 future.cancel()
     say(len(orders), len(orders), "done")
     return made
+
+
+def made_apart(name: str, make: Callable[..., bytes], *arguments: object) -> bytes:
+    """What `make` returns, made in a process of its own.
+
+    Raises CheckFailure, naming it, where that process was killed or crashed; else what `make` raises.
+    """
+    with ProcessPoolExecutor(1, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
+        try:
+            return pool.submit(make, *arguments).result()
+        except BrokenProcessPool as error:
+            raise CheckFailure(f"{name}: the process that made it crashed or was killed") from error
 
 
 def _waited(

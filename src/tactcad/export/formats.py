@@ -35,6 +35,22 @@ def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
     return part_step(part, shapes.of(part), head)
 
 
+def _has_limits(part: Part) -> bool:
+    """Whether it is made here and states any limit."""
+    made = part.process not in ("bought", "reference")
+    return made and any((part.characteristics, part.geometric, part.datums))
+
+
+def _step_pmi(part: Part, shapes: Shapes, head: Header) -> bytes:
+    from tactcad.drawing.workers import made_apart
+    from tactcad.solids.bytes import to_bytes
+
+    from .step_pmi import part_step_pmi
+
+    shape = to_bytes(shapes.of(part))
+    return made_apart(f"{part.part_no}: model with limits (AP242)", part_step_pmi, part, shape, head)
+
+
 def _has_cut_file(part: Part) -> bool:
     """Whether it is cut from sheet or plate."""
     from tactcad.parts.cut_section import cut_section
@@ -57,6 +73,7 @@ def _picture(part: Part, shapes: Shapes, head: Header) -> bytes:
 
 PART_FORMATS = (
     PartFormat("step-part", "step/{part_no}_{revision}.step", lambda part: True, _step),
+    PartFormat("step-pmi", "step/{part_no}_{revision}-ap242.step", _has_limits, _step_pmi),
     PartFormat("dxf", "dxf/{part_no}_{revision}.dxf", _has_cut_file, _dxf),
     PartFormat("picture", "pictures/{part_no}.svg", lambda part: not part.bought, _picture),
 )

@@ -33,7 +33,7 @@ from tactcad.solids.occt import TDF_LabelSequence
 from tactcad.solids.place import location
 from tactcad.solids.step import set_up_writer, silence
 
-from .step_text import Header, canonical
+from .step_text import AP214, AP242, Header, canonical
 
 # What was written and what is read agree within these: a share of the volume, and mm of a place.
 VOLUME_AGREES = 1e-6
@@ -62,10 +62,10 @@ def part_step(part: Part, shape: TopoDS_Shape, header: Header) -> bytes:
     CheckFailure
         Where it reads back otherwise: product, validity, or the volume by more than a share of 1e-6.
     """
-    document, shape_tool = _document()
-    _add_prototype(document, shape_tool, part, shape)
-    data = _written(document, header)
-    _check_part(data, part)
+    document, shape_tool = new_document()
+    add_prototype(document, shape_tool, part, shape)
+    data = written(document, header)
+    check_part(data, read_assembly(data), part)
     return data
 
 
@@ -91,8 +91,8 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
     CheckFailure
         Where it does not read back to the same names, places (1e-7 mm) and volumes.
     """
-    document, shape_tool = _document()
-    prototypes = {p.part_no: _add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
+    document, shape_tool = new_document()
+    prototypes = {p.part_no: add_prototype(document, shape_tool, p, shapes[p.part_no]) for p in scene.parts}
     top = shape_tool.NewShape()
     _name(top, header.name)
     for p in scene.placements:
@@ -102,18 +102,18 @@ def scene_step(scene: Scene, shapes: Mapping[str, TopoDS_Shape], header: Header)
         )
     shape_tool.UpdateAssemblies()
     under_way("writing")
-    data = _written(document, header)
+    data = written(document, header)
     under_way("reading back")
     _check_scene(data, scene, header.name)
     return data
 
 
-def _document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
+def new_document() -> tuple[TDocStd_Document, XCAFDoc_ShapeTool]:
     document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
     return document, XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
 
 
-def _add_prototype(
+def add_prototype(
     document: TDocStd_Document, tool: XCAFDoc_ShapeTool, part: Part, shape: TopoDS_Shape
 ) -> TDF_Label:
     label = tool.AddShape(shape, False)
@@ -132,17 +132,19 @@ def _rgba(colour: str) -> Quantity_ColorRGBA:
     return Quantity_ColorRGBA(Quantity_Color(r, g, b, Quantity_TOC_sRGB))  # the kernel keeps linear RGB
 
 
-def _written(document: TDocStd_Document, header: Header) -> bytes:
+def written(document: TDocStd_Document, header: Header, schema: str = AP214) -> bytes:
+    """The document as a STEP file; of AP242 alone with its dimensions and tolerances."""
     writer = STEPCAFControl_Writer()
     writer.SetColorMode(True)
     writer.SetNameMode(True)
-    set_up_writer()
+    set_up_writer("AP242DIS" if schema == AP242 else "AP214IS")
+    writer.SetDimTolMode(schema == AP242)
     writer.Transfer(document, STEPControl_AsIs)
     # no file: a killed export leaves none behind, and a full temporary folder does not matter
     stream = BytesIO()
     if writer.WriteStream(stream) != IFSelect_RetDone:
         raise CheckFailure(f"{header.name}: the kernel could not write the STEP file")
-    return canonical(stream.getvalue().decode("latin-1"), header).encode("latin-1")
+    return canonical(stream.getvalue().decode("latin-1"), header, schema).encode("latin-1")
 
 
 # --- reading back ---
@@ -170,12 +172,25 @@ class Assembly:
 
 def read_assembly(data: bytes) -> Assembly:
     """Names, places and volumes in a STEP file. Raises CheckFailure where it cannot be read."""
+    return assembly_in(read_document(data))
+
+
+def read_document(data: bytes) -> TDocStd_Document:
+    """A STEP file as a document, its dimensions and tolerances too. Raises CheckFailure where it cannot be
+    read."""
     silence()
-    document, tool = _document()
+    document, _ = new_document()
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
+    reader.SetGDTMode(True)
     if reader.ReadStream("written.step", BytesIO(data)) != IFSelect_RetDone or not reader.Transfer(document):
         raise CheckFailure("the written STEP file cannot be read back")
+    return document
+
+
+def assembly_in(document: TDocStd_Document) -> Assembly:
+    """Names, places and volumes in a document that was read. Raises CheckFailure unless it has one top."""
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     free = TDF_LabelSequence()
     tool.GetFreeShapes(free)
     if free.Length() != 1:
@@ -217,7 +232,8 @@ def _solids(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     return solids
 
 
-def _check_part(data: bytes, part: Part) -> None:
+def check_part(data: bytes, read: Assembly, part: Part) -> None:
+    """Raise CheckFailure where a part's file, or what was read of it, is not that one part."""
     text = data.decode("latin-1")
     for entity, count in (
         ("PRODUCT(", 1),
@@ -228,7 +244,6 @@ def _check_part(data: bytes, part: Part) -> None:
             raise CheckFailure(
                 f"{part.part_no}: STEP file has {text.count(f'={entity}')} {entity[:-1]}, not {count}"
             )
-    read = read_assembly(data)
     if read.name != part.part_no or read.instances or not read.valid:
         raise CheckFailure(f"{part.part_no}: STEP file reads back as {read.name!r}, valid: {read.valid}")
     _check_volume(read, part)

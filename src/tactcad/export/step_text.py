@@ -17,7 +17,12 @@ _REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
 # Text that the kernel gives every instance, without information: 37 bytes of each.
 _PLACEMENT = re.compile(r"^PRODUCT_DEFINITION_SHAPE\('Placement','Placement of an item',")
 _INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
+# With every round tolerance zone the kernel writes the angle of a runout's zone, of which there is none.
+_RUNOUT, _ANGLE = re.compile("RUNOUT_ZONE_(DEFINITION|ORIENTATION)\\("), "PLANE_ANGLE_MEASURE_WITH_UNIT("
 _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
+
+AP214 = "AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }"
+AP242 = "AP242_MANAGED_MODEL_BASED_3D_ENGINEERING_MIM_LF { 1 0 10303 442 1 1 4 }"
 
 
 @dataclass(frozen=True)
@@ -32,14 +37,15 @@ class Header:
     organisation: str
 
 
-def canonical(text: str, header: Header) -> str:
+def canonical(text: str, header: Header, schema: str = AP214) -> str:
     """The kernel's STEP text with the given header, its entities renumbered in canonical order."""
     bodies = {int(n): _unbroken(body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])}
-    bodies = {n: _plain(body) for n, body in bodies.items()}
+    bodies = {n: _plain(body) for n, body in bodies.items() if not _RUNOUT.match(body)}
     references = {n: _references(body) for n, body in bodies.items()}
     digests = _digests(bodies, references)
     used = {r for refs in references.values() for r in refs}
-    roots = sorted((n for n in bodies if n not in used), key=lambda n: _root_key(n, bodies[n], digests[n]))
+    roots = [n for n in bodies if n not in used and not bodies[n].startswith(_ANGLE)]
+    roots.sort(key=lambda n: _root_key(n, bodies[n], digests[n]))
     numbers: dict[int, int] = {}
     order: list[int] = []
     for root in roots:
@@ -52,7 +58,7 @@ def canonical(text: str, header: Header) -> str:
             order.append(n)
             stack.extend(reversed(references[n]))
     lines = [f"#{numbers[n]}={_renumbered(bodies[n], numbers)};" for n in order]
-    return "\n".join([_header(header), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
+    return "\n".join([_header(header, schema), "DATA;", *lines, "ENDSEC;", "END-ISO-10303-21;", ""])
 
 
 def _plain(body: str) -> str:
@@ -99,7 +105,7 @@ def _digest(body: str, digests: dict[int, str]) -> str:
     return hashlib.sha1(whole.encode("latin-1"), usedforsecurity=False).hexdigest()
 
 
-def _header(h: Header) -> str:
+def _header(h: Header, schema: str) -> str:
     return "\n".join(
         (
             "ISO-10303-21;",
@@ -107,7 +113,7 @@ def _header(h: Header) -> str:
             f"FILE_DESCRIPTION(({_text(h.description)}),'2;1');",
             f"FILE_NAME({_text(h.name)},'{h.date}T00:00:00',({_text(h.author)}),({_text(h.organisation)}),"
             f"'Open CASCADE Technology','tactcad {__version__}',{_text('revision ' + h.revision)});",
-            "FILE_SCHEMA(('AUTOMOTIVE_DESIGN { 1 0 10303 214 1 1 1 1 }'));",
+            f"FILE_SCHEMA(('{schema}'));",
             "ENDSEC;",
         )
     )

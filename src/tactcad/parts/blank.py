@@ -16,7 +16,7 @@ from tactcad.design.tree import Design
 from .description import Extrusion, Part
 from .element import dowel_hole_limits, mounting_holes, rear_corners, sheet_material
 from .layout import Layout
-from .limits import DatumFeature, Geometric, within
+from .limits import FACES, DatumFeature, Geometric, within
 
 
 def blank_ledge_zone(design: Design) -> float:
@@ -46,7 +46,7 @@ def blank(layout: Layout) -> Part:
         colour="#aab2ba",
         notes=("burr-free, do not tumble",),
         characteristics=(
-            within("thickness", d.sheet.thickness, d.tolerance.sheet_thickness),
+            within("thickness", d.sheet.thickness, d.tolerance.sheet_thickness, between=FACES),
             dowel_hole_limits(d),
         ),
         # as far from the dowel hole as any element's ledge: pad height and ledge over the pad

@@ -269,8 +269,11 @@ class Part:
 
     @property
     def feature_names(self) -> frozenset[str]:
-        """Names of what limits and datums may stand on: contour edges, openings, holes, pockets, faces."""
+        """Names of what limits and datums may stand on: contour edges, openings, holes, pockets and
+        their edges, faces."""
         names = {f.name for f in self.features}
+        pockets = [f for f in self.features if isinstance(f, Pocket)]
+        names |= {f"{p.name} {s.name}" for p in pockets for c in (p.contour, *p.island) for s in c if s.name}
         if isinstance(self.body, Extrusion):
             names |= {s.name for c in (self.body.outer, *self.body.openings) for s in c} | {*FACES}
         elif isinstance(self.body, Revolution):

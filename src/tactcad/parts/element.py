@@ -80,7 +80,7 @@ def _limits(
         within("stop gap", gap, d.stop.tolerance, True, ("stop_land", "ledge")),
         within(LEDGE, round(layout.ledge + over, 9), t.ledge, True, ("pad_face", "ledge")),
         within("slot length", e.l, t.hinge_length, between=walls),
-        within("arm length", place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", walls[0])),
+        within("arm length", place.arm, round(ARM_SHARE * t.load_arm, 9), between=("tip", *walls)),
         within("pad length", cut.pad_length, round(PAD_SHARE * t.load_arm, 9), between=("tip", "pad_side")),
         within("arm height", e.h, t.arm_height, between=("flat_face", "arm_back")),
         within("fillet radius", e.r, t.fillet_radius, between=fillets),
@@ -90,15 +90,31 @@ def _limits(
     )
     if "slot_floor" not in edges:  # a full round's width defines it
         stated = tuple(c for c in stated if c.name != "fillet radius")
-    standing = {*edges, *FACES, "dowel_hole"}
-    return tuple(c if {*c.between} <= standing | {""} else replace(c, between=("", "")) for c in stated)
+    return tuple(replace(c, between=tuple(_standing(f, edges) for f in c.between)) for c in stated)
+
+
+# A fillet that has used up its edge touches where the edge was.
+USED_UP = {
+    "slot_floor": ("slot_body_fillet", "slot_arm_fillet"),
+    "hinge_face": ("front_slot_arm_fillet",),
+    "slot_arm_wall": ("slot_arm_fillet", "slot_body_fillet"),
+    "slot_body_wall": ("slot_body_fillet",),
+    "pad_side": ("pad_root",),
+    "arm_back": ("land_root",),
+    "ledge": ("ledge_root",),
+}
+
+
+def _standing(feature: str, edges: Collection[str]) -> str:
+    """The feature, or what stands for it where the outline has lost it."""
+    return next((f for f in (feature, *USED_UP.get(feature, ())) if f in edges), feature)
 
 
 def dowel_hole_limits(design: Design) -> Characteristic:
     """Slide-fit dowel hole of elements, blanks and spacers, mm."""
     h = design.holes
     low, high = h.dowel_hole, round(h.dowel_hole + h.dowel_hole_upper, 9)
-    return Characteristic("dowel hole diameter", low, high, low, between=("dowel_hole", ""))
+    return Characteristic("dowel hole diameter", low, high, low, between=("dowel_hole",))
 
 
 def _tip_to_dowel(layout: Layout) -> float:

@@ -108,13 +108,13 @@ def head_bore(layout: Layout) -> Characteristic:
     lean = SQUARE / depth * (layout.stack + depth)
     least = ceil(100 * (dowel_limits(d.clamp.dowel)[1] + 2 * lean + PAIR) - 1e-6) / 100
     upper = round(least + HEAD_TOLERANCE, 6)
-    return Characteristic("dowel hole diameter", least, upper, least, between=("dowel_hole", ""))
+    return Characteristic("dowel hole diameter", least, upper, least, between=("dowel_hole",))
 
 
 def _pressed(size: float) -> Characteristic:
     low, high = deviations(PRESS_FIT, size)
     limits = (round(size + high, 6), round(size + low, 6))
-    return Characteristic("dowel hole diameter", size, *limits, between=("dowel_hole", ""))
+    return Characteristic("dowel hole diameter", size, *limits, between=("dowel_hole",))
 
 
 def _places(layout: Layout) -> tuple[Geometric, ...]:

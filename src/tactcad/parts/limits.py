@@ -2,7 +2,8 @@
 
 A part states each limit once. Its sheet, the inspection list, the model with its annotations and the
 assembly's stack read it here. Features are named: an edge of the contour ("ledge"), an
-opening or a hole ("dowel_hole"), or one of the two faces of an extrusion (FACES).
+opening or a hole ("dowel_hole"), an edge of a
+pocket ("slot left edge"), or one of the two faces of an extrusion (FACES).
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ class Characteristic:
     """A toleranced dimension: its value with limits (mm), and whether it is a key characteristic.
 
     Of a fit (ISO 286) the nominal size may lie outside its limits.
-    `between` names the two features that it lies between; a feature of size alone stands first.
+    `between` names the two features that it lies between, or the one feature of size; of three,
+    it ends in the middle between the last two.
     """
 
     name: str
@@ -30,7 +32,7 @@ class Characteristic:
     upper: float
     lower: float
     key: bool = False
-    between: tuple[str, str] = ("", "")
+    between: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class Geometric:
 
 
 def within(
-    name: str, nominal: float, tolerance: float, key: bool = False, between: tuple[str, str] = ("", "")
+    name: str, nominal: float, tolerance: float, key: bool = False, between: tuple[str, ...] = ()
 ) -> Characteristic:
     """A dimension with plus and minus `tolerance`, mm."""
     return Characteristic(name, nominal, nominal + tolerance, nominal - tolerance, key, between)
@@ -85,7 +87,7 @@ def contradictions(
     for c in characteristics:
         if c.lower > c.upper:
             yield f"{c.name}: lower limit {c.lower:g} above the upper one, {c.upper:g}; legal: lower <= upper"
-        for feature in (f for f in c.between if f and f not in features):
+        for feature in (f for f in c.between if f not in features):
             yield f"{c.name}: the part has no feature {feature!r}; legal: {known}"
     letters = [d.letter for d in datums]
     for d in datums:

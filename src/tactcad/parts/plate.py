@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Feature, Part
-from .limits import Characteristic, DatumFeature, Geometric, within
+from .limits import FACES, Characteristic, DatumFeature, Geometric, within
 from .part_materials import plate_material
 
 # A plate is faced on both sides to this, plus and minus mm, so that screws through it end where they should;
@@ -53,4 +53,4 @@ def plate(
 def _thickness(body: Extrusion, own: tuple[Characteristic, ...]) -> tuple[Characteristic, ...]:
     if body.thickness > THICKEST or any(c.name == "thickness" for c in own):
         return ()
-    return (within("thickness", body.thickness, THICKNESS),)
+    return (within("thickness", body.thickness, THICKNESS, between=FACES),)

@@ -12,7 +12,7 @@ from tactcad.contour import rectangle
 from .description import Extrusion, Part
 from .element import dowel_hole_limits, mounting_holes, sheet_material
 from .layout import Layout
-from .limits import within
+from .limits import FACES, within
 
 SPACER_TOLERANCE = 0.01  # mm, plus and minus; chosen: shim stock is rolled to less
 
@@ -31,5 +31,8 @@ def spacer(layout: Layout) -> Part:
         ),
         colour="#9aa4ae",
         notes=("burr-free, flat faces as rolled",),
-        characteristics=(within("thickness", layout.spacer, SPACER_TOLERANCE), dowel_hole_limits(d)),
+        characteristics=(
+            within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
+            dowel_hole_limits(d),
+        ),
     )

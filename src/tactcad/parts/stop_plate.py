@@ -29,7 +29,7 @@ def stop_plate(layout: Layout) -> Part:
         colour="#565d66",
         finish="both faces ground, Ra 0.4, flat within 0.005",
         notes=("break edges 0.2", "ground face down, on the ledges"),
-        characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05),),
+        characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05, between=FACES),),
         geometric=(
             Geometric("flatness", "flatness", STOP_PLATE_FLAT, (FACES[0],)),
             Geometric("parallelism", "parallelism", 2 * STOP_PLATE_FLAT, (FACES[1],), ("A",)),

@@ -33,12 +33,12 @@ def read_step(data: bytes) -> TopoDS_Shape:
     return reader.OneShape()
 
 
-def set_up_writer() -> None:
-    """Settings of every STEP file that tactcad writes; the kernel knows their names once it has made a
-    writer.
+def set_up_writer(schema: str = "AP214IS") -> None:
+    """Settings of every STEP file that tactcad writes, and its schema by the kernel's name; the kernel knows
+    them once it has made a writer.
     """
     silence()
-    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
+    Interface_Static.SetCVal_s("write.step.schema", schema)
     Interface_Static.SetCVal_s("write.step.unit", "MM")
     # without parameter curves: planes, cylinders and cones need none, and the file is a third smaller
     Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)

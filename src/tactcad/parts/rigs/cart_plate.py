@@ -16,8 +16,9 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 from tactcad.design.present import present
 
-from ..description import Characteristic, Extrusion, Hole, Part
+from ..description import Extrusion, Hole, Part
 from ..library.screws import METRIC
+from ..limits import FACES, Characteristic
 from ..plate import plate
 from ..screw_holes import corners, tapped
 from .cart_layout import CartLayout
@@ -61,6 +62,7 @@ def cart_plate(rig: CartLayout) -> Part:
                 rig.axle_z - c.clearance,
                 rig.axle_z - c.clearance + 0.05,
                 rig.axle_z - c.clearance - 0.05,
+                between=(FACES[0], "axle"),
             ),
         ),
     )

@@ -13,10 +13,13 @@ from math import ceil, hypot
 
 from tactcad.contour import circle, rectangle
 
-from ..description import Characteristic, Extrusion, Hole, Part, Pocket
+from ..description import Extrusion, Hole, Part, Pocket
+from ..limits import within
 from ..part_materials import STAINLESS
 from .frame import TIP, TIP_LAND
 from .stand_layout import StandLayout
+
+LAND = 0.01  # mm, plus and minus
 
 
 def flat_tip(rig: StandLayout) -> Part:
@@ -41,8 +44,8 @@ def flat_tip(rig: StandLayout) -> Part:
         colour="#565d66",
         finish="land Ra 0.4, edges sharp, burr-free",
         characteristics=(
-            Characteristic("land along x", 2 * a, 2 * a + 0.01, 2 * a - 0.01),
-            Characteristic("land along y", 2 * b, 2 * b + 0.01, 2 * b - 0.01),
+            within("land along x", 2 * a, LAND, between=("around_land left edge", "around_land right edge")),
+            within("land along y", 2 * b, LAND, between=("around_land lower edge", "around_land upper edge")),
         ),
     )
 
