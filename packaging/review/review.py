@@ -70,7 +70,7 @@ def review(freecad: list[str], folder: Path) -> list[str]:
     wrong += scene_faults(manifest)
     for f in files:
         found = report["files"][str(folder / f["path"])]
-        if f["kind"] == "step-part":
+        if f["kind"] in ("step-part", "step-pmi"):
             wrong += part_faults(f["path"], found, parts[f["part_no"]])
         elif f["kind"] == "step-assembly":
             bill = bill_of(folder, f["path"])

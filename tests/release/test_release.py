@@ -112,7 +112,9 @@ def test_what_is_in_it(files):
     assert list(files)[0] == "README.txt" and list(files)[-1] == "MANIFEST.sha256"
     assert list(files)[1:-1] == sorted(list(files)[1:-1])
     sheets = {n for n in files if n.startswith("pdf/")}
-    made = {n for n in files if n.startswith("step/tiny-")}  # one sheet a part made, one drawing a scene
+    made = {
+        n for n in files if n.startswith("step/tiny-") and "-ap242" not in n
+    }  # one sheet a part made, one drawing a scene
     assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made}
     assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(
         files
@@ -207,6 +209,10 @@ TAMPERED = {
         **f,
         f"step/{ELEMENT}.step": f[f"step/tiny-array_{REVISION}.step"],
     },
+    "model with limits missing": lambda f: {n: d for n, d in f.items() if n != f"step/{ELEMENT}-ap242.step"},
+    "model with limits of another revision": lambda f: _swap(
+        f, f"step/{ELEMENT}-ap242.step", b"'revision " + R + b"'", b"'revision ZZ'"
+    ),
     "instance missing": lambda f: _swap(
         f,
         f"step/tiny-array_{REVISION}.step",

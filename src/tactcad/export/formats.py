@@ -35,7 +35,7 @@ def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
     return part_step(part, shapes.of(part), head)
 
 
-def _has_limits(part: Part) -> bool:
+def has_limits(part: Part) -> bool:
     """Whether it is made here and states any limit."""
     made = part.process not in ("bought", "reference")
     return made and any((part.characteristics, part.geometric, part.datums))
@@ -73,7 +73,7 @@ def _picture(part: Part, shapes: Shapes, head: Header) -> bytes:
 
 PART_FORMATS = (
     PartFormat("step-part", "step/{part_no}_{revision}.step", lambda part: True, _step),
-    PartFormat("step-pmi", "step/{part_no}_{revision}-ap242.step", _has_limits, _step_pmi),
+    PartFormat("step-pmi", "step/{part_no}_{revision}-ap242.step", has_limits, _step_pmi),
     PartFormat("dxf", "dxf/{part_no}_{revision}.dxf", _has_cut_file, _dxf),
     PartFormat("picture", "pictures/{part_no}.svg", lambda part: not part.bought, _picture),
 )

@@ -29,7 +29,8 @@ FOLDERS = {
     "dxf/": "cut files, exact nominal contours, millimetres, one part a file: the wire-cut parts whole, of "
     "milled and ground "
     "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
-    "step/": "every part as a solid, and every assembly (AP214, millimetres)",
+    "step/": "every part as a solid, and every assembly (AP214, millimetres); NAME-ap242.step: the same "
+    "part with its limits and datums on its faces, for machines to read (AP242)",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
     inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "

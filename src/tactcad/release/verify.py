@@ -16,6 +16,7 @@ from tactcad.drawing.gate import key_faults, pdf_runs
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.dxf import check_dxf
+from tactcad.export.formats import has_limits
 from tactcad.export.manifest import sha256_of
 from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Part
@@ -26,6 +27,7 @@ from .archive import MANIFEST, MODE
 from .readme import DRAFT, MARK, ReleaseContents
 
 README = "README.txt"
+AP242 = "-ap242"  # ends the name of a model with limits
 
 
 def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
@@ -75,17 +77,21 @@ def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
 
 
 def _part_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
-    """One STEP file of one solid a part, one cut file a part that is cut from sheet or plate; their names and
-    headers name the revision."""
+    """One STEP file of one solid a part, one more a part with limits, one cut file a part that is cut from
+    sheet or plate; their names and headers name the revision."""
     revision = contents.design.design.revision
     parts = {p.part_no: p for scene in contents.scenes for p in scene.parts}
     for part in parts.values():
         yield from _step_part_faults(files, f"step/{part.part_no}_{revision}.step", revision)
+        if has_limits(part):
+            yield from _step_part_faults(files, f"step/{part.part_no}_{revision}{AP242}.step", revision)
         if cut_section(part) is not None:
             yield from _dxf_faults(files, f"dxf/{part.part_no}_{revision}.dxf", part)
     for folder in ("step/", "dxf/", "pdf/"):
         for path in files:
-            if path.startswith(folder) and not PurePosixPath(path).stem.endswith(f"_{revision}"):
+            if path.startswith(folder) and not PurePosixPath(path).stem.removesuffix(AP242).endswith(
+                f"_{revision}"
+            ):
                 yield f"{path}: its name does not end in revision {revision}"
     cut = {p.part_no for p in parts.values() if cut_section(p) is not None}
     for path in files:
