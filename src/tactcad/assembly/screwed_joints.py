@@ -17,7 +17,7 @@ from tactcad.parts.library.fits import deviations, general
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 
-from .variables import Variable, variable
+from .variables import DimensionLimits, variable
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
 # Product grade A: lengths of cap screws are js15 (ISO 4759-1:2000).
@@ -25,7 +25,7 @@ LENGTH = "js15"
 
 
 @dataclass(frozen=True)
-class Joint:
+class ScrewedJoint:
     """Equal screws in equal holes through equal parts.
 
     name           the screw, the part under its head, the tapped one and its hole
@@ -48,7 +48,7 @@ class Joint:
     count: int = 1
 
 
-def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]:
+def joints(design: str, scene: Scene, known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
     """Every kind of screwed joint of a scene.
 
     Parameters
@@ -59,7 +59,7 @@ def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]
         Variables by name; those of the joints are added where they are not known yet.
     """
     by_name = {p.designator: p for p in scene.placements}
-    kinds: Counter[Joint] = Counter()
+    kinds: Counter[ScrewedJoint] = Counter()
     for contact in scene.contacts:
         if contact.kind != "thread":
             continue
@@ -67,12 +67,12 @@ def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]
         for screw, tapped in (pair, pair[::-1]):
             if CAP_SCREW.match(screw.part.part_no):
                 kinds.update(_joint(design, scene, screw, tapped, known))
-    return [Joint(**{**vars(j), "count": n}) for j, n in kinds.items()]
+    return [ScrewedJoint(**{**vars(j), "count": n}) for j, n in kinds.items()]
 
 
 def _joint(
-    design: str, scene: Scene, screw: Placement, tapped: Placement, known: dict[str, Variable]
-) -> Iterator[Joint]:
+    design: str, scene: Scene, screw: Placement, tapped: Placement, known: dict[str, DimensionLimits]
+) -> Iterator[ScrewedJoint]:
     match = CAP_SCREW.match(screw.part.part_no)
     assert match
     thread, length = match[1], float(match[2])
@@ -102,7 +102,7 @@ def _joint(
             )
         elif end <= hole.depth:
             room, deeper = hole.depth - end, _thickness(tapped.part, known)
-        yield Joint(
+        yield ScrewedJoint(
             f"{thread}x{length:g} {through}into {_short(design, tapped)} ({hole.name.replace('_', ' ')})",
             thread,
             round(min(end, stop) - start, 6),
@@ -149,16 +149,16 @@ def _holes(part: Part) -> Iterator[Hole]:
                 yield Hole("", (x, y, 0.0), (0, 0, 1), 2 * r, part.body.thickness, True)
 
 
-def _known(known: dict[str, Variable], v: Variable) -> str:
+def _known(known: dict[str, DimensionLimits], v: DimensionLimits) -> str:
     known.setdefault(v.name, v)
     return v.name
 
 
-def _general(known: dict[str, Variable], name: str, size: float) -> str:
+def _general(known: dict[str, DimensionLimits], name: str, size: float) -> str:
     return _known(known, variable(name, -general(size), general(size)))
 
 
-def _thickness(part: Part, known: dict[str, Variable]) -> str:
+def _thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
     """The variable of a part's thickness along its contour's axis: its own limits, or the general ones."""
     own = next((c for c in part.characteristics if c.name in ("thickness", "sheet thickness")), None)
     if own is None:
