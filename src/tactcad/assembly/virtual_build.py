@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,8 +104,8 @@ class Sensor:
         return {name: np.concatenate(values) for name, values in missed.items()}, together
 
     def stack(self, *names: str) -> list[StackLine]:
-        """The stack of every requirement, or of those named, from no more arrays than take as long as 1000 of a
-        2 x 5."""
+        """The stack of every requirement, or of those named, from no more arrays than take as long as
+        1000 of a 2 x 5."""
         count = int(np.clip(10_000 / len(self.layout.elements), 100, 1000))
         wanted = [r for r in self.requirements if not names or r.name in names]
         return stack(self.layout, self.variables, wanted, count)
