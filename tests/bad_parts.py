@@ -61,6 +61,12 @@ def rigidity() -> list[Finding]:
     return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
 
 
+def assembly() -> list[Finding]:
+    from tactcad.checks.goes_together import check_assembly
+
+    return check_assembly(variant({"tolerance.sheet_thickness": 0.3}))
+
+
 def brep(shape: Callable, part=None) -> list[Finding]:
     from test_brep_and_mesh import BLOCK
 
@@ -302,6 +308,7 @@ BAD: dict[str, Bad] = {
         lambda: clearance(array__row_pitch=2.2, array__row_arms=[[4], [4]]),
         CLEARANCE,
     ),
+    "assembly": Bad("assembly", "sheets of 3 +-0.3 mm", assembly, "tests/assembly/test_virtual_build.py"),
     "deflection": Bad("rigidity", "a holder's lid of 2 mm", rigidity, "tests/checks/test_rigidity.py"),
     "calibration": Bad(
         "calibration travel", "0.2 mm of travel", calibration, "tests/rigs/test_rig_scenes.py"

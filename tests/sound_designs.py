@@ -289,7 +289,7 @@ def _clamp(d: Draw) -> None:
     reach = longest - thickness + 1
     top = min(d.ledge + 20 + reach, 100.0) - 0.01
     cone = m.tap_drill / 2 / tan(pi * 59 / 180)
-    over = max(counterbore, dowel) / 2 + 1 + 1.5 * m.d + 1 + 2 * m.pitch + cone
+    over = max(counterbore, dowel) / 2 + 1 + 1.5 * m.d + 1.5 + 2 * m.pitch + cone
 
     # holes in the rear bodies
     upper = d.number("holes.dowel_hole_upper", high=0.05)

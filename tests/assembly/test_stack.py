@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.shop import made
 from tactcad.assembly.stack import stack
-from tactcad.assembly.variables import Variable
+from tactcad.assembly.variables import DimensionLimits
 from tactcad.assembly.virtual_build import sensor
+from tactcad.assembly.virtual_shop import made
 from tactcad.parts.designs import load
 
 
@@ -73,7 +73,7 @@ def test_sums_and_draws_agree(macro, lines):
 def scaled(variables, name, by):
     v = variables[name]
     middle, half = (v.upper + v.lower) / 2, by * (v.upper - v.lower) / 2
-    return {**variables, name: Variable(name, middle - half, middle + half)}
+    return {**variables, name: DimensionLimits(name, middle - half, middle + half)}
 
 
 def test_loosening_a_limit_is_noticed_wherever_its_share_counts(macro, lines):

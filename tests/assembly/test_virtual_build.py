@@ -8,10 +8,10 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from tactcad.assembly.mechanic import PAD, Assembled
-from tactcad.assembly.shop import made
 from tactcad.assembly.variables import variable
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
-from tactcad.checks.assembly import check_assembly
+from tactcad.assembly.virtual_shop import made
+from tactcad.checks.goes_together import check_assembly
 from tactcad.mechanics import ladder
 from tactcad.parts.designs import load
 from tactcad.parts.hinge_section import hinge_section
@@ -66,14 +66,14 @@ def test_a_loose_limit_keeps_arrays_from_going_together(macro, what):
     builds = worse.built(300)
     assert builds.share < LEAST_YIELD
     assert builds.failures[builds.worse][requirement] > 3
-    why = worse.refusal(builds, worse.stack())
+    why = worse.refusal(builds)
     assert requirement in why and name in why
 
 
 def test_a_refusal_is_confirmed_by_the_worst_case(macro):
     name = "spacer: thickness"
     worse = replace(macro, variables={**macro.variables, name: variable(name, -0.3, 0.3)})
-    line = next(x for x in worse.stack() if x.requirement.name.startswith("carrier's screws"))
+    (line,) = worse.stack("carrier's screws enter the end plates")
     assert line.shortfall == pytest.approx(0.5 + 6 * 0.3 + 0.3 - 0.9)
 
 

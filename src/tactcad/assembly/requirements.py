@@ -11,15 +11,15 @@ import numpy as np
 
 from tactcad.parts.carrier import PLACE, carrier_clearance
 from tactcad.parts.end_plate import SCREWS
-from tactcad.parts.layout import LEAST_GAP, SUNK, Layout
+from tactcad.parts.layout import SUNK, Layout
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.library.screws import METRIC
 from tactcad.parts.stop_gap import stop_limit
 from tactcad.scenes.scene import Scene
 
-from .joints import LENGTH, Joint, joints
 from .mechanic import Assembled
-from .variables import Array, Variable, array_variables, variable
+from .screwed_joints import LENGTH, ScrewedJoint, joints
+from .variables import STACK_LENGTH, Array, DimensionLimits, array_variables, variable
 
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
 # bears, for which 1.5 d of aluminium are usual; bought parts have threads in steel.
@@ -27,6 +27,9 @@ LEAST_ENGAGED, LEAST_IN_STEEL = 1.0, 0.6
 # Least diametral play of a sliding pin, and least interference of a pressed one, mm; chosen: what a plug
 # gauge tells from none.
 LEAST_PLAY = LEAST_PRESS = 0.002
+
+# Least space between neighbours, mm; chosen: twice what cut faces may stand out by burr and roughness.
+LEAST_BETWEEN = 0.02
 
 Value = Callable[[Assembled], Array]
 
@@ -55,11 +58,13 @@ class Requirement:
         return np.minimum(value - self.lower, self.upper - value)
 
 
-def requirements(layout: Layout, scenes: Sequence[Scene]) -> tuple[dict[str, Variable], list[Requirement]]:
+def requirements(
+    layout: Layout, scenes: Sequence[Scene]
+) -> tuple[dict[str, DimensionLimits], list[Requirement]]:
     """Requirements on an array and on the screwed joints of its scenes, and the variables they depend on."""
     known = array_variables(layout)
     wanted = _array_requirements(layout, known)
-    seen: dict[tuple, Joint] = {}
+    seen: dict[tuple, ScrewedJoint] = {}
     for scene in scenes:
         for joint in joints(layout.design.name, scene, known):
             seen.setdefault((joint.name, joint.engaged, joint.room, joint.terms), joint)
@@ -70,7 +75,7 @@ def requirements(layout: Layout, scenes: Sequence[Scene]) -> tuple[dict[str, Var
     return known, wanted
 
 
-def _array_requirements(layout: Layout, known: dict[str, Variable]) -> list[Requirement]:
+def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     t = layout.design.tolerance
     gap = 2 * layout.pad_inner
     limit = np.array([stop_limit(layout, p).gap for p in layout.elements])
@@ -83,7 +88,13 @@ def _array_requirements(layout: Layout, known: dict[str, Variable]) -> list[Requ
         Requirement(
             "gap between rows", "mm", gap - 2 * t.load_arm, gap + 2 * t.load_arm, lambda a: a.row_gaps
         ),
-        _sum("neighbours free", LEAST_GAP, inf, layout.spacer, (("spacer: thickness", 1.0),)),
+        _sum(
+            "neighbours free",
+            LEAST_BETWEEN,
+            inf,
+            layout.spacer,
+            (("spacer: thickness", 1.0), ("sheet: thickness", -1.0)),
+        ),
         Requirement("stop closes within the rated deflection", "mm", 0.0, inf, lambda a: limit - a.gaps),
         _carrier_mounts(layout, known),
         _set_screws_sunk(layout, known),
@@ -101,7 +112,7 @@ def _sum(
     return Requirement(name, "mm", lower, upper, value, (nominal, terms))
 
 
-def _carrier_mounts(layout: Layout, known: dict[str, Variable]) -> Requirement:
+def _carrier_mounts(layout: Layout, known: dict[str, DimensionLimits]) -> Requirement:
     """The carrier's holes take the distance that the stack gives the end plates: both ways."""
     d = layout.design.clamp
     room = carrier_clearance(layout) - METRIC[d.screw].d
@@ -110,17 +121,15 @@ def _carrier_mounts(layout: Layout, known: dict[str, Variable]) -> Requirement:
         ("carrier: screw holes' places", PLACE),
     ):
         known.setdefault(name, variable(name, -zone / 2, zone / 2, 2))
-    n = float(layout.positions)
     terms = (
-        ("sheet: thickness", n),
-        ("spacer: thickness", n + 1.0),
+        (STACK_LENGTH, 1.0),
         ("end plates: carrier threads' places", 1.0),
         ("carrier: screw holes' places", 1.0),
     )
     return _sum("carrier's screws enter the end plates", -room, room, 0.0, terms)
 
 
-def _set_screws_sunk(layout: Layout, known: dict[str, Variable]) -> Requirement:
+def _set_screws_sunk(layout: Layout, known: dict[str, DimensionLimits]) -> Requirement:
     """The axis's plate lies flat on the carrier: set screws end below its top."""
     d = layout.design.clamp
     known.setdefault(name := "end plates: upper edge over the ledge", variable(name, -0.1, 0.1))
@@ -133,7 +142,7 @@ def _set_screws_sunk(layout: Layout, known: dict[str, Variable]) -> Requirement:
     return _sum("set screws end below the carrier's top", 0.0, inf, SUNK, terms)
 
 
-def _joint_requirements(joint: Joint, who: str) -> list[Requirement]:
+def _joint_requirements(joint: ScrewedJoint, who: str) -> list[Requirement]:
     diameter = float(joint.thread[1:])
     least = LEAST_IN_STEEL if joint.bought else LEAST_ENGAGED
     wanted = [_sum(f"{who}: engages", least * diameter, inf, joint.engaged, joint.terms)]

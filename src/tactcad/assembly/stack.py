@@ -14,8 +14,8 @@ from tactcad.parts.layout import Layout
 
 from .mechanic import Assembled
 from .requirements import Requirement
-from .shop import made
-from .variables import Array, Deviations, Variable
+from .variables import Array, Deviations, DimensionLimits
+from .virtual_shop import made
 
 HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_high", "sigma", "yield")
 CONTRIBUTORS = 5  # columns of the table; a stack's further ones are small
@@ -61,7 +61,7 @@ class StackLine:
 
 
 def stack(
-    layout: Layout, variables: dict[str, Variable], wanted: Sequence[Requirement], count: int = 1000
+    layout: Layout, variables: dict[str, DimensionLimits], wanted: Sequence[Requirement], count: int = 1000
 ) -> list[StackLine]:
     """The stack of every requirement, for the published seed.
 
@@ -82,7 +82,7 @@ def stack(
     return [lines[r.name] for r in wanted]
 
 
-def _summed(r: Requirement, variables: dict[str, Variable], built: Assembled) -> StackLine:
+def _summed(r: Requirement, variables: dict[str, DimensionLimits], built: Assembled) -> StackLine:
     """A sum of deviations: exact but for spread and yield, which are the drawn arrays'."""
     assert r.linear
     middle, terms = r.linear
@@ -98,7 +98,10 @@ def _summed(r: Requirement, variables: dict[str, Variable], built: Assembled) ->
 
 
 def _behind_contacts(
-    wanted: Sequence[Requirement], variables: dict[str, Variable], built: Assembled, rng: np.random.Generator
+    wanted: Sequence[Requirement],
+    variables: dict[str, DimensionLimits],
+    built: Assembled,
+    rng: np.random.Generator,
 ) -> Iterator[StackLine]:
     """Values behind contacts, from arrays with every part on one of its limits.
 
@@ -153,7 +156,7 @@ def _way(deviations: Array, value: Array) -> Array:
     return np.where(np.abs(correlation) > 3.0 / np.sqrt(len(v)), np.sign(correlation), 0.0)
 
 
-def _corner(variables: dict[str, Variable], ways: dict[str, Array], sign: float) -> Deviations:
+def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign: float) -> Deviations:
     """One array with each piece at the limit that its way points to, in the middle where it has none."""
     return {
         name: ((v.upper + v.lower) / 2 + sign * ways[name] * (v.upper - v.lower) / 2)[np.newaxis]

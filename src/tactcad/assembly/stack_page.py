@@ -12,12 +12,13 @@ from .virtual_build import LEAST_YIELD, Builds
 WIDTH, HEIGHT, EDGE = 300.0, 30.0, 10.0  # of a requirement's bar, px
 SHOWN = 3  # contributors named beside it
 STYLE = """
-body{font:14px/1.4 system-ui,sans-serif;margin:2em auto;max-width:72em;color:#1c2733}
+body{font:14px/1.4 system-ui,sans-serif;margin:2em auto;max-width:92em;color:#1c2733}
 table{border-collapse:collapse;width:100%}
 th,td{text-align:left;padding:.35em .6em;border-bottom:1px solid #d8dee4;vertical-align:middle}
 td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 .share{display:flex;height:10px;background:#eef1f4;border-radius:2px;overflow:hidden;margin-bottom:3px}
 .share i{background:#c2d5e6}.share i:nth-child(1){background:#31618f}.share i:nth-child(2){background:#7da3c7}
+td:last-child{min-width:26em}
 small{color:#4a5866}
 tr.missed td:first-child{border-left:4px solid #b3372b}
 """
@@ -25,7 +26,7 @@ tr.missed td:first-child{border-left:4px solid #b3372b}
 
 def stack_page(title: str, builds: Builds, lines: Sequence[StackLine]) -> bytes:
     """The page (HTML, UTF-8) of a design's stack and of the arrays built virtually."""
-    yields = ", ".join(f"{100 * share:.4g} % with {name} parts" for name, share in builds.kept.items())
+    yields = ", ".join(f"{100 * share:.4g} % ({name})" for name, share in builds.kept.items())
     missed = "; ".join(
         f"{name}: " + ", ".join(f"{requirement} ({n})" for requirement, n in failed.items())
         for name, failed in builds.failures.items()
@@ -37,8 +38,9 @@ def stack_page(title: str, builds: Builds, lines: Sequence[StackLine]) -> bytes:
 <body>
 <h1>{escape(title)}: how limits add up</h1>
 <p>Of {builds.count} arrays built virtually (seed {builds.seed}) all requirements are met by {escape(yields)}.
-A release needs {100 * LEAST_YIELD:g} % with normal and with uniform parts; corners, every part on one of its
-limits, are for information.{f" Missed, by arrays: {escape(missed)}." if missed else ""}</p>
+Parts are normal with limits at two standard deviations, uniform between their limits, or on corners, every
+dimension at one of its limits. A release needs {100 * LEAST_YIELD:g} % with normal and with uniform
+parts.{f" Missed, by arrays: {escape(missed)}." if missed else ""}</p>
 <p><small>Bar: legal range in green; thin line from worst to worst case; thick line three standard deviations
 each way; dot at the nominal value. Figures in the requirement's unit.</small></p>
 <table><thead><tr><th>Requirement</th><th>Limits</th><th>Nominal</th><th></th><th>Worst case</th><th>Share of
@@ -52,7 +54,10 @@ variance</th></tr></thead>
 
 def _row(line: StackLine) -> str:
     r = line.requirement
-    limits = " to ".join(f"{v:.4g}" if isfinite(v) else "any" for v in (r.lower, r.upper))
+    if isfinite(r.lower) and isfinite(r.upper):
+        limits = f"{r.lower:.4g} to {r.upper:.4g}"
+    else:
+        limits = f"at least {r.lower:.4g}" if isfinite(r.lower) else f"at most {r.upper:.4g}"
     top = line.contributors[:SHOWN]
     bars = "".join(f'<i style="width:{100 * c.share:.1f}%"></i>' for c in top)
     named = "<br>".join(f"{escape(c.name)} {100 * c.share:.0f} %" for c in top)

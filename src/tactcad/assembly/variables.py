@@ -13,17 +13,20 @@ from tactcad.parts.blank import blank, blank_ledge_zone
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.end_plate import end_plate
+from tactcad.parts.fasteners import STACK
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.spacer import spacer
 from tactcad.parts.stop_plate import stop_plate
 
+# The stack's length once its spacers are chosen to the measured sheet.
+STACK_LENGTH = "stack: length, spacers to suit"
 Array = NDArray[np.float64]
 Deviations = dict[str, Array]  # by variable: (arrays built, pieces) deviations from nominal
 
 
 @dataclass(frozen=True)
-class Variable:
+class DimensionLimits:
     """One dimension of all pieces of a kind.
 
     name          part and dimension, as stack and findings call it
@@ -39,17 +42,17 @@ class Variable:
         return len(self.lower)
 
 
-def variable(name: str, lower: float, upper: float, pieces: int = 1) -> Variable:
+def variable(name: str, lower: float, upper: float, pieces: int = 1) -> DimensionLimits:
     """A variable with the same limits for all its pieces."""
-    return Variable(name, np.full(pieces, lower), np.full(pieces, upper))
+    return DimensionLimits(name, np.full(pieces, lower), np.full(pieces, upper))
 
 
-def array_variables(layout: Layout) -> dict[str, Variable]:
+def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
     """Variables of the array by name; what is cut from one sheet has one thickness, a single piece."""
     return {v.name: v for v in _array(layout)}
 
 
-def _array(layout: Layout) -> Iterable[Variable]:
+def _array(layout: Layout) -> Iterable[DimensionLimits]:
     d, places = layout.design, layout.elements
     kinds: dict[tuple, Part] = {}
     parts = [kinds.setdefault((p.arm, p.hinge), element(layout, p)) for p in places]
@@ -61,7 +64,7 @@ def _array(layout: Layout) -> Iterable[Variable]:
         if name == "sheet thickness":
             yield variable("sheet: thickness", *own[0])
         else:
-            yield Variable(
+            yield DimensionLimits(
                 f"element: {name}", np.array([low for low, _ in own]), np.array([up for _, up in own])
             )
     yield variable("element: place in its dowel's play, share", -1.0, 1.0, len(places))
@@ -72,6 +75,7 @@ def _array(layout: Layout) -> Iterable[Variable]:
         assert blank(layout).geometric  # the zone stands on its sheet
         yield variable("blank: ledge over the dowel hole", -half, half, len(layout.blanks()))
     yield _characteristic("spacer", spacer(layout), "thickness")
+    yield variable(STACK_LENGTH, -STACK, STACK)
     pins = 2 * len(layout.dowel_x)
     low, high = dowel_limits(d.clamp.dowel)
     yield variable("dowel pin: diameter", low - float(d.clamp.dowel), high - float(d.clamp.dowel), pins)
@@ -96,10 +100,10 @@ def _array(layout: Layout) -> Iterable[Variable]:
     yield _characteristic("stop plate", stop_plate(layout), "thickness")
 
 
-def _zone(name: str, half: float, pieces: int) -> Variable:
+def _zone(name: str, half: float, pieces: int) -> DimensionLimits:
     return variable(name, -half, half, pieces)
 
 
-def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> Variable:
+def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
     c = next(c for c in part.characteristics if c.name == name)
     return variable(f"{who}: {name}", c.lower - c.nominal, c.upper - c.nominal, pieces)

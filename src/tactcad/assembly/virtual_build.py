@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,9 +12,9 @@ from tactcad.scenes import make_scene, scene_names
 
 from .mechanic import Assembled
 from .requirements import Requirement, requirements
-from .shop import Distribution, made
 from .stack import ROUNDING, SEED, StackLine, stack
-from .variables import Array, Variable
+from .variables import Array, DimensionLimits
+from .virtual_shop import Distribution, made
 
 # Least share of arrays that meet all requirements; below it nothing is released.
 LEAST_YIELD = 0.995
@@ -69,7 +68,7 @@ class Sensor:
     """What virtual builds need of a design: variables and requirements are made once."""
 
     layout: Layout
-    variables: dict[str, Variable]
+    variables: dict[str, DimensionLimits]
     requirements: tuple[Requirement, ...]
 
     def built(self, count: int, seed: int = SEED) -> Builds:
@@ -104,19 +103,21 @@ class Sensor:
         together = {name: np.vstack(values) for name, values in figures.items()}
         return {name: np.concatenate(values) for name, values in missed.items()}, together
 
-    def stack(self) -> list[StackLine]:
-        """The stack of every requirement, from no more arrays than take as long as 1000 of a 2 x 5."""
+    def stack(self, *names: str) -> list[StackLine]:
+        """The stack of every requirement, or of those named, from no more arrays than take as long as
+        1000 of a 2 x 5."""
         count = int(np.clip(10_000 / len(self.layout.elements), 100, 1000))
-        return stack(self.layout, self.variables, self.requirements, count)
+        wanted = [r for r in self.requirements if not names or r.name in names]
+        return stack(self.layout, self.variables, wanted, count)
 
-    def refusal(self, builds: Builds, lines: Sequence[StackLine]) -> str:
+    def refusal(self, builds: Builds) -> str:
         """Why a design with these builds is not released: what fails most, by how much at worst, and which
         limit to mend; "" where enough of them meet all requirements."""
         if builds.share >= LEAST_YIELD:
             return ""
         failed = builds.failures[builds.worse]
         worst = max(failed, key=lambda name: failed[name])
-        line = next(x for x in lines if x.requirement.name == worst)
+        (line,) = self.stack(worst)
         most = line.contributors[0] if line.contributors else None
         return (
             f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "

@@ -16,11 +16,11 @@ from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
 
-from .assembly import check_assembly
 from .brep import check_brep, check_step
 from .calibration_travel import check_calibration
 from .check_report import Report
 from .clearance import check_clearance
+from .goes_together import check_assembly
 from .hinge_strength import check_strength
 from .interference import check_interference
 from .machining import MACHINED, check_machining

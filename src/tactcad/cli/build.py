@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     builds = made.built(args.count, SEED if args.seed is None else args.seed)
     seconds = time.perf_counter() - started
     lines = made.stack()
-    refusal = made.refusal(builds, lines)
+    refusal = made.refusal(builds)
     if args.json:
         print(json.dumps(_record(builds, lines, seconds, refusal), indent=1))
     else:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tactcad.checks.assembly import check_assembly
 from tactcad.checks.check_report import Report
+from tactcad.checks.goes_together import check_assembly
 from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design

@@ -17,15 +17,17 @@ from tactcad.parts.library.fits import deviations, general
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 
-from .variables import Variable, variable
+from .variables import STACK_LENGTH, DimensionLimits, variable
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
+# What is stacked between the end plates: its length is held as a whole.
+STACKED = ("element", "spacer", "blank")
 # Product grade A: lengths of cap screws are js15 (ISO 4759-1:2000).
 LENGTH = "js15"
 
 
 @dataclass(frozen=True)
-class Joint:
+class ScrewedJoint:
     """Equal screws in equal holes through equal parts.
 
     name           the screw, the part under its head, the tapped one and its hole
@@ -48,7 +50,7 @@ class Joint:
     count: int = 1
 
 
-def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]:
+def joints(design: str, scene: Scene, known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
     """Every kind of screwed joint of a scene.
 
     Parameters
@@ -59,7 +61,7 @@ def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]
         Variables by name; those of the joints are added where they are not known yet.
     """
     by_name = {p.designator: p for p in scene.placements}
-    kinds: Counter[Joint] = Counter()
+    kinds: Counter[ScrewedJoint] = Counter()
     for contact in scene.contacts:
         if contact.kind != "thread":
             continue
@@ -67,12 +69,12 @@ def joints(design: str, scene: Scene, known: dict[str, Variable]) -> list[Joint]
         for screw, tapped in (pair, pair[::-1]):
             if CAP_SCREW.match(screw.part.part_no):
                 kinds.update(_joint(design, scene, screw, tapped, known))
-    return [Joint(**{**vars(j), "count": n}) for j, n in kinds.items()]
+    return [ScrewedJoint(**{**vars(j), "count": n}) for j, n in kinds.items()]
 
 
 def _joint(
-    design: str, scene: Scene, screw: Placement, tapped: Placement, known: dict[str, Variable]
-) -> Iterator[Joint]:
+    design: str, scene: Scene, screw: Placement, tapped: Placement, known: dict[str, DimensionLimits]
+) -> Iterator[ScrewedJoint]:
     match = CAP_SCREW.match(screw.part.part_no)
     assert match
     thread, length = match[1], float(match[2])
@@ -88,6 +90,9 @@ def _joint(
         for pierced, clearance in _pierced(scene, screw, tapped, length):
             if clearance.counterbore or not through:
                 through = f"through {_short(design, pierced)} "
+            if pierced.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED)):
+                terms[STACK_LENGTH] = -1.0
+                continue
             thick = _thickness(pierced.part, known)
             terms[thick] = terms.get(thick, 0.0) - 1.0
             if clearance.counterbore:
@@ -102,7 +107,7 @@ def _joint(
             )
         elif end <= hole.depth:
             room, deeper = hole.depth - end, _thickness(tapped.part, known)
-        yield Joint(
+        yield ScrewedJoint(
             f"{thread}x{length:g} {through}into {_short(design, tapped)} ({hole.name.replace('_', ' ')})",
             thread,
             round(min(end, stop) - start, 6),
@@ -149,23 +154,20 @@ def _holes(part: Part) -> Iterator[Hole]:
                 yield Hole("", (x, y, 0.0), (0, 0, 1), 2 * r, part.body.thickness, True)
 
 
-def _known(known: dict[str, Variable], v: Variable) -> str:
+def _known(known: dict[str, DimensionLimits], v: DimensionLimits) -> str:
     known.setdefault(v.name, v)
     return v.name
 
 
-def _general(known: dict[str, Variable], name: str, size: float) -> str:
+def _general(known: dict[str, DimensionLimits], name: str, size: float) -> str:
     return _known(known, variable(name, -general(size), general(size)))
 
 
-def _thickness(part: Part, known: dict[str, Variable]) -> str:
+def _thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
     """The variable of a part's thickness along its contour's axis: its own limits, or the general ones."""
-    own = next((c for c in part.characteristics if c.name in ("thickness", "sheet thickness")), None)
+    own = next((c for c in part.characteristics if c.name == "thickness"), None)
     if own is None:
         thickness = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
         return _general(known, f"{part.part_no}: thickness", thickness)
-    if own.name == "sheet thickness" or part.part_no.endswith("-blank"):
-        name = "sheet: thickness"
-    else:
-        name = "spacer: thickness" if part.part_no.endswith("-spacer") else f"{part.part_no}: thickness"
+    name = f"{part.part_no}: thickness"
     return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal))

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from .variables import Array, Deviations, Variable
+from .variables import Array, Deviations, DimensionLimits
 
 Distribution = Literal["normal", "uniform", "corners"]
 # Limits stand at two standard deviations, and what lies beyond them is sorted out.
@@ -19,7 +19,7 @@ OFFSET_SHARE = 0.5
 
 
 def made(
-    variables: Mapping[str, Variable],
+    variables: Mapping[str, DimensionLimits],
     count: int,
     distribution: Distribution,
     rng: np.random.Generator,

@@ -16,6 +16,6 @@ def check_assembly(design: Design, *seeds: int) -> list[Finding]:
     for seed in seeds or (SEED,):
         builds = made.built(COUNT, seed)
         if builds.share < LEAST_YIELD:
-            why = made.refusal(builds, made.stack())
+            why = made.refusal(builds)
             found.append(Finding("assembly", "fail", design.name, (), builds.share, LEAST_YIELD, why))
     return found

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from tactcad.assembly.shop import OFFSET_SHARE, made
-from tactcad.assembly.variables import Variable, variable
+from tactcad.assembly.variables import DimensionLimits, variable
+from tactcad.assembly.virtual_shop import OFFSET_SHARE, made
 
-WIDE = {"a": variable("a", -0.02, 0.01, 6), "b": Variable("b", np.array([0.0, -1.0]), np.array([0.0, 3.0]))}
+WIDE = {
+    "a": variable("a", -0.02, 0.01, 6),
+    "b": DimensionLimits("b", np.array([0.0, -1.0]), np.array([0.0, 3.0])),
+}
 
 
 @pytest.mark.parametrize("distribution", ["normal", "uniform", "corners"])
