@@ -17,6 +17,8 @@ _REFERENCE = re.compile(r"'(?:[^']|'')*'|#(\d+)")
 # Text that the kernel gives every instance, without information: 37 bytes of each.
 _PLACEMENT = re.compile(r"^PRODUCT_DEFINITION_SHAPE\('Placement','Placement of an item',")
 _INSTANCE = re.compile(r"^NEXT_ASSEMBLY_USAGE_OCCURRENCE\('[^']*','((?:[^']|'')*)'")
+# A tolerance's value, to which the kernel does not write what it measures.
+_MEASURE = re.compile(r"^MEASURE_WITH_UNIT\(([-+.\dE]+),")
 # With every round tolerance zone the kernel writes the angle of a runout's zone, of which there is none.
 _RUNOUT, _ANGLE = re.compile("RUNOUT_ZONE_(DEFINITION|ORIENTATION)\\("), "PLANE_ANGLE_MEASURE_WITH_UNIT("
 _STYLES = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION"
@@ -62,8 +64,9 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
 
 
 def _plain(body: str) -> str:
-    """The body with the designator as an instance's id, and without empty words."""
+    """The body with the designator as an instance's id, without empty words, and with a length called so."""
     body = _INSTANCE.sub(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE('\1','\1'", body)
+    body = _MEASURE.sub(r"MEASURE_WITH_UNIT(LENGTH_MEASURE(\1),", body)
     return _PLACEMENT.sub("PRODUCT_DEFINITION_SHAPE('','',", body)
 
 
