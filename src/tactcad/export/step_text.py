@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tactcad import __version__
@@ -44,10 +45,12 @@ def canonical(text: str, header: Header, schema: str = AP214) -> str:
     bodies = {int(n): _unbroken(body) for n, body in _ENTITY.findall(text[text.index("DATA;") :])}
     bodies = {n: _plain(body) for n, body in bodies.items() if not _RUNOUT.match(body)}
     references = {n: _references(body) for n, body in bodies.items()}
-    digests = _digests(bodies, references)
     used = {r for refs in references.values() for r in refs}
     roots = [n for n in bodies if n not in used and not bodies[n].startswith(_ANGLE)]
-    roots.sort(key=lambda n: _root_key(n, bodies[n], digests[n]))
+    styles = {n for n in roots if bodies[n].startswith(_STYLES)}
+    digests = _digests(bodies, references, styles) if len(styles) > 1 else {}
+    # products in the kernel's order, which is the writing order; then styles, which have none, by content
+    roots.sort(key=lambda n: (n in styles, digests.get(n, ""), n))
     numbers: dict[int, int] = {}
     order: list[int] = []
     for root in roots:
@@ -70,11 +73,6 @@ def _plain(body: str) -> str:
     return _PLACEMENT.sub("PRODUCT_DEFINITION_SHAPE('','',", body)
 
 
-def _root_key(n: int, body: str, digest: str) -> tuple:
-    """Products in the kernel's order, which is the writing order; styles, which have none, by content."""
-    return (1, digest, n) if body.startswith(_STYLES) else (0, n)
-
-
 def _unbroken(body: str) -> str:
     return re.sub(r"\s*\n\s*", "", body)
 
@@ -87,10 +85,13 @@ def _renumbered(body: str, numbers: dict[int, int]) -> str:
     return _REFERENCE.sub(lambda m: f"#{numbers[int(m.group(1))]}" if m.group(1) else m.group(0), body)
 
 
-def _digests(bodies: dict[int, str], references: dict[int, list[int]]) -> dict[int, str]:
-    """Digest of each entity's whole content, independent of numbering (STEP data has no cycles)."""
+def _digests(
+    bodies: dict[int, str], references: dict[int, list[int]], starts: Iterable[int]
+) -> dict[int, str]:
+    """Digest of the whole content of these entities and of all that they refer to, independent of numbering
+    (STEP data has no cycles)."""
     digests: dict[int, str] = {}
-    for start in bodies:
+    for start in starts:
         stack = [start]
         while stack:
             n = stack[-1]
