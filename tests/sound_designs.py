@@ -9,7 +9,7 @@ logarithm where that spans decades. What a shop can make bounds some of them: a 
 from __future__ import annotations
 
 from dataclasses import fields
-from math import ceil, cos, exp, floor, log, log10, pi, sqrt, tan
+from math import ceil, cos, degrees, exp, floor, hypot, log, log10, pi, sqrt, tan
 from random import Random
 from typing import Any
 
@@ -244,6 +244,7 @@ def _loads(d: Draw) -> None:
     d.elastic = 0.2 * yielding * bend * factor * least * ratio  # mm of deflection that no hinge yields at
     d.room = gap = min(room, yielding * bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 40)
+    d.number("tolerance.ledge", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     # rows that stay apart when facing pads turn towards each other
     d.number("tolerance.hinge_length", high=d.l / 10)
@@ -360,12 +361,25 @@ def _clamp(d: Draw) -> None:
     # the end plate between the carrier's screws, under all the force: a tenth of the pads' tolerance
     high = d.table.get("clamp.end_plate_height", lowest - plate_bottom)
     bend = bends(2 * (edge + offset), d.table["clamp.end_plate_thickness"], high)
-    d.number("tolerance.pad_height", 10.5 * bend * d.table["rating.overload_force"])
+    # pads that stand off the surface plate take from the stops' gaps: a twentieth of these
+    d.most_pad = (hole + upper / 2 - pin) / 2 + d.room / 30
+    force = d.table["rating.overload_force"]
+    d.put("rating.overload_force", min(force, d.most_pad / (10.5 * bend)))
+    d.number("tolerance.pad_height", min(10.5 * bend * force, d.most_pad), d.most_pad)
+    d.number("tolerance.tilt", _least_tilt(d))
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
     # how far the pads stand from the middle
     d.far_x = (d.table["array.row_pitch"] + d.table["element.pad_length"]) / 2
     d.far_y = (stack - 2 * spacer) / 2
+
+
+def _least_tilt(d: Draw) -> float:
+    """Degrees that dowel holes and pads may leave the carrier off square."""
+    high = d.table["tolerance.pad_height"]
+    rows = min(d.table["holes.dowel_offsets"])  # from the clamp edge, which is further out than the middle
+    spans = [2 * rows, (max(map(len, d.arms)) - 1) * d.table["array.pitch"]]
+    return 1.01 * degrees(hypot(0.015 / rows, max((high / s for s in spans if s > 0), default=0.0))) + 1e-3
 
 
 def bends(span: float, width: float, high: float) -> float:
