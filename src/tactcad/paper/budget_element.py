@@ -10,7 +10,7 @@ from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.as_built import COMMON, half_widths
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.budget_effect import BudgetPair, Effect
-from tactcad.paper.residuals import WIRE_TOLERANCE
+from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
 MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
 ROOM_SWING = 5.0  # K; hardware's own figure

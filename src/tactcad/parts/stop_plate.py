@@ -1,7 +1,7 @@
 r"""Stop plate on the ledges: the plane that every overload stop closes against.
 
 +-----------------------------------+   ^ z
-+-----------------------------------+   +-> x   ground face down
++-----------------------------------+   +-> x   both faces ground
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from tactcad.contour import rectangle
 
 from .description import Characteristic, Extrusion, Part
 from .layout import Layout
-from .part_materials import STAINLESS
+from .part_materials import MAGNETIC_STAINLESS
 
 
 def stop_plate(layout: Layout) -> Part:
@@ -21,11 +21,11 @@ def stop_plate(layout: Layout) -> Part:
         part_no=f"{d.name}-stop-plate",
         name="Stop plate",
         process="ground",
-        material=STAINLESS,
+        material=MAGNETIC_STAINLESS,
         body=Extrusion(rectangle(-x, -y, x, y), d.clamp.stop_plate_thickness),
         colour="#565d66",
-        finish="both faces ground, Ra 0.4, flat within 0.005",
-        notes=("break edges 0.2", "ground face down, on the ledges"),
+        finish="both faces ground, Ra 0.4, flat and parallel within 0.005",
+        notes=("break edges 0.2", "either face may lie on the ledges"),
         characteristics=(
             Characteristic(
                 "thickness",

@@ -179,7 +179,7 @@ def _stop_plate(layout: Layout) -> str:
     )
     return (
         calibrated if layout.design.calibration else ""
-    ) + "Wipe ledges and plate. Lay the stop plate on the ledges, ground face down."
+    ) + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, either lies down."
 
 
 def _hold_down(layout: Layout) -> str:
