@@ -22,7 +22,7 @@ export: environment ## write the files of every design in hardware/ to exports/<
 	exit $$status
 
 test: environment ## every test but the long ones
-	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS)
+	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS) --dist worksteal
 
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails
 	@status=0; \

@@ -72,7 +72,7 @@ def compared(s: HingeSection) -> Iterator[Compared]:
         ladder.stiffness(s, "solid"),
         strain.gauge(s, 1.0, grid),
         strain.peak(s, 1.0),
-        strain.largest_stress(s, 1.0),
+        strain.peak_stress(s, 1.0),
     )
     columns = found, error, ours / found - 1.0, stated(s, "fem-solid", grid)
     further = np.array(closed, dtype=float) / found - 1.0, stated(s, "solid", grid)

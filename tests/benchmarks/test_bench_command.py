@@ -49,8 +49,14 @@ def follows_schema(result: dict) -> None:
                 assert set(row) & {c["key"] for c in data["columns"]}
 
 
+# Whole exports in processes of their own. `detail` is one too, and test_exits.py starts it.
+LONG = ("detail", "export", "scaling", "sheets", "step")
+
+
 @pytest.mark.cad
-@pytest.mark.parametrize("name", BENCHMARKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(b, marks=pytest.mark.nightly) if b in LONG else b for b in BENCHMARKS]
+)
 def test_every_benchmark_runs_in_smoke_mode(name, tmp_path, capsys):
     out = tmp_path / "report"
     assert main(["bench", "--smoke", "--only", name, "--json", "--out", str(out)]) == 0

@@ -212,7 +212,12 @@ def test_no_piece_near_the_limit_passes_the_rule_and_fails_the_check():
     What the rules accept has no edge that the check on the built solid finds too short.
     """
     bases = {
-        sides: {"array.row_arms": [[4.0]], "element.sides": sides, "element.body_height": height}
+        sides: {
+            "array.row_arms": [[4.0]],
+            "element.sides": sides,
+            "element.body_height": height,
+            "calibration.travel": 0.1,  # short hinges yield sooner
+        }
         for sides, height in (("one", 3.0), ("two", 3.6))
     }
     moves = [

@@ -134,7 +134,7 @@ def test_the_gap_follows_the_overload_force():
 
 
 def test_a_force_that_no_gap_can_save_the_hinge_from_is_refused_with_the_one_that_it_can():
-    thick = {"clamp.stop_plate_thickness": 6.0}
+    thick = {"clamp.stop_plate_thickness": 7.0}
     (found,) = broken_rules(variant({**thick, "rating.overload_force": 250.0}))
     assert found.part == "rating.overload_force"
     most = float(found.limit.split()[2])

@@ -74,7 +74,9 @@ def test_grid_that_does_not_fit_costs_only_the_gauges_strain(tmp_path, capsys):
     text = (Path(__file__).parents[2] / "hardware" / "macro-array.toml").read_text("utf-8")
     two = tmp_path / "two.toml"
     two.write_text(
-        text.replace('sides = "one"', 'sides = "two"').replace("hinge_length = 0.88", "hinge_length = 0.7")
+        text.replace('sides = "one"', 'sides = "two"')
+        .replace("hinge_length = 0.88", "hinge_length = 0.7")
+        .replace("travel = 0.150", "travel = 0.125")  # a short hinge yields sooner
     )
     rows = estimate_json(capsys, str(two), "--force", "0.3")["elements"]
     assert all(r["elastic"] and r["gauge_strain"] is None and r["peak_strain"] > 0 for r in rows)

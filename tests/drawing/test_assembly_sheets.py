@@ -29,7 +29,11 @@ pytestmark = pytest.mark.cad
 
 
 SCENES = [("macro-array", name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
-OTHERS = [("double-sample", "grasping"), ("smallest-bearing", "grasping"), ("soft-tissue", "array")]
+OTHERS = [
+    pytest.param(("double-sample", "grasping"), marks=pytest.mark.nightly),
+    pytest.param(("smallest-bearing", "grasping"), marks=pytest.mark.nightly),
+    ("soft-tissue", "array"),
+]
 
 
 def drawn(base: str, name: str):

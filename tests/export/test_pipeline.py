@@ -87,7 +87,10 @@ def exported(design, out: Path, others: str = "refuse"):
     return export(design, ARRAY, out, notes, others), notes
 
 
-# --- the shipped array, twice in fresh processes ---
+# --- the shipped array and one of its rigs, twice in fresh processes ---
+
+# every scene of every design, with guides and drawings: tests/faults/test_surroundings.py, nightly
+TWO_SCENES = ("--scene", "array", "--scene", "sample-stiffness")
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +104,7 @@ def two_exports(tmp_path_factory):
         said, _ = run(
             "export",
             "designs/paper.toml",
+            *TWO_SCENES,
             "--out",
             f"out-{seed}",
             cwd=home,
@@ -165,6 +169,7 @@ def test_a_second_export_does_nothing_and_loads_nothing(two_exports):
     said, log = run(
         "export",
         "designs/paper.toml",
+        *TWO_SCENES,
         "--out",
         "out-1",
         cwd=home,

@@ -6,15 +6,20 @@ manifest, read with nothing but json and hashlib, agrees with every file below i
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import json
 import os
 import re
+import select
+import shutil
 import subprocess
 import sys
+import tempfile
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import tactcad
@@ -133,51 +138,80 @@ class Bench:
             (folder / f"{name}.toml").write_text(text, encoding="utf-8")
 
 
-# Runs many commands, each in a process of its own that is forked with the program loaded: what a shell would
-# do, without waiting for Python to start every time. Takes and gives JSON: argument lists; then status,
-# output, messages of each.
-FORKS = """
-import importlib, json, os, signal, sys, tempfile
+# Forks for each command with the program loaded: what a shell would do, without Python's start and the
+# libraries' loading. Reads JSON lines; writes two lines for each, the process's number and its status.
+LOADED = """
+import gc, importlib, json, os, signal, sys, traceback
 from tactcad.cli.main import COMMANDS, main
-import tactcad.export.pipeline, tactcad.export.sides
+import tactcad.drawing.assembly, tactcad.export.pipeline, tactcad.export.sides, tactcad.release.make
+import tactcad.checks.run, tactcad.solids.build
 import tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
 for name in COMMANDS:
     importlib.import_module("tactcad.cli." + name)
-found = []
-for arguments in json.load(sys.stdin):
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        process = os.fork()
-        if not process:
-            signal.alarm(60)  # what hangs is ended
-            os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-            os.dup2(out.fileno(), 1)
-            os.dup2(err.fileno(), 2)
-            sys.stdin = None
-            sys.exit(main(arguments))
-        status = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
-        said = []
-        for stream in (out, err):
-            stream.seek(0)
-            said.append(stream.read().decode("latin-1"))
-        found.append([status, *said])
-json.dump(found, sys.stdout)
+gc.freeze()  # or a child would copy all of it when it looks for what is no longer used
+while line := sys.stdin.buffer.readline():
+    asked = json.loads(line)
+    process = os.fork()
+    if not process:
+        signal.alarm(120)  # what hangs is ended
+        os.chdir(asked["cwd"])
+        os.environ.clear()
+        os.environ.update(asked["env"])
+        for number, path in enumerate((os.devnull, asked["out"], asked["err"])):
+            os.dup2(os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC), number)
+        sys.argv = ["tactcad", *asked["arguments"]]
+        status = 70  # of a traceback
+        try:
+            status = main()
+        except BaseException:
+            traceback.print_exc()
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(status)  # what is loaded here takes a second to be put away
+    os.write(1, b"%d\\n" % process)
+    os.write(1, b"%d\\n" % os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]))
 """
+
+
+@cache
+def loaded() -> tuple[subprocess.Popen[bytes], Path]:
+    """The process that forks, and its folder; it ends with this one, which holds its input."""
+    folder = Path(tempfile.mkdtemp())
+    command = [sys.executable, "-c", LOADED]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "bufsize": 0}
+    process = subprocess.Popen(command, cwd=folder, env=environment(folder), **pipes)
+
+    def end() -> None:
+        process.communicate()
+        shutil.rmtree(folder)
+
+    atexit.register(end)
+    return process, folder
+
+
+class Started:
+    """`tactcad ARGUMENTS` in a process of its own, forked with the program loaded; one at a time."""
+
+    def __init__(self, arguments: Sequence[str], cwd: Path, env: dict[str, str]) -> None:
+        process, folder = loaded()
+        self.said, self.out, self.err = process.stdout, folder / "out", folder / "err"
+        asked = {"arguments": list(arguments), "cwd": str(cwd), "env": env}
+        asked |= {"out": str(self.out), "err": str(self.err)}
+        process.stdin.write(json.dumps(asked).encode() + b"\n")
+        self.pid = int(self.said.readline())
+
+    def ended(self, seconds: float) -> bool:
+        """Whether it ends within that time."""
+        return bool(select.select([self.said], [], [], max(seconds, 0.0))[0])
+
+    def result(self) -> subprocess.CompletedProcess[bytes]:
+        """Waits for its end."""
+        status = int(self.said.readline())
+        return subprocess.CompletedProcess([], status, self.out.read_bytes(), self.err.read_bytes())
 
 
 def tactcad_runs(
     commands: Sequence[Sequence[str]], cwd: Path, env: dict[str, str]
 ) -> list[subprocess.CompletedProcess[bytes]]:
     """`tactcad ARGUMENTS` for many argument lists, one after the other, each in its own process."""
-    done = subprocess.run(
-        [sys.executable, "-c", FORKS],
-        input=json.dumps(commands),
-        cwd=cwd,
-        env=env,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return [
-        subprocess.CompletedProcess(arguments, status, out.encode("latin-1"), err.encode("latin-1"))
-        for arguments, (status, out, err) in zip(commands, json.loads(done.stdout), strict=True)
-    ]
+    return [Started(arguments, cwd, env).result() for arguments in commands]

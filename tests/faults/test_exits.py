@@ -182,35 +182,44 @@ def test_what_was_to_be_ignored_stays_ignored(bench, work, name):
     assert contents(work / "out") == bench.files["A"]
 
 
-@pytest.mark.parametrize("name", STATUS)
-def test_helpers_end_with_what_they_help(bench, work, name):
+@pytest.mark.parametrize(
+    "name, group",
+    [
+        ("SIGINT", True),  # a terminal's Ctrl-C goes to all of them
+        ("SIGTERM", False),
+        *(
+            pytest.param(*pair, marks=pytest.mark.nightly)
+            for pair in (("SIGINT", False), ("SIGTERM", True), ("SIGHUP", True), ("SIGHUP", False))
+        ),
+    ],
+)
+def test_helpers_end_with_what_they_help(bench, work, name, group):
     """The processes that draw sheets are gone with the export, whether it alone got the signal or all of them
     did."""
     arguments = ("export", "A.toml", "--drawings", "--out", "out")
-    for group in (False, True):
-        with subprocess.Popen(
-            [*MODULE, *arguments],
-            cwd=work,
-            env=environment(work),
-            stderr=subprocess.PIPE,
-            text=True,
-            start_new_session=True,
-        ) as export:
-            said, helpers = "", []
-            for line in export.stderr:
-                said += line
-                helpers = Path(f"/proc/{export.pid}/task/{export.pid}/children").read_text().split()
-                if helpers and "drawing" in line:
-                    break
-            (os.killpg if group else os.kill)(export.pid, getattr(signal, name))
-            said += export.stderr.read()
-        assert helpers or os.cpu_count() < 2, "nobody helped: this test shows nothing"
-        assert_ended(subprocess.CompletedProcess([], export.returncode, b"", said.encode()), name)
-        until = time.monotonic() + 5
-        while any(running(int(helper)) for helper in helpers) and time.monotonic() < until:
-            time.sleep(0.02)
-        assert not any(running(int(helper)) for helper in helpers)
-        assert not (work / "out").exists() and not list((work / "tmp").iterdir())
+    with subprocess.Popen(
+        [*MODULE, *arguments],
+        cwd=work,
+        env=environment(work),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as export:
+        said, helpers = "", []
+        for line in export.stderr:
+            said += line
+            helpers = Path(f"/proc/{export.pid}/task/{export.pid}/children").read_text().split()
+            if helpers and "drawing" in line:
+                break
+        (os.killpg if group else os.kill)(export.pid, getattr(signal, name))
+        said += export.stderr.read()
+    assert helpers or os.cpu_count() < 2, "nobody helped: this test shows nothing"
+    assert_ended(subprocess.CompletedProcess([], export.returncode, b"", said.encode()), name)
+    until = time.monotonic() + 5
+    while any(running(int(helper)) for helper in helpers) and time.monotonic() < until:
+        time.sleep(0.02)
+    assert not any(running(int(helper)) for helper in helpers)
+    assert not (work / "out").exists() and not list((work / "tmp").iterdir())
 
 
 def descendants(process: int) -> set[int]:

@@ -14,7 +14,7 @@ from html.parser import HTMLParser
 from xml.etree import ElementTree
 
 import pytest
-from command_line import contents, environment, one_by_one, refused, tactcad_run
+from command_line import contents, environment, one_by_one, refused, tactcad_run, tactcad_runs
 
 GOOD = one_by_one(4.0, "A")
 
@@ -83,7 +83,7 @@ def refuse(tmp_path, data: bytes, command: str = "export", name: str = "bad.toml
     work = tmp_path / "work"
     work.mkdir()
     (work / name).write_bytes(data)
-    done = tactcad_run(command, name, cwd=work, env=environment(tmp_path))
+    (done,) = tactcad_runs([[command, name]], work, environment(tmp_path))
     assert [p.name for p in work.rglob("*")] == [name]
     assert not (tmp_path / "cache").exists()
     return refused(done)

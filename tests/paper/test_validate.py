@@ -57,6 +57,16 @@ def test_same_data_give_equal_bytes(report, paper, array):
     assert reporting.to_json(again) == reporting.to_json(report)
 
 
+def test_findings_quoted_in_the_docs_stand_in_the_report(report):
+    """Every number of the findings in docs/validation.md."""
+    text = reporting.to_text(report)
+    findings = (ROOT / "docs" / "validation.md").read_text("utf-8").split("## What it found")[1]
+    # numbers with a decimal point or a unit, as the report writes them
+    numbers = re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])|\d+ (?=%)", findings.split("\n## ")[0])
+    assert len(numbers) > 10
+    assert [n for n in numbers if n.strip() not in text] == []
+
+
 def test_validate_writes_a_folder_and_replaces_it(tmp_path, capsys, monkeypatch, report):
     monkeypatch.setattr(validation, "validate", lambda data, array: report)
     out = tmp_path / "deep" / "validation"

@@ -124,7 +124,12 @@ WITNESSES = {
     "land_stands_over_arm": [({"tolerance.arm_height": 0.4}, "tolerance.arm_height")],
     "slots_stay_open": [
         (
-            {"tolerance.hinge_length": 0.5, "element.hinge_length": 0.55, "element.fillet_radius": 0.25},
+            {
+                "tolerance.hinge_length": 0.5,
+                "element.hinge_length": 0.55,
+                "element.fillet_radius": 0.25,
+                "calibration.travel": 0.135,  # a short hinge yields sooner
+            },
             "element.hinge_length",
         )
     ],
@@ -196,7 +201,7 @@ WITNESSES = {
         ({"clamp.carrier_screw_offset": 6.0, "clamp.mount_pitch_y": 25.0}, "clamp.mount_pitch_y"),
     ],
     "no_slivers": [
-        ({"element.hinge_length": 0.6005}, "element.hinge_length"),
+        ({"element.hinge_length": 0.6005, "calibration.travel": 0.1}, "element.hinge_length"),
         ({**TWO_SIDED, "array.row_arms": [[4], [2.7405]], "stop.land_length": 0.2}, "array.row_arms"),
     ],
 }

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Literal, TypeVar
 
 Mode = Literal["smoke", "short", "full"]
-MODES: tuple[Mode, ...] = ("smoke", "short", "full")
 T = TypeVar("T")
 
 

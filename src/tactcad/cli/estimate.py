@@ -25,7 +25,7 @@ EXAMPLES = """\
   tactcad estimate soft-tissue --accuracy 0.1% --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
   tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
-  tactcad estimate --inspection inspections/macro-array-C.csv
+  tactcad estimate --inspection inspections/macro-array-D.csv
                                       the elements as made, from the inspection sheet that the shop
                                       filled in: a copy of an export's inspection.csv, kept outside the export
 """

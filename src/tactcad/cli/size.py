@@ -118,7 +118,6 @@ def _answer(args: argparse.Namespace, design: Design, parameter: str) -> dict:
     )
     yields_at = float(strength.yield_force(sized, alloy))
     error = float(expected_error_of(sized, args.model))
-    largest = strain.largest_stress if args.model == "solid" else strain.peak_stress
     return {
         "model": args.model,
         "solved": parameter,
@@ -136,7 +135,7 @@ def _answer(args: argparse.Namespace, design: Design, parameter: str) -> dict:
         "elastic": elastic,
         "peak_strain": float(per_cut[0]) if elastic else None,
         "gauge_strain": float(per_cut[1]) if elastic else None,
-        "stress": float(largest(sized, force)) if elastic else None,
+        "stress": float(strain.peak_stress(sized, force)) if elastic else None,
         "yield_force": yields_at,
         "yield_deflection": yields_at / args.stiffness,
         "rated_force": float(min(force, yields_at / design.rating.yield_factor)),

@@ -8,7 +8,7 @@ import io
 
 import numpy as np
 
-from tactcad.mechanics import ladder, strain, strength
+from tactcad.mechanics import ladder, strength
 from tactcad.parts.element import element_number
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import Layout
@@ -51,8 +51,7 @@ def strength_bytes(layout: Layout) -> bytes:
     yields = strength.yield_force_where_known(section, alloy)
     states = overloads(layout)
     rated = np.array([state.rated_force for state in states])
-    # the largest principal stress at that force, at mid-width
-    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields * strain.mid_width_share(section))
+    goodman = strength.goodman(alloy, rated * alloy.yield_strength / yields)
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(COLUMNS)

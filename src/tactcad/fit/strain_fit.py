@@ -51,7 +51,7 @@ def fit(samples: dict[str, Columns]) -> dict:
     share = {}
     for side, flag in strain_errors.SIDES.items():
         own = np.flatnonzero(s.two_sided == flag)
-        measured = (rows["solid_fillet_stress"] / strain.stress_beyond_the_fit(s, 1.0))[own]
+        measured = (rows["solid_fillet_stress"] / strain.mean_stress(s, 1.0))[own]
         share[side] = _fitted(s.rows(own), measured)
     rows = joined(list(known.values()))
     s = section(rows)
@@ -95,7 +95,7 @@ def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array
         mean = strain.gauge(s.rows(known), 1.0, lengths, "solid")
         error[known] = mean / rows[f"solid_gauge_{grid:g}"][known] - 1.0
         gauges["gauge" if grid <= strain_errors.LONG_GRID else "long gauge"].append(error)
-    stress = strain.peak_stress(s, 1.0) * strain.mid_width_share(s, share)
+    stress = strain.mean_stress(s, 1.0) * np.maximum(strain.mid_width_share(s, share), 1.0)
     return gauges | {
         "fillet strain": [strain.peak(s, 1.0, "solid") / rows["solid_fillet_strain"] - 1.0],
         "fillet stress": [stress / rows["solid_fillet_stress"] - 1.0],

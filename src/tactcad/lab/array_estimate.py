@@ -30,7 +30,7 @@ class ElementEstimate:
     deflection: float | None  # mm
     gauge_strain: float | None  # mean under the gauge's grid
     peak_strain: float | None  # at the slot-side fillet
-    stress: float | None  # MPa, the largest principal one there at mid-width
+    stress: float | None  # MPa, the largest principal one there
     gauge_strain_error: float | None  # relative, at most; None where none was measured
     peak_strain_error: float | None
     stress_error: float | None
@@ -122,9 +122,8 @@ class _PerNewton:
 
     gauge: Array
     fillet: Array
-    largest_stress: Array  # principal, at mid-width
-    fillet_stress: Array  # mean over the width
-    face_stress: Array  # mean over the width
+    fillet_stress: Array  # largest over the width
+    face_stress: Array
 
 
 def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
@@ -137,8 +136,7 @@ def _closed_form_strains(s: HingeSection, rung: str, grid: float) -> _PerNewton:
         stress, face = strain.peak_stress(s, 1.0), strain.face_stress(s, 1.0)
     else:  # these rungs have no fillet
         stress = face = peak * s.youngs_modulus
-    largest = strain.largest_stress(s, 1.0) if rung == "solid" else stress
-    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, largest, stress, face)))
+    return _PerNewton(*(np.broadcast_to(x, s.shape) for x in (gauge, peak, stress, face)))
 
 
 def _by_elements(
@@ -165,12 +163,13 @@ def _by_elements(
             solved[key] = elements.solve(section.rows(i), rung, grid, shape, mesh or SOLID_MESH)
         solutions.append(solved[key])
     read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
+    share = strain.peak_share(section) if rung == "fem-plane" else 1.0
     return np.array([r.stiffness for r in solutions]), _PerNewton(
         np.array([float(r.gauge) for r in read]),
         np.array([r.fillet_strain for r in read]),
-        np.array([r.fillet_stress for r in read]),
-        np.array([r.fillet_stress for r in flat]),
-        np.array([r.face_stress for r in flat]),
+        # at mid-width, but no less than the width's mean; in plane stress there is nothing but the mean
+        share * np.array([max(a.fillet_stress, b.fillet_stress) for a, b in zip(read, flat)]),
+        share * np.array([max(a.face_stress, b.face_stress) for a, b in zip(read, flat)]),
     )
 
 
@@ -187,14 +186,14 @@ def _estimates(
     stiffness_error = np.broadcast_to(stiffness_error, len(layout.elements))
     rows = []
     for i, place in enumerate(layout.elements):
-        yield_force = alloy.yield_strength / float(per_newton.fillet_stress[i])
+        stress = float(per_newton.fillet_stress[i])
+        yield_force = alloy.yield_strength / stress
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])
         elastic = force <= min(yield_force, face_yield)
 
         def at(value: float, elastic: bool = elastic) -> float | None:
             return float(value) * force if elastic and np.isfinite(value) else None
 
-        stress = float(per_newton.largest_stress[i])
         rows.append(
             ElementEstimate(
                 number=place.number,

@@ -83,11 +83,10 @@ def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG)
 
 
 def peak_stress(s: HingeSection, force: Array | float) -> Array:
-    """Largest surface stress under a force (N) at the load line, MPa: 6 F L/(b t^2) times the fillet's
-    factor.
+    """Largest principal surface stress under a force (N) at the load line, MPa: at the slot-side fillet
+    towards the body, of the whole width.
 
-    Stress along the hinge follows from equilibrium and does not depend on the width. Raises CheckFailure
-    where the factor was not fitted.
+    Raises CheckFailure where the fillet's factor was not fitted.
     """
     _require_fitted(s)
     return stress_beyond_the_fit(s, force)
@@ -97,17 +96,22 @@ def stress_beyond_the_fit(s: HingeSection, force: Array | float) -> Array:
     """`peak_stress` without its check of the range, MPa: not accurate enough to report, but good for
     bounds.
     """
+    return mean_stress(s, force) * peak_share(s)
+
+
+def mean_stress(s: HingeSection, force: Array | float) -> Array:
+    """Mean over the width of the stress at the fillet, MPa: 6 F L/(b t^2) times the fillet's factor.
+
+    It follows from equilibrium and does not depend on the width. Without a check of the range.
+    """
     return nominal(s, force) * s.youngs_modulus * fillet_factor(s)
 
 
-def largest_stress(s: HingeSection, force: Array | float) -> Array:
-    """Largest principal stress at mid-width under a force (N) at the load line, MPa.
-
-    It exceeds the mean over the width, since the sheet's sides carry less. Raises CheckFailure out of rung
-    solid's range.
+def peak_share(s: HingeSection) -> Array:
+    """Largest principal stress over the width's mean, at the fillet: at mid-width, since the sheet's sides
+    carry less; never less than the mean itself.
     """
-    ladder.require_range(s, "solid")
-    return stress_beyond_the_fit(s, force) * mid_width_share(s)
+    return np.maximum(mid_width_share(s), 1.0)
 
 
 def mid_width_share(s: HingeSection, data: dict | None = None) -> Array:
@@ -155,10 +159,11 @@ def share_terms(s: HingeSection, k: Mapping[str, list[float]]) -> Array:
 def face_stress(s: HingeSection, force: Array | float) -> Array:
     """Largest stress on the flat gauge face of a one-sided hinge, MPa; on a two-sided one the fillet's.
 
-    Raises CheckFailure where the factor was not fitted.
+    Over the width's mean by the fillet's share: solid elements on the fit's samples give 0.90 to 1.035 of it,
+    and never more than 0.97 of the fillet's. Raises CheckFailure where the factor was not fitted.
     """
     _require_fitted(s)
-    return nominal(s, force) * s.youngs_modulus * face_factor(s)
+    return nominal(s, force) * s.youngs_modulus * face_factor(s) * peak_share(s)
 
 
 def _require_fitted(s: HingeSection) -> None:

@@ -28,11 +28,6 @@ def yield_force_where_known(s: HingeSection, alloy: Alloy) -> Array:
     return force
 
 
-def face_yield_force(s: HingeSection, alloy: Alloy) -> Array:
-    """Force at which the gauge face reaches the yield strength, N."""
-    return alloy.yield_strength / strain.face_stress(s, 1.0)
-
-
 def yield_factor(s: HingeSection, alloy: Alloy, force: Array | float) -> Array:
     """Yield strength over the fillet's stress under a force, N; below 1 the hinge does not stay elastic."""
     return yield_force(s, alloy) / force

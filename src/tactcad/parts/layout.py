@@ -199,11 +199,6 @@ class Layout:
     def position_y(self, index: int) -> float:
         return round((index - (self.positions - 1) / 2) * self.design.array.pitch, 9)
 
-    def blanks(self) -> tuple[tuple[int, int], ...]:
-        """(row, index) of every place of the two rows that no element takes."""
-        lengths = [len(arms) for arms in self.design.array.row_arms] + [0]
-        return tuple((row, index) for row in (1, 2) for index in range(lengths[row - 1], self.positions))
-
     # --- plates ---
 
     @property

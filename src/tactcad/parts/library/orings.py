@@ -29,12 +29,6 @@ def groove(code: str) -> tuple[float, float]:
     return INSIDE[code], round(INSIDE[code] + 2 * GROOVE_WIDTH, 6)
 
 
-def squeeze() -> float:
-    """Share of the cross section's height that the closed joint takes off; 0.15 to 0.30 is usual for a face
-    seal."""
-    return 1 - GROOVE_DEPTH / SECTION
-
-
 def o_ring(code: str) -> Part:
     """The ring as it lies squeezed in its groove: groove's height, the free ring's volume; z from 0 up."""
     inner = INSIDE[code] / 2 + 0.05
