@@ -23,8 +23,8 @@ from .rail import rail_holes
 
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 
-# Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid from
-# 6.5 on, and the foot passes it.
+# Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
+# from 6.5 on, and the foot passes it.
 STOP_PIN, STOP_LENGTH, STOP_DEPTH = "4", 16.0, 8.0
 
 
