@@ -1,5 +1,5 @@
-"""What a shop and a mechanic need of the shipped designs' parts: heads that are sunk, threads that are reached,
-one base plate, a carriage that stays on its rail, notes that agree with limits."""
+"""What a shop and a mechanic need of the shipped designs' parts: heads that are sunk, threads that are
+reached, one base plate, a carriage that stays on its rail, notes that agree with limits."""
 
 from __future__ import annotations
 
