@@ -102,7 +102,7 @@ def _gauges(layout: Layout) -> str:
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
         "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
         "thickness of every element, and mark its rear body with its number: equal elements differ in what "
-        "was measured. Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier "
+        f"was measured. Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier "
         f"trimmed to {d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
         "leads, and lay them in the wire recess towards the rear end."
     )
