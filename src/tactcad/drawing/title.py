@@ -13,7 +13,6 @@ from .ink import CENTRE, FRAME, THIN, VISIBLE, DrawnArc, Item, Point, Stroke, Te
 from .paper import Paper
 
 WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
-BRACKET = 0.8  # mm over capitals, and white
 LABEL = 1.8  # height of the cells' headings, ISO 3098 series
 GENERAL_TOLERANCES = ("ISO 2768-1:1989-m", "ISO 2768-2:1989-K")
 
@@ -131,12 +130,12 @@ def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tup
 
 
 def _fitted(given: tuple[str, ...], room: float, high: float) -> tuple[list[str] | None, float]:
-    """The lines at the largest size at which they fit, broken where they have to be; None where none fits."""
+    """The lines at the largest size at which they fit, broken only where they have to be; None where none
+    fits."""
     given = tuple(line for line in given if line)
-    for size, whole in ((3.5, True), (2.5, True), (2.5, False), (1.8, True), (1.8, False)):
+    for size, whole in ((3.5, True), (2.5, True), (1.8, True), (2.5, False), (1.8, False)):
         lines = list(given) if whole else [piece for line in given for piece in wrapped(line, size, room)]
-        # a line that is broken may begin with a bracket, which stands higher than a capital
-        high_enough = size * (1.6 * len(lines) - 0.3) <= high - (0.0 if whole else BRACKET)
+        high_enough = size * (1.6 * len(lines) - 0.3) <= high
         if high_enough and all(width(line, size) <= room for line in lines):
             return lines, size
     return None, 0.0

@@ -25,12 +25,12 @@ RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, hea
 
 # Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
 # from 6.5 on, and the foot passes it.
-STOP_PIN, STOP_LENGTH, STOP_DEPTH = "4", 16.0, 8.0
+STOP_PIN, STOP_LENGTH, STOP_DEPTH = "3", 16.0, 8.0
 
 
 def stop_below(rig: GuideLayout) -> float:
-    """How far the end stop's pin stands below the rail's middle, mm: 0.2 clear of its end."""
-    return rig.grasping.rail_length / 2 + dowel_diameter(STOP_PIN) / 2 + 0.2
+    """How far the end stop's pin stands below the rail's middle, mm: 0.5 clear of its end."""
+    return rig.grasping.rail_length / 2 + 2.0
 
 
 def riser(rig: GuideLayout) -> Part:
