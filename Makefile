@@ -9,6 +9,8 @@ WORKERS ?= 2
 # one thread a process: the tests run side by side, and results do not depend on the number of cores
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
+# what is compiled once is kept, wherever the machine is set not to: tests start hundreds of processes
+export PYTHONDONTWRITEBYTECODE :=
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

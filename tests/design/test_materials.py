@@ -11,9 +11,10 @@ from tactcad.checks.shop import load_shop
 from tactcad.checks.wirecut import check_wirecut
 from tactcad.cli.main import main
 from tactcad.design.load import from_table
-from tactcad.design.materials import ALLOYS, MOST_DIFFERENCE, PROPERTIES, family
+from tactcad.design.materials import ALLOYS, MOST_DIFFERENCE, PROPERTIES, family, modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.drawing.notes import notes_of
+from tactcad.paper import array_model
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
@@ -75,6 +76,26 @@ def test_published_figures_lie_within_the_row_s_spread(name):
     row = ALLOYS[name]
     for key, value in PUBLISHED[name].items():
         assert value == pytest.approx(getattr(row, key), rel=row.spread[key]), key
+
+
+# Published moduli at room temperature and 70 to 80 K above it, by row.
+WARMER = {
+    "17-4PH-H900": (200.0, 195.0, 80.0),  # EN 10088-1, grade 630
+    "1.4310-C1300": (200.0, 194.0, 80.0),  # EN 10088-1, austenitic grades
+    "maraging-300-aged": (27.8, 27.1, 130 / 1.8),  # ASME B31.1, nickel steels
+    "C17200-TF00": (14.0, 13.7, 130 / 1.8),  # ASME B31.1, tin bronze
+    "Ti-6Al-4V-annealed": (15.5, 15.0, 130 / 1.8),  # ASME B31.1, unalloyed titanium
+}
+
+
+def test_the_modulus_falls_by_the_alloy_s_own_share_per_kelvin():
+    for name, (cold, warm, kelvin) in WARMER.items():
+        assert modulus_per_kelvin(name) == pytest.approx((1 - warm / cold) / kelvin, rel=0.02)
+    for name in ("6061-T6", "2024-T3", "7075-T6"):
+        assert 4e-4 <= modulus_per_kelvin(name) <= 5e-4
+    assert modulus_per_kelvin("mine") == max(map(modulus_per_kelvin, ALLOYS))
+    design = of("17-4PH-H900")
+    assert array_model.from_design(design).modulus_per_kelvin == modulus_per_kelvin("17-4PH-H900")
 
 
 def test_every_row_is_whole():

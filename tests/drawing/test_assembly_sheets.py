@@ -28,7 +28,12 @@ from tactcad.scenes.bom import bom_rows
 pytestmark = pytest.mark.cad
 
 
-SCENES = [("macro-array", name) for name in ("array", "calibration", "sample-stiffness", "grasping")]
+SCENES = [
+    ("macro-array", "array"),
+    pytest.param(("macro-array", "calibration"), marks=pytest.mark.nightly),
+    pytest.param(("macro-array", "sample-stiffness"), marks=pytest.mark.nightly),
+    ("macro-array", "grasping"),
+]
 OTHERS = [
     pytest.param(("double-sample", "grasping"), marks=pytest.mark.nightly),
     pytest.param(("smallest-bearing", "grasping"), marks=pytest.mark.nightly),

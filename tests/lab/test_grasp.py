@@ -220,6 +220,23 @@ def test_an_element_that_touches_late_is_named():
     assert sum(bool(n) for n in good) <= 8  # by chance: one in 10 000 here, and one in 100 for disagreement
 
 
+def test_forces_of_the_wrong_sign_or_size_are_noted_and_change_no_ratio():
+    right = grasped(3.85, 2e-4, seed=8)
+    found = grasp.evaluate(right, exact(), overload_force=13.04)
+    assert found.notes == ()
+    for factor, said in (
+        (-1.0, "element 1, 2, 3, 4 falls"),
+        (50.0, "beyond the design's overload force of 13.04 N"),
+    ):
+        wrong = grasp.evaluate(replace(right, signal=factor * right.signal), exact(), overload_force=13.04)
+        (note,) = wrong.notes
+        assert said in note and "\n" not in note
+        assert wrong.combined.estimate == pytest.approx(found.combined.estimate, rel=1e-9)
+    # the force that is told, by the model: the share of the load's rise that the stiffest element takes
+    share = TRUTH.stiffness / (TRUTH.stiffness + 3.85) * 3.85
+    assert f"(no. 1: {50 * np.ptp(LOAD) * share[0] / share.sum():.3g} N)" in note
+
+
 def test_readings_before_contact_are_left_out():
     load = np.concatenate([[0.0], LOAD])
     reading = grasped(3.85, 1e-9, load=load, heights=np.array([0.02, 0.0, 0.0, 0.0]))

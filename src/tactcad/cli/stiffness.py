@@ -55,19 +55,28 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import DEFAULT_DESIGN
     from tactcad.lab import calibration_text, grasp, grasp_text, pads, readings
+    from tactcad.parts.designs import load
 
     from .progress import slow_work
 
     known = calibration_text.read(args.calibration)
     results: list[grasp.Grasp] = []
+    source = args.design or DEFAULT_DESIGN
+    overload_force = load(source).rating.overload_force
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = readings.grasps(args.file)
         for g in samples:
             tell(len(results), len(samples), f"sample {g.sample}")
-            coupling = pads.coupling(args.design or DEFAULT_DESIGN, g, args.coupling)
             results.append(
-                grasp.evaluate(g, known, reference=args.reference, level=args.level, coupling=coupling)
+                grasp.evaluate(
+                    g,
+                    known,
+                    reference=args.reference,
+                    level=args.level,
+                    coupling=pads.coupling(source, g, args.coupling),
+                    overload_force=overload_force,
+                )
             )
     sys.stdout.write(
         grasp_text.to_json(results, args.level) if args.json else grasp_text.to_text(results, args.level)

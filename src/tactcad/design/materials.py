@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .messages import InputError, in_brackets, near, one_of
+from .present import present
 
 # A value that differs by more than this from the named material's belongs to another material.
 MOST_DIFFERENCE = 0.10
@@ -40,7 +41,8 @@ class Alloy:
     """A sheet material.
 
     youngs_modulus, yield_strength, fatigue_strength (fully reversed) and tensile_strength in MPa, density in
-    kg/m3, conductivity in W/(m K). `tensile_strength` is None where it is not known; the Goodman line then
+    kg/m3, conductivity in W/(m K). modulus_per_kelvin: share of E by which it falls per kelvin, 1/K; None for
+    a label of its own. `tensile_strength` is None where it is not known; the Goodman line then
     ends at the yield strength, which is Soderberg's. spread: relative, by property.
     """
 
@@ -54,6 +56,7 @@ class Alloy:
     tensile_strength: float | None = None
     conductivity: float | None = None
     magnetic: str | None = None
+    modulus_per_kelvin: float | None = None
     standard: str = ""
     temper: str = ""
     spread: Mapping[str, float] = field(default_factory=dict)
@@ -93,7 +96,10 @@ def _alloy(row: dict[str, str]) -> Alloy:
     prefix = "spread_"
     return Alloy(
         name=row["name"],
-        **{name: float(row[name]) for name in (*PROPERTIES, "tensile_strength", "conductivity")},
+        **{
+            name: float(row[name])
+            for name in (*PROPERTIES, "tensile_strength", "conductivity", "modulus_per_kelvin")
+        },
         magnetic=row["magnetic"],
         source=row["source"],
         standard=row["standard"],
@@ -120,6 +126,14 @@ def alloy(name: str) -> Alloy:
     if name not in ALLOYS:
         raise InputError("material.alloy", "unknown alloy", value=name, legal=one_of(name, ALLOYS))
     return ALLOYS[name]
+
+
+def modulus_per_kelvin(name: str) -> float:
+    """Share of Young's modulus by which it falls per kelvin, 1/K; for a label of its own the table's largest
+    one.
+    """
+    row = ALLOYS.get(name)
+    return max(present(r.modulus_per_kelvin) for r in ([row] if row else ALLOYS.values()))
 
 
 def completed(name: str, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -344,3 +344,9 @@ class Design:
     def differences(self) -> tuple[Difference, ...]:
         """Differences between the material and the table's row of its name; see `materials.differences`."""
         return differences(self.material.alloy, vars(self.material), self.origin)
+
+    @property
+    def stiffness_factor(self) -> float | None:
+        """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli,
+        since the elements are linear; None where the design has the table's."""
+        return next((d.table / d.value for d in self.differences if d.name == "youngs_modulus"), None)

@@ -24,6 +24,7 @@ COLUMNS = (
     "yield_strength_MPa",
     "arm_mm",
     "stiffness_N_per_mm",
+    "stiffness_with_tables_modulus_N_per_mm",
     "rated_force_N",
     "yield_force_N",
     "yield_factor_at_rated",
@@ -42,7 +43,8 @@ COLUMNS = (
 def strength_bytes(layout: Layout) -> bytes:
     """The summary (RFC 4180, UTF-8), rows by element number, by the rung `solid`; four significant digits.
 
-    Yield factors are yield strength over the fillet's stress. Where the estimator does not reach an element
+    The second stiffness is with the Young's modulus of the alloy in the table of materials. Yield factors are
+    yield strength over the fillet's stress. Where the estimator does not reach an element
     its figures are blank and the last column says why.
     """
     design, places = layout.design, layout.elements
@@ -58,6 +60,7 @@ def strength_bytes(layout: Layout) -> bytes:
     for i, (place, state) in enumerate(zip(places, states)):
         figures = (
             stiffness[i],
+            stiffness[i] * (design.stiffness_factor or 1.0),
             state.rated_force,
             yields[i],
             yields[i] / state.rated_force,

@@ -28,6 +28,7 @@ from tactcad.lab.regression import require_level, t_quantile
 from tactcad.lab.sensitivity import Sensitivity
 
 STRAY = 1e-4  # probability, over all elements, below which an element is reported not to follow the others
+SURELY = 3.0  # standard errors below zero from which on an element's force is said to fall; chosen
 COUPLED = (0.25, 0.5, 1.0)  # tried shares of the coupling: K_obj need not be most extreme at the full one
 
 
@@ -72,6 +73,7 @@ def evaluate(
     reference: int | None = None,
     level: float = 0.95,
     coupling: np.ndarray | None = None,
+    overload_force: float = inf,
 ) -> Grasp:
     """K_obj of one sample.
 
@@ -89,6 +91,8 @@ def evaluate(
         Largest displacement of a pad by the force on another, over that by the same force on itself, in the
         order of `readings.element`; the object's is taken to lie between zero and this. Without it the pads
         are taken to press on separate springs.
+    overload_force : float, optional
+        N on one element, the most that its stop takes: what passes it is noted.
 
     Returns
     -------
@@ -148,6 +152,7 @@ def evaluate(
             "enter"
         )
     notes += _strays(readings.element, signal)
+    notes += _wrong_forces(readings.load[touching], signal, calibration, slopes, noise, overload_force)
     if widened > 1:
         notes.append(
             f"the elements disagree beyond their noise (p {p:.1g}): combined interval widened "
@@ -265,6 +270,34 @@ def _strays(element: np.ndarray, signal: np.ndarray) -> list[str]:
             notes.append(
                 f"element {number} does not follow the approach of the others: late contact, a limit of "
                 "the read-out, or a bad gauge"
+            )
+    return notes
+
+
+def _wrong_forces(
+    load: np.ndarray, signal: np.ndarray, calibration: Sensitivity, slopes: Slopes, noise: float, most: float
+) -> list[str]:
+    """A note where elements' forces fall as the load grows, and one where they pass `most` (N): by how much
+    they rise from the least load to the largest, K/K_v times the signal's slope over the load. K_obj goes by
+    ratios and shows neither.
+    """
+    away, span = load - load.mean(), float(np.ptp(load))
+    if not span:
+        return []
+    rows = [_row(calibration, int(n)) for n in slopes.element]
+    per_signal = calibration.stiffness[rows] / calibration.signal_per_deflection[rows] * span / (away @ away)
+    rise, error = per_signal * (signal @ away), np.abs(per_signal) * noise * (away @ away) ** 0.5
+    notes = []
+    for wrong, what in (
+        (rise < -SURELY * error, "falls: are signal and calibration of one sign?"),
+        (rise > most, f"rises beyond the design's overload force of {most:g} N: are the units right?"),
+    ):
+        if wrong.any():
+            worst = int(np.argmax(np.where(wrong, np.abs(rise), -inf)))
+            numbers = ", ".join(map(str, slopes.element[wrong]))
+            notes.append(
+                f"with {span:.4g} N more load the force on element {numbers} {what} "
+                f"(no. {slopes.element[worst]}: {rise[worst]:.3g} N)"
             )
     return notes
 

@@ -9,17 +9,11 @@ from typing import Any
 from tactcad.design.tree import Design
 
 
-def stiffness_factor(design: Design) -> float | None:
-    """Stiffness with the table's Young's modulus over that with the design's: the ratio of the moduli, since
-    the elements are linear; None where the design has the table's."""
-    return next((d.table / d.value for d in design.differences if d.name == "youngs_modulus"), None)
-
-
 def lines(design: Design, stiffness: Sequence[float]) -> list[str]:
     """A line for each property that differs, with its source; for Young's modulus also the largest and the
     smallest stiffness (N/mm) with either modulus."""
     differing = [f"material: {d}" + (f" ({d.origin})" if d.origin else "") for d in design.differences]
-    factor = stiffness_factor(design)
+    factor = design.stiffness_factor
     if factor is not None:
         most, least = max(stiffness), min(stiffness)
         differing.append(
@@ -36,5 +30,5 @@ def record(design: Design) -> dict[str, Any]:
         {"property": d.name, "value": d.value, "table": d.table, "relative": d.relative, "origin": d.origin}
         for d in design.differences
     ]
-    factor = stiffness_factor(design)
+    factor = design.stiffness_factor
     return {"material_differences": differences} | ({"stiffness_factor": factor} if factor else {})

@@ -9,9 +9,10 @@ from typing import TypeVar
 
 import numpy as np
 
+from tactcad.design.materials import modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design, Tolerance
-from tactcad.lab import material_text, pads
+from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
@@ -57,6 +58,7 @@ class ArrayModel:
     power: Power
     tolerance: Tolerance
     stiffness_factor: float  # of the material's own modulus over the design's
+    modulus_per_kelvin: float  # 1/K, by which the modulus falls
     rig: Rig
 
     def rows(self, number: np.ndarray) -> np.ndarray:
@@ -96,7 +98,8 @@ def from_design(design: Design) -> ArrayModel:
             readout.period,
         ),
         design.tolerance,
-        material_text.stiffness_factor(design) or 1.0,
+        design.stiffness_factor or 1.0,
+        modulus_per_kelvin(design.material.alloy),
         Rig(
             calibration.load_cell_stiffness,
             calibration.load_cell_accuracy,

@@ -12,7 +12,6 @@ from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.budget_effect import BudgetPair, Effect
 from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
-MODULUS_PER_KELVIN = 4.5e-4  # aluminium, dlnE/dT between 0 and 50 C; handbooks give 4 to 5e-4
 ROOM_SWING = 5.0  # K; hardware's own figure
 CLOSED_FORM_ERROR = 0.0035  # goal for the closed forms against finite elements
 SHEET_MEASURED = 0.01  # mm, half-width of a micrometer's reading of the sheet
@@ -78,7 +77,7 @@ def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     """Effects that a computed K leaves out."""
     width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
     gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
-    warm = MODULUS_PER_KELVIN * ROOM_SWING
+    warm = array.modulus_per_kelvin * ROOM_SWING
     other = abs(log(array.stiffness_factor))
     error = CLOSED_FORM_ERROR
     return [
@@ -118,7 +117,7 @@ def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
         ),
         Effect(
             "Young's modulus with temperature",
-            f"{ROOM_SWING:g} K at {MODULUS_PER_KELVIN:g} 1/K",
+            f"{ROOM_SWING:g} K at {array.modulus_per_kelvin:g} 1/K",
             warm,
             warm,
             pair.together(warm, warm),
