@@ -12,6 +12,8 @@ from variants import variant
 
 from tactcad.drawing import guide
 from tactcad.drawing.extent import box_corners, part_box, placed
+from tactcad.drawing.layout_check import layout_faults
+from tactcad.drawing.sensing_face import face_map
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
@@ -197,6 +199,12 @@ def test_the_map_shows_every_element_where_it_stands(case):
         title = re.search(r"<h2>(?:\d+\. )?(.*?)</h2>", section)
         handles = title and title[1] in ("Gauges", "Stack", "Coplanar pads", "Hold the stop plate down")
         assert bool(handles) == ("sensing-face.svg" in section)
+
+
+@pytest.mark.parametrize("length", [1, 5, 25, 100])
+def test_nothing_on_the_map_covers_its_texts(length):
+    scene = make_scene(variant({"array.row_arms": [[4.0] * length, [5.0] * length]}), "array")
+    assert [fault for fault in layout_faults(face_map(scene, "x")) if " over " in fault] == []
 
 
 def test_an_exploded_stack_lies_open(case):
