@@ -159,13 +159,12 @@ def test_the_map_shows_every_element_where_it_stands(case):
         e.text.split(" ")[0].strip(",:"): (float(e.get("x")), float(e.get("y")) - 1.25)
         for e in root.iter("{http://www.w3.org/2000/svg}text")
     }
-    pads = []
+    pads, outlines = [], []
     for e in root.iter("{http://www.w3.org/2000/svg}path"):
-        points = np.array(
-            [[float(v) for v in pair.split(",")] for pair in re.findall(r"[\d.]+,[\d.]+", e.get("d"))]
-        )
-        if e.get("fill") == "#000000" and len(points) == 4:
-            pads.append(points.mean(axis=0))
+        pairs = re.findall(r"[\d.]+,[\d.]+", e.get("d"))
+        points = np.array([[float(v) for v in pair.split(",")] for pair in pairs])
+        if len(points) == 4:
+            (pads if e.get("fill") else outlines).append(points.mean(axis=0))
     at = {p.designator: p for p in scene.placements}
     elements = [d for d in at if re.fullmatch(r"E\d+", d)]
     middles = {}
@@ -187,6 +186,8 @@ def test_the_map_shows_every_element_where_it_stands(case):
     for d in elements:
         here = f * middles[d] + shift
         assert np.abs(drawn - here).max(axis=1).min() < 0.01
+        body = f * box(at[d])[:, :2].mean(axis=0) + shift
+        assert np.abs(np.array(outlines) - body).max(axis=1).min() < 0.01
         if d in texts:
             x, y = texts[d]
             assert abs(y - here[1]) < 0.5, d
