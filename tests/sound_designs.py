@@ -153,7 +153,8 @@ def _hinge(d: Draw) -> None:
     t = d.number("element.hinge_thickness")
     r = d.number("element.fillet_radius", CORNER, 40 / notches)
     # at least as long as a third of its thickness: of a shorter one the roots turn more than the leaf
-    l = d.number("element.hinge_length", max(2 * r, CUT, t / 3))
+    # and of a slot from both sides a gauge finds room on the floor
+    l = d.number("element.hinge_length", max(2 * r + (0.0 if sides == "one" else 0.5), CUT, t / 3))
     h = d.number("element.arm_height", max(WALL, t + notches * r) + 0.05, d.highest)
     # the stop plate clears the root of the ledge, and reaches to the set screws and the outermost ledge
     widest = min(0.3 + (d.m.d - d.m.set_point) / 2, d.table["array.spacer"] + d.table["sheet.thickness"] / 2)
@@ -173,7 +174,8 @@ def _arms(d: Draw, rows: list[int]) -> None:
     # gauge and leads beside it stay off the object
     out = LEAD + (d.number("gauge.grid_height") if not d.two else d.rise)
     d.number("element.pad_height", max(root, out))
-    carrier = d.number("gauge.carrier_arm_side", high=99 - pad - root)
+    d.carrier_most = d.l / 2 - d.r if d.two else 99 - pad - root
+    carrier = d.number("gauge.carrier_arm_side", high=d.carrier_most)
     grid = d.number("gauge.grid_length", high=min(d.l, 2 * carrier))
     sheet = d.table["sheet.thickness"]
     d.number("gauge.grid_width", high=d.number("gauge.carrier_width", 0.02, sheet))
@@ -204,7 +206,7 @@ def _overrides(d: Draw) -> None:
         own = f"element.override.{n}"
         t = d.put(f"{own}.hinge_thickness", d.between(max(0.005, d.t / 2), d.t))
         r = d.put(f"{own}.fillet_radius", d.between(CORNER, d.r))
-        d.put(f"{own}.hinge_length", d.between(max(2 * r, CUT, 0.7 * d.l, d.table["gauge.grid_length"]), d.l))
+        d.put(f"{own}.hinge_length", d.l if d.two else d.between(max(2 * r, CUT, 0.7 * d.l), d.l))
         if not d.two:  # two-sided bodies of another arm height would have their ledge in another plane
             d.put(f"{own}.arm_height", d.between(max(WALL, t + r, d.h - 0.1) + 0.01, d.h))
 
@@ -345,7 +347,7 @@ def _clamp(d: Draw) -> None:
     start = d.number(
         "element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01
     )
-    d.number("gauge.carrier_body_side", d.carrier_least, seat + 0.35 * d.l + start)
+    d.number("gauge.carrier_body_side", d.carrier_least, min(d.carrier_most, seat + 0.35 * d.l + start))
 
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from variants import variant
+from variants import IN_SLOT, variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
@@ -29,21 +29,15 @@ from tactcad.scenes import make_scene, scene_names
 FILE = MadeFrom("dxf/x.dxf", "0" * 64)
 DESIGNS = {
     "as shipped": {},
-    "slot from both sides": {"element.sides": "two"},
+    "slot from both sides": {**IN_SLOT, "element.sides": "two"},
     "body thicker than the arm": {
+        **IN_SLOT,
         "element.sides": "two",
         "element.body_height": 4.0,
         "element.pad_height": 2.5,
     },
     "one row, with blanks": {"array.row_arms": [[4, 7]]},
     "full round": {"element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]]},
-    "full rounds from both sides": {
-        "element.sides": "two",
-        "element.hinge_length": 0.6,
-        "element.fillet_radius": 0.3,
-        "array.row_arms": [[5], [6]],
-        "calibration.travel": 0.1,
-    },
     "another hinge for one element": {
         "array.row_arms": [[4, 7], [8, 5]],
         "element.override": {"2": {"hinge_thickness": 0.3, "hinge_length": 1.0}},

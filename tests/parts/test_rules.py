@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
-from variants import DROP, ORIGIN, table, variant
+from variants import DROP, IN_SLOT, ORIGIN, table, variant
 
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
@@ -31,7 +31,7 @@ THIN = {
 }
 ONE = {"array.row_arms": [[4.0]]}
 FIFTY_A_ROW = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
-TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
+TWO_SIDED = {**ONE, **IN_SLOT, "element.sides": "two", "element.body_height": 3.6}
 
 # rule -> designs that break it alone: what is changed, and the field that the message points at
 WITNESSES = {
@@ -104,6 +104,10 @@ WITNESSES = {
         ({"gauge.carrier_arm_side": 1.71}, "gauge.carrier_arm_side"),
         ({"gauge.carrier_body_side": 4.1}, "gauge.carrier_body_side"),
         ({**TWO_SIDED, "gauge.grid_length": 0.9}, "gauge.grid_length"),
+    ],
+    "gauge_lies_in_slot": [
+        ({**TWO_SIDED, "gauge.carrier_arm_side": 0.15}, "element.sides"),
+        ({**TWO_SIDED, "gauge.carrier_body_side": 1.0}, "element.sides"),
     ],
     "arms_clear_neighbours": [
         ({"array.spacer": 0.06, "array.pitch": 3.06, "tolerance.sheet_thickness": 0.01}, "array.spacer"),
