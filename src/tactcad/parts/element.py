@@ -51,7 +51,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
         notes=(
-            f"wire-cut in at least {least_passes(allowed.hinge_thickness)}, both hinge faces skimmed",
+            f"wire-cut in at least {least_passes(design.tolerance.hinge_thickness)}, both hinge faces skimmed",
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
             *material_notes(design),
