@@ -127,12 +127,14 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits. H7 of 3 mm is +0.010/0 (ISO
-    286-2)."""
-    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: \+([\d.]+)/0)?( H7)?", text)
+    """The number that a dimension's text states, the middle of its limits; a hole for a pressed pin is modelled as
+    the pin, m6 of 3 mm (ISO 286-2: +0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
+    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?", text)
     assert match, text
-    assert not match[3] or match[1] == "3"
-    return float(match[1]) + (float(match[2]) / 2 if match[2] else 0.005 if match[3] else 0.0)
+    if not match[2]:
+        return float(match[1])
+    size, upper, lower = map(float, match.groups())
+    return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 
 
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):

@@ -41,6 +41,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
 
         gap = stop_gap(layout, place)
+    passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
     return Part(
         part_no=element_number(design, place),
@@ -51,7 +52,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
         notes=(
-            f"wire-cut in at least {least_passes(design.tolerance.hinge_thickness)}, both hinge faces skimmed",
+            f"wire-cut in at least {passes}, both hinge faces skimmed",
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
             *material_notes(design),
