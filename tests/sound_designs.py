@@ -225,7 +225,7 @@ def _loads(d: Draw) -> None:
     bend = 2 / factor * (max(d.l - 2 * d.r, 0) + sqrt(d.r * d.t)) / d.t
     room = d.rise - 0.2929 * d.corner - 0.005
     open_slot = min(0.3 * d.l * least / d.h, room)
-    low = 2 * 0.02 / (yielding * bend * least)
+    low = 2 * 0.04 / (yielding * bend * least)
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", "drawn")  # a label of its own: its values are nobody else's
     ratio = d.between(min(max(low, min(high, 3e-4), 1e-5), 0.5), min(max(high, 1e-5), 0.5))
@@ -257,7 +257,7 @@ def _loads(d: Draw) -> None:
     if closest > LEGAL["array.row_pitch"].high:
         _one_row(d)
     d.number("array.row_pitch", closest, 2.8 * d.widest_pad - pad)
-    if d.once_in(5):
+    if gap > 0.04 and d.once_in(5):
         arm = d.choice(*d.arms[0])
         d.put("stop.gaps", {repr(arm): d.between(2 * tolerance, 4 * tolerance)})
     d.number("tolerance.sheet_thickness", high=d.table["array.spacer"] - 0.0301)

@@ -127,13 +127,16 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits; a hole for a pressed pin is modelled as
-    the pin, m6 of 3 mm (ISO 286-2: +0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
-    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?", text)
+    """The number that a dimension's text states, the middle of its limits (H7 of 3 mm is +0.010/0, ISO 286-2);
+    a pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
+    match = re.fullmatch(
+        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7)?", text
+    )
     assert match, text
     if not match[2]:
-        return float(match[1])
-    size, upper, lower = map(float, match.groups())
+        assert not match[4] or match[1] == "3"
+        return float(match[1]) + (0.005 if match[4] else 0.0)
+    size, upper, lower = map(float, match.groups()[:3])
     return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 
 
