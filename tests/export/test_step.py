@@ -212,8 +212,8 @@ SCENE_TAMPERING = {
 
 @pytest.mark.parametrize("name", SCENE_TAMPERING)
 def test_a_tampered_assembly_is_not_let_out(name, macro_scene, macro_shapes, monkeypatch):
-    write = step._written
-    monkeypatch.setattr(step, "_written", lambda *args: SCENE_TAMPERING[name](write(*args)))
+    write = step.written
+    monkeypatch.setattr(step, "written", lambda *args: SCENE_TAMPERING[name](write(*args)))
     with pytest.raises(CheckFailure):
         step.scene_step(macro_scene, macro_shapes, HEADER)
 

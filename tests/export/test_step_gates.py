@@ -25,7 +25,7 @@ def written(macro_scene, macro_shapes):
 
 def test_a_good_file_passes(written):
     part, data = written
-    step._check_part(data, part)
+    step.check_part(data, step.read_assembly(data), part)
     assert step.read_assembly(data).name == part.part_no
 
 
@@ -52,13 +52,13 @@ def test_two_shapes_beside_each_other_are_no_assembly(tmp_path):
 def test_a_part_file_has_its_entities_once(entity, found, written):
     part, data = written
     with pytest.raises(CheckFailure, match=f"has {found} {entity}, not {found - 1}"):
-        step._check_part(data + f"\n/* #1={entity}( */".encode(), part)
+        step.check_part(data + f"\n/* #1={entity}( */".encode(), step.read_assembly(data), part)
 
 
 def test_a_part_file_bears_its_number(written):
     part, data = written
     with pytest.raises(CheckFailure, match=f"reads back as '{part.part_no}', valid: True"):
-        step._check_part(data, replace(part, part_no="another"))
+        step.check_part(data, step.read_assembly(data), replace(part, part_no="another"))
 
 
 def test_a_solid_is_as_large_as_its_description(written):

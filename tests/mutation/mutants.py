@@ -56,8 +56,9 @@ NO_GATES = {
     "_own_folder",  # another export takes too long
     "turn",  # somebody wrote to the earlier folder meanwhile
     "changes_against",  # a golden file that cannot be read
-    "_written",  # the kernel says itself that it failed
+    "written",  # the kernel says itself that it failed
     "all_written",  # a process was killed
+    "made_apart",  # a process was killed
     "part_plan",  # a part that has no sheet
 }
 # Modules of export/drawing/ that hold a written sheet against its model; the others refuse what cannot be

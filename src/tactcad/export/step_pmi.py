@@ -108,7 +108,7 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     data = written(document, header, AP242)
     read = read_document(data)
     check_part(data, assembly_in(read), part)
-    _check(part, meant, _annotations(read), DATUM.findall(data.decode("latin-1")))
+    _check_limits(part, meant, _annotations(read), DATUM.findall(data.decode("latin-1")))
     return data
 
 
@@ -225,7 +225,7 @@ def _text(text: str) -> TCollection_HAsciiString:
 # --- reading back ---
 
 
-def _check(
+def _check_limits(
     part: Part, meant: dict[str, Annotation], read: Sequence[Annotation], letters: Sequence[str]
 ) -> None:
     """Raise CheckFailure where a limit is missing or otherwise, or one is there that the part does not have.

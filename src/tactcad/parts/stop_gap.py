@@ -98,7 +98,7 @@ def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -
         place.arm,
         design.material.yield_strength / design.rating.deflection_factor,
         design.rating.overload_force,
-        design.stop.tolerance,
+        2.0 * design.stop.tolerance + seat(layout) + STEP_MM,
         layout.stop_give if give is None else give,
     )
 
@@ -119,7 +119,7 @@ def _limit(
     arm: float,
     stress: float,
     overload: float,
-    tolerance: float,
+    narrowest: float,
     give: float,
 ) -> StopLimit:
     """`stop_limit` of the section with these parameters, whose fillet may have `stress` (MPa)."""
@@ -130,6 +130,6 @@ def _limit(
     rated = stress / strain.stress_beyond_the_fit(section, 1.0)
     closing = largest_closing_force(section, K, length, give, overload, rated)
     tip = tip_compliance(section, K, length)
-    narrow = (2.0 * tolerance + STEP_MM) / tip
+    narrow = narrowest / tip
     most = largest_overload(section, K, length, give, narrow, rated)
     return StopLimit(float(closing * tip), float(most))
