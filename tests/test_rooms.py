@@ -43,6 +43,7 @@ NEED_SOLIDS = {
     "tactcad.drawing.hidden_lines",
     "tactcad.drawing.picture",
     "tactcad.export.step_file",
+    "tactcad.export.step_pmi",
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.

@@ -316,6 +316,7 @@ TAMPERED = {
     "a nominal size": lambda d: d.replace(b"POSITIVE_LENGTH_MEASURE(10.)", b"POSITIVE_LENGTH_MEASURE(11.)"),
     "a zone": lambda d: d.replace(b"LENGTH_MEASURE(5.E-02)", b"LENGTH_MEASURE(6.E-02)"),
     "a datum's letter": lambda d: d.replace(b",.F.,'A')", b",.F.,'C')"),
+    "the part": lambda d: d.replace(b"PRODUCT('P-1','P-1'", b"PRODUCT('P-2','P-2'"),
     "a symbol": lambda d: d.replace(b"POSITION_TOLERANCE", b"PARALLELISM_TOLERANCE"),
     "a face": lambda d: re.sub(
         rb"(GEOMETRIC_ITEM_SPECIFIC_USAGE\('length','',#\d+,#\d+,)#\d+", rb"\1" + _a_face(d), d, count=1
@@ -348,6 +349,20 @@ def test_a_model_that_reads_back_otherwise_is_refused(what, monkeypatch):
     monkeypatch.setattr(step_pmi, "written", tampered)
     with pytest.raises(CheckFailure, match="P-1: "):
         model(part)
+
+
+def test_a_limit_too_many_is_refused(monkeypatch):
+    read = step_pmi._annotations
+    monkeypatch.setattr(step_pmi, "_annotations", lambda document: read(document) * 2)
+    with pytest.raises(CheckFailure, match="P-1: the AP242 model has 1 limits too many"):
+        model(plate(characteristics=(within("thickness", 5, 0.1, between=FACES),)))
+
+
+def test_a_lone_datum_of_another_letter_is_refused(monkeypatch):
+    write = step_pmi.written
+    monkeypatch.setattr(step_pmi, "written", lambda *a: write(*a).replace(b",.F.,'A')", b",.F.,'C')"))
+    with pytest.raises(CheckFailure, match="P-1: .* datums C instead of A"):
+        model(plate(datums=(DatumFeature("A", "bore"),)))
 
 
 def crash(*_) -> bytes:

@@ -49,7 +49,7 @@ SPELT_OUT = {
 # Functions that make findings under a name that they are given.
 PASS_ON = {"Finding", "fail", "flag", "at_least", "at_most", "_finding", "_pressed", "_thin"}
 GATE = re.compile(
-    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_assembly$"
+    r"^_?check_|(?<!without_)faults?$|^_compare_box$|^_measured$|^_short_or_double$|^_differences$|^accept$|^read_document$|^assembly_in$"
 )
 # Functions of export/ that raise CheckFailure and are no gates.
 NO_GATES = {
@@ -59,6 +59,7 @@ NO_GATES = {
     "written",  # the kernel says itself that it failed
     "all_written",  # a process was killed
     "made_apart",  # a process was killed
+    "_faces",  # a feature that other features have cut away
     "part_plan",  # a part that has no sheet
 }
 # Modules of export/drawing/ that hold a written sheet against its model; the others refuse what cannot be
@@ -315,7 +316,8 @@ CALLERS = {
     "export/products.py": r"^_compare_box$",
     "export/shapes.py": r"^picture\.check_",
     "export/dxf.py": r"^check_dxf$",
-    "export/step_file.py": r"^_check_(part|scene)$",
+    "export/step_file.py": r"^_?check_(part|scene)$",
+    "export/step_pmi.py": r"^_?check_(part|limits)$",
     "drawing/part_sheet.py": r"_faults$",
     "drawing/assembly_file.py": r"_faults$",
     "release/make.py": r"^check_archive$|_faults$",

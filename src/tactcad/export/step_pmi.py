@@ -32,7 +32,7 @@ from tactcad.parts.description import Part
 from tactcad.parts.limits import Characteristic, Geometric
 from tactcad.parts.surface_pieces import Piece, measured, pieces
 from tactcad.solids.bytes import from_bytes
-from tactcad.solids.faces import Faces
+from tactcad.solids.faces import FaceFinder
 from tactcad.solids.occt import TDF_LabelSequence
 
 from .step_file import add_prototype, assembly_in, check_part, new_document, read_document, written
@@ -100,7 +100,7 @@ def part_step_pmi(part: Part, shape: bytes, header: Header) -> bytes:
     solid = _without_locations(from_bytes(shape))
     document, tool = new_document()
     label = add_prototype(document, tool, part, solid)
-    faces = Faces(solid)
+    faces = FaceFinder(solid)
     meant = {c.name: _dimension(part, c, faces) for c in part.characteristics}
     for g in part.geometric:
         meant[g.name] = _tolerance(part, g, faces)
@@ -120,7 +120,7 @@ def _without_locations(solid: TopoDS_Shape) -> TopoDS_Shape:
     return tool.GetResult()
 
 
-def _dimension(part: Part, c: Characteristic, faces: Faces) -> Annotation:
+def _dimension(part: Part, c: Characteristic, faces: FaceFinder) -> Annotation:
     on = measured(part, c)
     plus, minus = round(c.upper - c.nominal, DIGITS), round(c.nominal - c.lower, DIGITS)
     note = [c.name, *(["key characteristic"] if c.key else [])]
@@ -134,7 +134,7 @@ def _dimension(part: Part, c: Characteristic, faces: Faces) -> Annotation:
     return Annotation(KINDS[on.kind], (", ".join(note),), values, sides)
 
 
-def _tolerance(part: Part, g: Geometric, faces: Faces) -> Annotation:
+def _tolerance(part: Part, g: Geometric, faces: FaceFinder) -> Annotation:
     features = _faces(part, g.name, [p for f in g.features for p in pieces(part, f)], faces)
     standing = {d.letter: d.feature for d in part.datums}
     datums = (_faces(part, f"datum {x}", pieces(part, standing[x]), faces) for x in g.datums)
@@ -142,7 +142,7 @@ def _tolerance(part: Part, g: Geometric, faces: Faces) -> Annotation:
     return Annotation(SYMBOLS[g.symbol], text, (g.zone,), (features, *datums))
 
 
-def _faces(part: Part, name: str, some: Iterable[Piece], faces: Faces) -> Shapes:
+def _faces(part: Part, name: str, some: Iterable[Piece], faces: FaceFinder) -> Shapes:
     """The faces on these pieces of surface, each of which must have left one."""
     found = [faces.on(piece) for piece in some]
     if not found or not all(found):
@@ -154,7 +154,11 @@ def _faces(part: Part, name: str, some: Iterable[Piece], faces: Faces) -> Shapes
 
 
 def _annotate(
-    document: TDocStd_Document, part_label: TDF_Label, part: Part, meant: dict[str, Annotation], faces: Faces
+    document: TDocStd_Document,
+    part_label: TDF_Label,
+    part: Part,
+    meant: dict[str, Annotation],
+    faces: FaceFinder,
 ) -> None:
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())

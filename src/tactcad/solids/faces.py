@@ -16,7 +16,7 @@ from .explore import subshapes
 from .occt import as_edge, as_face
 
 
-class Faces:
+class FaceFinder:
     """The faces of a solid, each with points all over it: one inside, and three on every edge."""
 
     def __init__(self, solid: TopoDS_Shape) -> None:
