@@ -127,8 +127,8 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits (H7 of 3 mm is +0.010/0, ISO 286-2);
-    a pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
+    """The number that a dimension's text states, the middle of its limits (H7 of 3 mm is +0.010/0, ISO 286).
+    A pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
     match = re.fullmatch(
         r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7)?", text
     )
