@@ -22,7 +22,8 @@ from tactcad.drawing.notes import MadeFrom
 from tactcad.drawing.part_sheet import part_plan
 from tactcad.drawing.prism import prism_plan
 from tactcad.drawing.sheet_plan import Dimension, number
-from tactcad.parts.description import Characteristic, Extrusion, Hole, Material, Part
+from tactcad.parts.description import Extrusion, Hole, Material, Part
+from tactcad.parts.limits import FACES, Characteristic
 from tactcad.parts.rules import refuse_broken
 from tactcad.scenes import make_scene, scene_names
 
@@ -233,7 +234,7 @@ def block(*features, characteristics=(), outer=None) -> Part:
 
 
 def test_a_characteristic_without_a_dimension_is_refused():
-    odd = Characteristic("length of nothing", 3.0, 3.1, 2.9, key=True)
+    odd = Characteristic("length of nothing", 3.0, 3.1, 2.9, key=True, between=FACES)
     with pytest.raises(CheckFailure, match="length of nothing"):
         prism_plan(block(characteristics=(odd,)), ())
 

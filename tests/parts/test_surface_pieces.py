@@ -81,7 +81,6 @@ def test_what_a_dimension_stands_on(size, between, kind, counts):
         (5.0, ("left edge", "upper edge")),
         (1.0, ("left edge", "slanted")),
         (3.0, ("left edge",)),
-        (3.0, ()),
     ],
 )
 def test_a_size_that_is_not_there(size, between):

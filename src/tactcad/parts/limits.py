@@ -87,6 +87,8 @@ def contradictions(
     for c in characteristics:
         if c.lower > c.upper:
             yield f"{c.name}: lower limit {c.lower:g} above the upper one, {c.upper:g}; legal: lower <= upper"
+        if not c.between:
+            yield f"{c.name}: stands on no feature; legal: {known}"
         for feature in (f for f in c.between if f not in features):
             yield f"{c.name}: the part has no feature {feature!r}; legal: {known}"
     letters = [d.letter for d in datums]

@@ -183,7 +183,7 @@ def measured(part: Part, c: Characteristic) -> Measured:
     Raises
     ------
     CheckFailure
-        Where it names no features, or these have no such size.
+        Where its features have no such size.
     """
     groups = [pieces(part, feature) for feature in c.between]
     if len(groups) == 1:
@@ -191,7 +191,7 @@ def measured(part: Part, c: Characteristic) -> Measured:
         sizes = {p.diameter for p in groups[0]}
         if len(sizes) == 1 and None not in sizes:
             return Measured("diameter", tuple(groups[0]))
-    elif groups:
+    else:
         first, *others = groups
         if all(p.diameter and _is(p.diameter / 2, c.nominal) for p in (*first, *others[0])):
             return Measured("radius", (*first, *others[0]))
@@ -199,7 +199,7 @@ def measured(part: Part, c: Characteristic) -> Measured:
         if pairs:
             second = dict.fromkeys(piece for _, b in pairs for piece in b)
             return Measured("distance", tuple(dict.fromkeys(a for a, _ in pairs)), tuple(second))
-    where = " and ".join(c.between) or "no feature"
+    where = " and ".join(c.between)
     raise CheckFailure(
         f"{part.part_no}: {c.name} of {c.nominal:g} mm stands on {where}, which has no such size"
     )

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from tactcad.contour import circle
 
-from ..description import Characteristic, Extrusion, Part
+from ..description import Extrusion, Part
+from ..limits import FACES, within
 from ..part_materials import STAINLESS
 from .cart_layout import CartLayout
 
@@ -30,6 +31,6 @@ def axle_shim(rig: CartLayout) -> Part:
         body=Extrusion(circle((0, 0), outside), t, (circle((0, 0), bore),)),
         colour="#5c6066",
         finish="faces parallel within 0.01, burr-free",
-        characteristics=(Characteristic("thickness", t, t + SHIM_TOLERANCE, t - SHIM_TOLERANCE),),
+        characteristics=(within("thickness", t, SHIM_TOLERANCE, between=FACES),),
         spares=2,
     )
