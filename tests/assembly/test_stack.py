@@ -24,8 +24,8 @@ def lines(macro):
 
 
 def test_the_carriers_screws_by_hand(lines):
-    """The stack's length +-0.2, threads within 0.2 and holes within 0.1 at both ends: 0.2 + 0.2 + 0.1; an M3 in a
-    hole of 3.5 leaves just that."""
+    """The stack's length +-0.2, threads within 0.2 and holes within 0.1 at both ends: 0.2 + 0.2 + 0.1; an M3
+    in a hole of 3.5 leaves just that."""
     line = lines["carrier's screws enter the end plates"]
     assert (line.worst_low, line.worst_high) == pytest.approx((-0.5, 0.5))
     assert (line.requirement.lower, line.requirement.upper) == pytest.approx((-0.5, 0.5))
