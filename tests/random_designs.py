@@ -144,8 +144,8 @@ def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
     return "", names, [str(f) for f in failures if f not in shop]
 
 
-# Rules of the shop's file: a design may break them and be good for another shop. And limits that do not add up,
-# as most do not where tolerances are drawn over their whole ranges; tests/assembly draws designs with usual ones.
+# Rules of the shop's file: a design may break them and be good for another shop. And limits that do not add
+# up, as most where tolerances are drawn over their whole ranges; tests/assembly draws designs with usual ones.
 SHOP_RULES = frozenset({"inside corner", "slot width", "wall", "start hole", "assembly"})
 
 

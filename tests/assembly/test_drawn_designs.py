@@ -1,5 +1,5 @@
-"""Designs drawn by chance that every rule accepts, with usual tolerances: most go together, and the others are
-refused rightly."""
+"""Designs drawn by chance that every rule accepts, with usual tolerances: most go together, and the others
+are refused rightly."""
 
 import pytest
 from random_designs import as_toml, raw_table
@@ -13,7 +13,7 @@ SLIDE_FIT = {"2": 2.012, "2.5": 2.512, "3": 3.012, "4": 4.016, "5": 5.016}  # 4 
 
 
 def drawn(number, folder):
-    """The design of that draw with default tolerances; None where a rule refuses it, or none could be drawn."""
+    """That draw with default tolerances; None where a rule refuses it, or it cannot be drawn."""
     try:
         tree = raw_table(number, ROWS, 0.5)
     except (TypeError, ValueError):  # a rig that cannot be trimmed
@@ -56,8 +56,9 @@ def judged(wanted, first, folder):
     return kept
 
 
-def test_of_ten_nine_go_together(tmp_path):
-    assert judged(10, 20261122, tmp_path) >= 9
+def test_of_the_first_ten_eight_go_together(tmp_path):
+    """The small part of the night's forty, of which it has two of the four that do not."""
+    assert judged(10, 20261122, tmp_path) >= 8
 
 
 @pytest.mark.nightly
