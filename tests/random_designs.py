@@ -145,7 +145,7 @@ def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:
 
 
 # Rules of the shop's file: a design may break them and be good for another shop. And limits that do not add
-# up, as most where tolerances are drawn over their whole ranges; tests/assembly draws designs with usual ones.
+# up, as tolerances drawn over their whole ranges mostly do not; tests/assembly draws designs with usual ones.
 SHOP_RULES = frozenset({"inside corner", "slot width", "wall", "start hole", "assembly"})
 
 
