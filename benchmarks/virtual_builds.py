@@ -32,9 +32,7 @@ def row(elements: int) -> tuple[int, int, float]:
 
 
 def table() -> str:
-    lines = [
-        "| elements | arrays, each of normal, uniform, corners | s | arrays a second | s an element, relative |"
-    ]
+    lines = ["| elements | arrays, of three distributions | s | arrays a second | s an element, relative |"]
     lines.append("|---|---|---|---|---|")
     first = None
     for elements, count, seconds in map(row, SIZES):
