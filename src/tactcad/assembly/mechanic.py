@@ -96,8 +96,8 @@ class Assembled:
 
     @cached_property
     def pose(self) -> Array:
-        """The pins' height over the surface plate, their slopes along x and y, and by how much the worst pad
-        misses the plate."""
+        """Where the tapped plate stands over the surface plate: its height in the middle, its slopes along x
+        and y, as level as the pads allow, and by how much the worst pad misses."""
         points = np.column_stack([self.side * self.dowel_x, self.y])
         heights = self.made[PAD] - self._pin_at_elements("z")
         return nearest_pose(points, heights, self.play / 2)

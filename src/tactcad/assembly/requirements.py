@@ -11,7 +11,7 @@ import numpy as np
 
 from tactcad.parts.carrier import PLACE, carrier_clearance
 from tactcad.parts.end_plate import SCREWS
-from tactcad.parts.layout import LEAST_GAP, SUNK, Layout
+from tactcad.parts.layout import SUNK, Layout
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.library.screws import METRIC
 from tactcad.parts.stop_gap import stop_limit
@@ -19,7 +19,7 @@ from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
 from .screwed_joints import LENGTH, ScrewedJoint, joints
-from .variables import Array, DimensionLimits, array_variables, variable
+from .variables import STACK_LENGTH, Array, DimensionLimits, array_variables, variable
 
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
 # bears, for which 1.5 d of aluminium are usual; bought parts have threads in steel.
@@ -27,6 +27,9 @@ LEAST_ENGAGED, LEAST_IN_STEEL = 1.0, 0.6
 # Least diametral play of a sliding pin, and least interference of a pressed one, mm; chosen: what a plug
 # gauge tells from none.
 LEAST_PLAY = LEAST_PRESS = 0.002
+
+# Least space between neighbours, mm; chosen: twice what cut faces may stand out by burr and roughness.
+LEAST_BETWEEN = 0.02
 
 Value = Callable[[Assembled], Array]
 
@@ -85,7 +88,13 @@ def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> li
         Requirement(
             "gap between rows", "mm", gap - 2 * t.load_arm, gap + 2 * t.load_arm, lambda a: a.row_gaps
         ),
-        _sum("neighbours free", LEAST_GAP, inf, layout.spacer, (("spacer: thickness", 1.0),)),
+        _sum(
+            "neighbours free",
+            LEAST_BETWEEN,
+            inf,
+            layout.spacer,
+            (("spacer: thickness", 1.0), ("sheet: thickness", -1.0)),
+        ),
         Requirement("stop closes within the rated deflection", "mm", 0.0, inf, lambda a: limit - a.gaps),
         _carrier_mounts(layout, known),
         _set_screws_sunk(layout, known),
@@ -112,10 +121,8 @@ def _carrier_mounts(layout: Layout, known: dict[str, DimensionLimits]) -> Requir
         ("carrier: screw holes' places", PLACE),
     ):
         known.setdefault(name, variable(name, -zone / 2, zone / 2, 2))
-    n = float(layout.positions)
     terms = (
-        ("sheet: thickness", n),
-        ("spacer: thickness", n + 1.0),
+        (STACK_LENGTH, 1.0),
         ("end plates: carrier threads' places", 1.0),
         ("carrier: screw holes' places", 1.0),
     )

@@ -17,9 +17,11 @@ from tactcad.parts.library.fits import deviations, general
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 
-from .variables import DimensionLimits, variable
+from .variables import STACK_LENGTH, DimensionLimits, variable
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
+# What is stacked between the end plates: its length is held as a whole.
+STACKED = ("element", "spacer", "blank")
 # Product grade A: lengths of cap screws are js15 (ISO 4759-1:2000).
 LENGTH = "js15"
 
@@ -88,6 +90,9 @@ def _joint(
         for pierced, clearance in _pierced(scene, screw, tapped, length):
             if clearance.counterbore or not through:
                 through = f"through {_short(design, pierced)} "
+            if pierced.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED)):
+                terms[STACK_LENGTH] = -1.0
+                continue
             thick = _thickness(pierced.part, known)
             terms[thick] = terms.get(thick, 0.0) - 1.0
             if clearance.counterbore:
@@ -160,12 +165,9 @@ def _general(known: dict[str, DimensionLimits], name: str, size: float) -> str:
 
 def _thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
     """The variable of a part's thickness along its contour's axis: its own limits, or the general ones."""
-    own = next((c for c in part.characteristics if c.name in ("thickness", "sheet thickness")), None)
+    own = next((c for c in part.characteristics if c.name == "thickness"), None)
     if own is None:
         thickness = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
         return _general(known, f"{part.part_no}: thickness", thickness)
-    if own.name == "sheet thickness" or part.part_no.endswith("-blank"):
-        name = "sheet: thickness"
-    else:
-        name = "spacer: thickness" if part.part_no.endswith("-spacer") else f"{part.part_no}: thickness"
+    name = f"{part.part_no}: thickness"
     return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal))

@@ -13,11 +13,14 @@ from tactcad.parts.blank import blank, blank_ledge_zone
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.end_plate import end_plate
+from tactcad.parts.fasteners import STACK
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.spacer import spacer
 from tactcad.parts.stop_plate import stop_plate
 
+# The stack's length once its spacers are chosen to the measured sheet.
+STACK_LENGTH = "stack: length, spacers to suit"
 Array = NDArray[np.float64]
 Deviations = dict[str, Array]  # by variable: (arrays built, pieces) deviations from nominal
 
@@ -72,6 +75,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
         assert blank(layout).geometric  # the zone stands on its sheet
         yield variable("blank: ledge over the dowel hole", -half, half, len(layout.blanks()))
     yield _characteristic("spacer", spacer(layout), "thickness")
+    yield variable(STACK_LENGTH, -STACK, STACK)
     pins = 2 * len(layout.dowel_x)
     low, high = dowel_limits(d.clamp.dowel)
     yield variable("dowel pin: diameter", low - float(d.clamp.dowel), high - float(d.clamp.dowel), pins)

@@ -16,13 +16,12 @@ from tactcad.design.present import present
 
 from .description import Extrusion, Feature, Hole, Part
 from .end_plate import SCREWS
-from .fasteners import carrier_screw
+from .fasteners import STACK, carrier_screw
 from .layout import Layout
 from .library.screws import METRIC, counterbore_diameter
 from .limits import FACES, DatumFeature, Geometric
 from .plate import plate
 from .screw_holes import tapped_through
-from .spacer import SPACER_TOLERANCE
 
 
 def carrier(layout: Layout) -> Part:
@@ -83,12 +82,6 @@ FRAME = ("A", "B", "C")  # the datums that its holes stand from
 PLACE = 0.1
 
 
-def stack_grows(layout: Layout) -> float:
-    """By how much sheets and spacers at their limits change the stack's length, mm."""
-    n = layout.positions
-    return n * layout.design.tolerance.sheet_thickness + (n + 1) * SPACER_TOLERANCE
-
-
 def carrier_clearance(layout: Layout) -> float:
     """Diameter of the holes for the end plates' screws, mm.
 
@@ -96,7 +89,7 @@ def carrier_clearance(layout: Layout) -> float:
     allow; but no wider than leaves LEAST_RING of every head's face on the carrier.
     """
     m = METRIC[layout.design.clamp.screw]
-    wanted = m.d + stack_grows(layout) + SCREWS + PLACE
+    wanted = m.d + STACK + SCREWS + PLACE
     # (head - hole)/2 - (hole - d)/2 >= LEAST_RING
     widest = (m.head - HEAD_LESS + m.d) / 2 - LEAST_RING
     return max(m.clearance, min(floor(10 * widest + 1e-6), ceil(10 * wanted - 1e-6)) / 10)

@@ -97,7 +97,7 @@ HEAD_TOLERANCE = 0.03  # mm, of the head plate's dowel holes; chosen: reamed or 
 INNER = FACES[1]
 # Zones in mm; chosen: what a jig borer or wire holds in one clamping; of screw holes, half the clearance that
 # ISO 273 leaves an M3.
-HOLES, PAIR, SQUARE, SCREWS = 0.05, 0.01, 0.005, 0.2
+HOLES, PAIR, SQUARE, SCREWS = 0.03, 0.01, 0.003, 0.2
 
 
 def head_bore(layout: Layout) -> Characteristic:

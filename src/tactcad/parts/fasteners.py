@@ -7,6 +7,7 @@ from math import ceil
 
 from .layout import Layout
 from .library.dowels import dowel_lengths
+from .library.fits import deviations
 from .library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 
 # Least plate under a screw's head, and least grip of a dowel in each end plate, in mm: chosen, one
@@ -14,6 +15,11 @@ from .library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 LEAST_UNDER_HEAD = 2.5
 LEAST_GRIP = 3.0
 LEAST_UNDER_CARRIER_HEAD = 2.0
+
+
+# mm, plus and minus: spacers are cut from shim stock rolled to this, and as thick as the pitch leaves beside
+# the measured sheet, so that the stack is as long as drawn within STACK; chosen: shims come in steps of 0.05.
+SPACER_TOLERANCE, STACK = 0.01, 0.2
 
 
 @dataclass(frozen=True)
@@ -45,7 +51,9 @@ def clamping(layout: Layout) -> Clamping:
         # its thread
         engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
-        if LEAST_UNDER_HEAD <= web <= plate and engaged <= plate:
+        # at its longest, in the shortest stack, it still ends inside the plate
+        free = deviations("js15", length)[1] + STACK
+        if LEAST_UNDER_HEAD <= web <= plate and engaged + free <= plate:
             return Clamping(False, length, web, dowel)
     m = METRIC[d.screw]
     ends = m.nut_height + 2 * m.pitch

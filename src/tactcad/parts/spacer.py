@@ -11,10 +11,9 @@ from tactcad.contour import rectangle
 
 from .description import Extrusion, Part
 from .element import dowel_hole_limits, mounting_holes, sheet_material
+from .fasteners import SPACER_TOLERANCE, STACK
 from .layout import Layout
 from .limits import within
-
-SPACER_TOLERANCE = 0.01  # mm, plus and minus; chosen: shim stock is rolled to less
 
 
 def spacer(layout: Layout) -> Part:
@@ -30,6 +29,10 @@ def spacer(layout: Layout) -> Part:
             rectangle(layout.clamp_edge, z0, layout.rear_end, z1), layout.spacer, mounting_holes(layout)
         ),
         colour="#9aa4ae",
-        notes=("burr-free, flat faces as rolled",),
+        notes=(
+            "burr-free, flat faces as rolled",
+            f"thickness to suit: {d.array.pitch:g} less the measured thickness of the elements' sheet, "
+            f"{d.sheet.thickness:g} as drawn; the whole stack {layout.stack:g} +-{STACK:g}",
+        ),
         characteristics=(within("thickness", layout.spacer, SPACER_TOLERANCE), dowel_hole_limits(d)),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import floor, sqrt
+from math import floor, hypot, sqrt
 
 import numpy as np
 
@@ -12,8 +12,11 @@ from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload, tip_compliance
 
+from .end_plate import SQUARE
 from .hinge_section import own_parameters, shared_parameters
 from .layout import ElementPlace, HingeShape, Layout
+from .library.dowels import dowel_diameter
+from .stop_plate import STOP_PLATE_FLAT
 
 # Gaps are cut in steps of half their usual tolerance; below ten of them, finer.
 STEP_MM = 0.005
@@ -55,9 +58,17 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 
 
 def seat(layout: Layout) -> float:
-    """By how much the stop plate may lie above an element's own ledge at its stop land, mm: all other ledges
-    at their upper limit, this one at its lower, and half of that again where the plate leans."""
-    return round(3.0 * layout.design.tolerance.ledge, 9)
+    """By how much the stop plate may lie above an element's own ledge at its land, mm.
+
+    Other ledges at their upper limit, this one at its lower; the plate's flatness; and pads that stand off the
+    surface plate, here and there, once their dowels' play is used up by their heights and the pins' lean.
+    """
+    d = layout.design
+    t, h = d.tolerance, d.holes
+    play = h.dowel_hole + h.dowel_hole_upper / 2 - dowel_diameter(d.clamp.dowel)
+    lean = SQUARE / d.clamp.end_plate_thickness * layout.stack / 2
+    off = max(0.0, hypot(t.pad_height, lean) - play / 2)
+    return round(2.0 * t.ledge + STOP_PLATE_FLAT + 1.5 * off, 6)
 
 
 def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -> StopLimit:

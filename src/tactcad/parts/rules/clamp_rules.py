@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations, product
-from math import cos, hypot, pi
+from math import ceil, cos, degrees, hypot, pi
 
+from ..end_plate import HOLES
 from ..fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
 from ..finding import SAME, Finding
 from ..layout import BESIDE_SET_SCREW, CARRIER_EDGE, END_PLATE_WEB, HOLE_WEB, LEAST_GAP, SUNK, Layout
-from ..library.dowels import dowel_limits
+from ..library.dowels import dowel_diameter, dowel_limits
 from ..library.screws import (
     DRILL_REACH,
     METRIC,
@@ -259,3 +260,22 @@ def carrier_holes_apart(layout: Layout) -> Iterator[Finding]:
             offset,
             f"at most {most:g} mm",
         )
+
+
+@rule(after="stack_can_be_clamped")
+def tilt_covers_pads_and_dowels(layout: Layout) -> Iterator[Finding]:
+    """The carrier is as square to the pads as pads and dowel holes leave it, rows apart as they are."""
+    d = layout.design
+    play = d.holes.dowel_hole + d.holes.dowel_hole_upper / 2 - dowel_diameter(d.clamp.dowel)
+    high = max(0.0, d.tolerance.pad_height - play / 2)
+    spans = [2 * min(layout.dowel_x)] if len(d.array.row_arms) > 1 else []
+    spans += [(layout.positions - 1) * d.array.pitch] if layout.positions > 1 else []
+    off = [high / span for span in spans]
+    least = ceil(1e3 * degrees(hypot(HOLES / 2 / min(layout.dowel_x), max(off, default=0.0)))) / 1e3
+    yield from at_least(
+        "tolerance.tilt",
+        "less than dowel holes and pads leave over the distance of the rows",
+        d.tolerance.tilt,
+        least,
+        f"at least {least:g} degrees",
+    )
