@@ -56,7 +56,7 @@ DESIGNS = {
     "long arms": {"array.row_arms": [[40, 20], [6, 8]]},
     "longer than any screw": {"array.row_arms": [[4] * 12, [8] * 12]},
 }
-LONG = {"array.row_arms": [[4] * 100, [8] * 100]}
+LONG = {"array.row_arms": [[6] * 100, [8] * 100]}
 
 
 def plans(changes, base="macro-array", shortened=False):
@@ -133,12 +133,18 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits. H7 of 3 mm is +0.010/0 (ISO
-    286-2)."""
-    match = re.fullmatch(r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: \+([\d.]+)/0)?( H7)?", text)
+    """The size that a dimension's text stands for in the model: the middle of its limits.
+
+    H7 of 3 mm is +0.010/0 (ISO 286-2). A hole tighter than its size is modelled as the pin m6 that is pressed
+    in, +0.008/+0.002 at 3 mm.
+    """
+    match = re.fullmatch(
+        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-]?[\d.]+)/([+-]?[\d.]+))?( H7)?", text
+    )
     assert match, text
-    assert not match[3] or match[1] == "3"
-    return float(match[1]) + (float(match[2]) / 2 if match[2] else 0.005 if match[3] else 0.0)
+    upper, lower = (float(match[2]), float(match[3])) if match[2] else (0.01, 0.0) if match[4] else (0.0, 0.0)
+    assert upper >= 0 and not match[4] or match[1] == "3"
+    return float(match[1]) + (0.005 if upper < 0 else (upper + lower) / 2)
 
 
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):

@@ -18,8 +18,8 @@ from .keys import OUTER, Spot, Variable
 from .sheet_plan import Callout, Datum, Frame, View, seen
 from .window import clipped
 
-# Where along an edge a frame's leader may end; towards the ends for broken views.
-SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.02, 0.98)
+# Where along an edge a frame's leader may end; so near to its ends broken views show it, too.
+SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.008, 0.992)
 
 ASIDE = 60.0  # degrees from the normal that its leader may lie
 
@@ -48,7 +48,7 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
         datums = tuple(
             Datum(d.letter, *line, away) for d in part.datums for line, away in _lines(part, view, d.feature)
         )
-        callouts = list(view.callouts)
+        callouts = []
         # a view that shows all of the part's edge, not a detail of it
         names = [n for g in part.geometric for n in g.features if n not in framed and view.window is None]
         for name in dict.fromkeys(names):
@@ -58,7 +58,8 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
                 out = degrees(atan2(away[1], away[0]))
                 spans = ((out - ASIDE, out + ASIDE),) * len(spots)
                 callouts.append(Callout((), spots, spans=spans, frames=frames_of(part, (name,))))
-        marked.append(replace(view, datums=datums, callouts=tuple(callouts)))
+        # an edge's frame has less choice than the callout of equal holes: it is placed first
+        marked.append(replace(view, datums=datums, callouts=(*callouts, *view.callouts)))
     return tuple(marked)
 
 

@@ -129,7 +129,6 @@ def _with_stops(
     """One more dimension from the origin for every point that is not in line with one that has it, and does
     not follow from it."""
     stops = list(r.stops)
-    sketch.locates(origin, k)
     for c in points:
         if c is origin:
             continue
@@ -140,7 +139,7 @@ def _with_stops(
             continue
         row = Span(origin.level, c.level) if way > 0 else Span(c.level, origin.level)
         d = sketch.stating(c.states, (row,), plain=c.name)
-        d = replace(d, basic=sketch.locates(c, k) and d.characteristic is None)
+        d = replace(d, basic=d.characteristic is None and sketch.locates(origin, c, k))
         if sketch.new(d):
             sketch.known[k].append(c)
             stops.append((d, _foot(view, r.side, c)))

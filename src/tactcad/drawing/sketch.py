@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, product
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
+from tactcad.parts.limits import FACES
 
 from .boxes import bounds
 from .keys import Owner, Quantity, Spot, Variable
@@ -56,10 +57,12 @@ class Sketch:
         self.conventions: list[Measure] = []
         self.known: dict[int, list[Coordinate]] = {0: [], 1: [], 2: []}
         self.unstated = {c.name: c for c in part.characteristics}
-        # axis and coordinate of what has a position tolerance, and of that what no dimension locates yet
-        positioned = [f for g in part.geometric if g.symbol == "position" for f in g.features]
-        self.exact = {(k, _alike(self.values[v])) for k, v in places(part, positioned)}
-        self.unlocated = set(self.exact)
+        # (axis, coordinate) of datums, of what has a position tolerance, and what of it is not located
+        faces = {FACES[0]: 0.0, FACES[1]: part.extrusion.thickness}
+        self.bases = {(2, faces[d.feature]) for d in part.datums if d.feature in faces}
+        self.bases |= self._spots(d.feature for d in part.datums)
+        self.exact = self._spots(f for g in part.geometric if g.symbol == "position" for f in g.features)
+        self.unlocated = self.exact - self.bases
 
     def convention(self, row: Measure) -> None:
         self.conventions.append(row)
@@ -75,11 +78,16 @@ class Sketch:
         self.account.basis = before
         return False
 
-    def locates(self, c: Coordinate, k: int) -> bool:
-        """Whether something with a position tolerance stands there; from now on it is located."""
-        spot = (k, _alike(c.at[k]))
-        self.unlocated.discard(spot)
-        return spot in self.exact
+    def _spots(self, features: Iterable[str]) -> set[tuple[int, float]]:
+        return {(k, _alike(self.values[v])) for k, v in places(self.part, tuple(features))}
+
+    def locates(self, origin: Coordinate, c: Coordinate, k: int) -> bool:
+        """Whether a dimension along axis k locates something with a position tolerance from a datum."""
+        start, end = ((k, _alike(spot.at[k])) for spot in (origin, c))
+        if start not in self.bases or end not in self.exact:
+            return False
+        self.unlocated.discard(end)
+        return True
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
         """The dimension that states the characteristic of that name; a plain one where the part has none, or
@@ -120,7 +128,7 @@ def closed(sketch: Sketch, views: Sequence[View]) -> None:
         raise CheckFailure(f"drawings: {number}: {missing} dimensions are missing")
     if sketch.unlocated:
         open_ = ", ".join(f"{'xyz'[k]} = {at:g}" for k, at in sorted(sketch.unlocated))
-        raise CheckFailure(f"drawings: {number}: no basic dimension locates what is tolerated at {open_}")
+        raise CheckFailure(f"drawings: {number}: nothing locates {open_} from a datum")
     _marked_once(sketch.part, views)
 
 
