@@ -247,6 +247,7 @@ MACHINING = {
     "drill-floor": "0.7 mm under a blind hole",
     "counterbore": "0.7 mm left under a screw's head",
     "thread-depth": "a thread 3.03 diameters deep",
+    "tap-reach": "an M2 thread below a bore of 2.4 mm, 4 mm deep",
     "thread-run-out": "0.9 mm between full thread and drilled depth",
     "hole-wall": "a hole 0.7 mm from the side",
     "hole-web": "two holes 0.7 mm apart",

@@ -9,7 +9,7 @@ logarithm where that spans decades. What a shop can make bounds some of them: a 
 from __future__ import annotations
 
 from dataclasses import fields
-from math import ceil, cos, exp, floor, log, log10, pi, sqrt, tan
+from math import ceil, cos, degrees, exp, floor, hypot, log, log10, pi, sqrt, tan
 from random import Random
 from typing import Any
 
@@ -153,7 +153,8 @@ def _hinge(d: Draw) -> None:
     t = d.number("element.hinge_thickness")
     r = d.number("element.fillet_radius", CORNER, 40 / notches)
     # at least as long as a third of its thickness: of a shorter one the roots turn more than the leaf
-    l = d.number("element.hinge_length", max(2 * r, CUT, t / 3))
+    # and of a slot from both sides a gauge finds room on the floor
+    l = d.number("element.hinge_length", max(2 * r + (0.0 if sides == "one" else 0.5), CUT, t / 3))
     h = d.number("element.arm_height", max(WALL, t + notches * r) + 0.05, d.highest)
     # the stop plate clears the root of the ledge, and reaches to the set screws and the outermost ledge
     widest = min(0.3 + (d.m.d - d.m.set_point) / 2, d.table["array.spacer"] + d.table["sheet.thickness"] / 2)
@@ -173,7 +174,8 @@ def _arms(d: Draw, rows: list[int]) -> None:
     # gauge and leads beside it stay off the object
     out = LEAD + (d.number("gauge.grid_height") if not d.two else d.rise)
     d.number("element.pad_height", max(root, out))
-    carrier = d.number("gauge.carrier_arm_side", high=99 - pad - root)
+    d.carrier_most = d.l / 2 - d.r if d.two else 99 - pad - root
+    carrier = d.number("gauge.carrier_arm_side", high=d.carrier_most)
     grid = d.number("gauge.grid_length", high=min(d.l, 2 * carrier))
     sheet = d.table["sheet.thickness"]
     d.number("gauge.grid_width", high=d.number("gauge.carrier_width", 0.02, sheet))
@@ -204,7 +206,7 @@ def _overrides(d: Draw) -> None:
         own = f"element.override.{n}"
         t = d.put(f"{own}.hinge_thickness", d.between(max(0.005, d.t / 2), d.t))
         r = d.put(f"{own}.fillet_radius", d.between(CORNER, d.r))
-        d.put(f"{own}.hinge_length", d.between(max(2 * r, CUT, 0.7 * d.l, d.table["gauge.grid_length"]), d.l))
+        d.put(f"{own}.hinge_length", d.l if d.two else d.between(max(2 * r, CUT, 0.7 * d.l), d.l))
         if not d.two:  # two-sided bodies of another arm height would have their ledge in another plane
             d.put(f"{own}.arm_height", d.between(max(WALL, t + r, d.h - 0.1) + 0.01, d.h))
 
@@ -223,7 +225,7 @@ def _loads(d: Draw) -> None:
     bend = 2 / factor * (max(d.l - 2 * d.r, 0) + sqrt(d.r * d.t)) / d.t
     room = d.rise - 0.2929 * d.corner - 0.005
     open_slot = min(0.3 * d.l * least / d.h, room)
-    low = 2 * 0.02 / (yielding * bend * least)
+    low = 2 * 0.04 / (yielding * bend * least)
     high = max(0.5 * open_slot / (bend * least), low)
     d.put("material.alloy", "drawn")  # a label of its own: its values are nobody else's
     ratio = d.between(min(max(low, min(high, 3e-4), 1e-5), 0.5), min(max(high, 1e-5), 0.5))
@@ -244,6 +246,7 @@ def _loads(d: Draw) -> None:
     d.elastic = 0.2 * yielding * bend * factor * least * ratio  # mm of deflection that no hinge yields at
     d.room = gap = min(room, yielding * bend * least * ratio)
     tolerance = d.number("stop.tolerance", high=gap / 40)
+    d.number("tolerance.ledge", high=gap / 40)
     d.number("rating.overload_force", high=force * strength)
     # rows that stay apart when facing pads turn towards each other
     d.number("tolerance.hinge_length", high=d.l / 10)
@@ -254,7 +257,7 @@ def _loads(d: Draw) -> None:
     if closest > LEGAL["array.row_pitch"].high:
         _one_row(d)
     d.number("array.row_pitch", closest, 2.8 * d.widest_pad - pad)
-    if d.once_in(5):
+    if gap > 0.04 and d.once_in(5):
         arm = d.choice(*d.arms[0])
         d.put("stop.gaps", {repr(arm): d.between(2 * tolerance, 4 * tolerance)})
     d.number("tolerance.sheet_thickness", high=d.table["array.spacer"] - 0.0301)
@@ -289,7 +292,7 @@ def _clamp(d: Draw) -> None:
     reach = longest - thickness + 1
     top = min(d.ledge + 20 + reach, 100.0) - 0.01
     cone = m.tap_drill / 2 / tan(pi * 59 / 180)
-    over = max(counterbore, dowel) / 2 + 1 + 1.5 * m.d + 1 + 2 * m.pitch + cone
+    over = max(counterbore, dowel) / 2 + 1 + 1.5 * m.d + 1.5 + 2 * m.pitch + cone
 
     # holes in the rear bodies
     upper = d.number("holes.dowel_hole_upper", high=0.05)
@@ -344,7 +347,7 @@ def _clamp(d: Draw) -> None:
     start = d.number(
         "element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01
     )
-    d.number("gauge.carrier_body_side", d.carrier_least, seat + 0.35 * d.l + start)
+    d.number("gauge.carrier_body_side", d.carrier_least, min(d.carrier_most, seat + 0.35 * d.l + start))
 
     # plates
     drilled = DRILL_REACH * min(m.tap_drill, dowel)
@@ -360,12 +363,25 @@ def _clamp(d: Draw) -> None:
     # the end plate between the carrier's screws, under all the force: a tenth of the pads' tolerance
     high = d.table.get("clamp.end_plate_height", lowest - plate_bottom)
     bend = bends(2 * (edge + offset), d.table["clamp.end_plate_thickness"], high)
-    d.number("tolerance.pad_height", 10.5 * bend * d.table["rating.overload_force"])
+    # pads that stand off the surface plate take from the stops' gaps: a twentieth of these
+    d.most_pad = (hole + upper / 2 - pin) / 2 + d.room / 30
+    force = d.table["rating.overload_force"]
+    d.put("rating.overload_force", min(force, d.most_pad / (10.5 * bend)))
+    d.number("tolerance.pad_height", min(10.5 * bend * force, d.most_pad), d.most_pad)
+    d.number("tolerance.tilt", _least_tilt(d))
     for name in ("end_plate_margin", "carrier_margin"):
         d.number(f"clamp.{name}")
     # how far the pads stand from the middle
     d.far_x = (d.table["array.row_pitch"] + d.table["element.pad_length"]) / 2
     d.far_y = (stack - 2 * spacer) / 2
+
+
+def _least_tilt(d: Draw) -> float:
+    """Degrees that dowel holes and pads may leave the carrier off square."""
+    high = d.table["tolerance.pad_height"]
+    rows = min(d.table["holes.dowel_offsets"])  # from the clamp edge, which is further out than the middle
+    spans = [2 * rows, (max(map(len, d.arms)) - 1) * d.table["array.pitch"]]
+    return 1.01 * degrees(hypot(0.015 / rows, max((high / s for s in spans if s > 0), default=0.0))) + 1e-3
 
 
 def bends(span: float, width: float, high: float) -> float:

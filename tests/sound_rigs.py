@@ -133,9 +133,11 @@ def _grasping(d: Draw) -> None:
         low, high = ballast_range(guide_layout(from_table(as_table(d.table))))
         d.number("grasping.moving_weight", low, max(low, min(high, HEAVIEST - added)))
     heavy = added + d.table["grasping.moving_weight"]
-    d.number("tolerance.pad_height", max(d.table["tolerance.pad_height"], 10.5 * d.on_cart * heavy))
+    low = max(d.table["tolerance.pad_height"], 10.5 * d.on_cart * heavy)
+    d.number("tolerance.pad_height", low, max(low, d.most_pad))
     # bar, 30 mm between foot and carriage, 23 x 8, turned by its load's 20 mm; foot and platform are stiffer
-    d.number("tolerance.tilt", 10.5 * heavy * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 180 / pi)
+    square = 10.5 * heavy * 20 * 30 / (69e3 * 23 * 8**3 / 12) * 180 / pi
+    d.number("tolerance.tilt", max(d.table["tolerance.tilt"], square))
 
 
 def _calibration(d: Draw, into_sample: float) -> None:

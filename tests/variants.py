@@ -14,6 +14,8 @@ HARDWARE = Path(__file__).parents[1] / "hardware"
 DROP = object()
 # All that a text or table of the published array needs of its origins: its modulus is not its alloy's.
 ORIGIN = {"material.youngs_modulus": "paper: 69000 MPa"}
+# A gauge that lies on the floor of the array's slot, between its fillets.
+IN_SLOT = {"gauge.carrier_arm_side": 0.14, "gauge.carrier_body_side": 0.14, "gauge.grid_length": 0.2}
 BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
     0
 ] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'

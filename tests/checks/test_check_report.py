@@ -113,7 +113,13 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     assert len(scenes) == 4 and len(posed) > 10
     expected = {
         (check, macro.name)
-        for check in ("check_strength", "check_clearance", "check_calibration", "check_rigidity")
+        for check in (
+            "check_strength",
+            "check_clearance",
+            "check_calibration",
+            "check_rigidity",
+            "check_assembly",
+        )
     }
     for number, part in parts.items():
         expected |= {("check_brep", number), ("check_step", number), ("check_mesh", number)}

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from variants import variant
+from variants import IN_SLOT, variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
@@ -29,21 +29,15 @@ from tactcad.scenes import make_scene, scene_names
 FILE = MadeFrom("dxf/x.dxf", "0" * 64)
 DESIGNS = {
     "as shipped": {},
-    "slot from both sides": {"element.sides": "two"},
+    "slot from both sides": {**IN_SLOT, "element.sides": "two"},
     "body thicker than the arm": {
+        **IN_SLOT,
         "element.sides": "two",
         "element.body_height": 4.0,
         "element.pad_height": 2.5,
     },
     "one row, with blanks": {"array.row_arms": [[4, 7]]},
     "full round": {"element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]]},
-    "full rounds from both sides": {
-        "element.sides": "two",
-        "element.hinge_length": 0.6,
-        "element.fillet_radius": 0.3,
-        "array.row_arms": [[5], [6]],
-        "calibration.travel": 0.1,
-    },
     "another hinge for one element": {
         "array.row_arms": [[4, 7], [8, 5]],
         "element.override": {"2": {"hinge_thickness": 0.3, "hinge_length": 1.0}},
@@ -56,7 +50,7 @@ DESIGNS = {
     "long arms": {"array.row_arms": [[40, 20], [6, 8]]},
     "longer than any screw": {"array.row_arms": [[4] * 12, [8] * 12]},
 }
-LONG = {"array.row_arms": [[6] * 100, [8] * 100]}
+LONG = {"array.row_arms": [[4] * 100, [8] * 100]}
 
 
 def plans(changes, base="macro-array", shortened=False):
@@ -133,18 +127,17 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The size that a dimension's text stands for in the model: the middle of its limits.
-
-    H7 of 3 mm is +0.010/0 (ISO 286-2). A hole tighter than its size is modelled as the pin m6 that is pressed
-    in, +0.008/+0.002 at 3 mm.
-    """
+    """The number that a dimension's text states, the middle of its limits (H7 of 3 mm is +0.010/0, ISO 286).
+    A pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
     match = re.fullmatch(
-        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-]?[\d.]+)/([+-]?[\d.]+))?( H7)?", text
+        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7)?", text
     )
     assert match, text
-    upper, lower = (float(match[2]), float(match[3])) if match[2] else (0.01, 0.0) if match[4] else (0.0, 0.0)
-    assert upper >= 0 and not match[4] or match[1] == "3"
-    return float(match[1]) + (0.005 if upper < 0 else (upper + lower) / 2)
+    if not match[2]:
+        assert not match[4] or match[1] == "3"
+        return float(match[1]) + (0.005 if match[4] else 0.0)
+    size, upper, lower = map(float, match.groups()[:3])
+    return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 
 
 def test_the_part_can_be_made_from_what_its_sheet_says(some_plans):

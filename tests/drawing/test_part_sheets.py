@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from variants import HARDWARE, variant
+from variants import HARDWARE, IN_SLOT, variant
 
 import tactcad
 from tactcad.contour import rectangle
@@ -77,7 +77,7 @@ def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro)
             macro.design.title,
             macro.design.organisation,
             orders[number].part.name,
-            orders[number].part.material.name,
+            str(orders[number].part.material),
             "tolerancing ISO 8015",
             "ISO 2768-1:1989-m,",
             "ISO 2768-2:1989-K for the rest",
@@ -303,8 +303,8 @@ def test_export_with_drawings(tmp_path):
 
 
 VARIANTS = {
-    "both sides": {"element.sides": "two"},
-    "thick body": {"element.sides": "two", "element.body_height": 4.0, "element.pad_height": 2.5},
+    "both sides": {**IN_SLOT, "element.sides": "two"},
+    "thick body": {**IN_SLOT, "element.sides": "two", "element.body_height": 4.0, "element.pad_height": 2.5},
     "uneven rows": {"array.row_arms": [[4, 7, 6], [8]]},
     "full round": {"element.hinge_length": 0.6, "element.fillet_radius": 0.3, "array.row_arms": [[5], [6]]},
     "long arms": {"array.row_arms": [[40, 30], [6, 8]]},

@@ -136,7 +136,7 @@ def test_holes_counted_by_hand():
     cone = m.tap_drill / 2 / tan(pi * 59 / 180)
     assert drill_point_height(m.tap_drill) == pytest.approx(cone, rel=1e-12)
     assert blind.volume == pytest.approx(pi / 4 * m.tap_drill**2 * (6.5 + cone / 3), rel=1e-12)
-    assert screws.tapped_depth("M3") == pytest.approx(1.5 * 3 + 1 + 2 * 0.5 + cone, rel=1e-12)
+    assert screws.tapped_depth("M3") == pytest.approx(1.5 * 3 + 1.5 + 2 * 0.5 + cone, rel=1e-12)
     sunk = Hole("screw", (0, 0, 10), (0, 0, -1), 3.4, 10, True, counterbore=(6.0, 3.2))
     assert sunk.volume == pytest.approx(pi / 4 * (3.4**2 * 10 + (6.0**2 - 3.4**2) * 3.2), rel=1e-12)
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from sound_designs import sound_designs
-from variants import DROP, ORIGIN, table, variant
+from variants import DROP, IN_SLOT, ORIGIN, table, variant
 
 from tactcad.design.load import SECTION_TYPES, from_table, names, paths
 from tactcad.design.messages import InputError
@@ -31,7 +31,7 @@ THIN = {
 }
 ONE = {"array.row_arms": [[4.0]]}
 FIFTY_A_ROW = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
-TWO_SIDED = {**ONE, "element.sides": "two", "element.body_height": 3.6}
+TWO_SIDED = {**ONE, **IN_SLOT, "element.sides": "two", "element.body_height": 3.6}
 
 # rule -> designs that break it alone: what is changed, and the field that the message points at
 WITNESSES = {
@@ -42,7 +42,7 @@ WITNESSES = {
     ],
     "stop_plate_stays": [
         (
-            {**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0, "clamp.stop_plate_thickness": 2.0},
+            {**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0, "clamp.stop_plate_thickness": 2.5},
             "clamp.hold_down_pitch",
         ),
         ({**FIFTY_A_ROW, "clamp.hold_down_pitch": 200.0}, "clamp.hold_down_pitch"),
@@ -105,6 +105,10 @@ WITNESSES = {
         ({"gauge.carrier_body_side": 4.1}, "gauge.carrier_body_side"),
         ({**TWO_SIDED, "gauge.grid_length": 0.9}, "gauge.grid_length"),
     ],
+    "gauge_lies_in_slot": [
+        ({**TWO_SIDED, "gauge.carrier_arm_side": 0.15}, "element.sides"),
+        ({**TWO_SIDED, "gauge.carrier_body_side": 1.0}, "element.sides"),
+    ],
     "arms_clear_neighbours": [
         ({"array.spacer": 0.06, "array.pitch": 3.06, "tolerance.sheet_thickness": 0.01}, "array.spacer"),
         ({"array.spacer": 0.12, "array.pitch": 3.12}, "array.spacer"),
@@ -160,8 +164,9 @@ WITNESSES = {
     ],
     "stop_gap_above_tolerance": [
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
-        ({"stop.gaps": {"4": 0.01}}, "stop.tolerance"),
-        ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 6.0}, "rating.overload_force"),
+        ({"stop.gaps": {"4": 0.005}}, "stop.tolerance"),
+        ({"tolerance.pad_height": 0.1}, "stop.tolerance"),
+        ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 7.0}, "rating.overload_force"),
         # a short arm beside a long one: 88 mm of body turn its hinge round on the closed stop
         ({"rating.overload_force": 15.0, "array.row_arms": [[90, 4], [90, 4]]}, "rating.overload_force"),
     ],
@@ -179,11 +184,12 @@ WITNESSES = {
     "stack_can_be_clamped": [
         ({"array.row_arms": [[4] * 500], "array.pitch": 6.0, "array.spacer": 3.0}, "array.row_arms")
     ],
+    "tilt_covers_pads_and_dowels": [({"tolerance.tilt": 0.01}, "tolerance.tilt")],
     "end_plate_takes_holes": [
         ({"clamp.end_plate_bottom": 0.9}, "clamp.end_plate_bottom"),
         ({"clamp.end_plate_thickness": 4.0}, "clamp.end_plate_thickness"),
         ({"clamp.end_plate_thickness": 30.5}, "clamp.end_plate_thickness"),
-        ({"clamp.end_plate_height": 14.5, "clamp.stop_plate_thickness": 2.0}, "clamp.end_plate_height"),
+        ({"clamp.end_plate_height": 15.0, "clamp.stop_plate_thickness": 2.5}, "clamp.end_plate_height"),
     ],
     "carrier_can_be_screwed": [
         ({"clamp.mount_thread": "M5"}, "clamp.carrier_thickness"),
@@ -398,11 +404,11 @@ def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_draw
 
 def test_what_the_stop_plate_s_rule_calls_legal_is_legal():
     """Its own word put back; and left out, the pitch is one that holds, thin plate or usual."""
-    soft = {**FIFTY_A_ROW, "clamp.stop_plate_thickness": 2.0, "clamp.hold_down_pitch": 200.0}
+    soft = {**FIFTY_A_ROW, "clamp.stop_plate_thickness": 2.5, "clamp.hold_down_pitch": 200.0}
     (found,) = broken_rules(variant(soft))
     assert (found.part, found.value) == ("clamp.hold_down_pitch", 200.0)
     most = float(str(found.limit).split()[2])
     assert broken_rules(variant({**soft, "clamp.hold_down_pitch": most})) == []
-    for thickness in (2.0, 4.0):
+    for thickness in (2.5, 4.0):
         derived = {**soft, "clamp.stop_plate_thickness": thickness, "clamp.hold_down_pitch": DROP}
         assert broken_rules(variant(derived)) == []

@@ -90,6 +90,16 @@ CASES = {
             part(hole(d=2.5, depth=12, thread="M3", thread_depth=9.0)),
         )
     ],
+    "tap-reach": [  # an M2 tap's shank of 2.8 mm stops at a bore of 2.4 and enters one of 2.9
+        (
+            part(hole(d=1.6, depth=10, counterbore=(2.4, 4.0), thread="M2", thread_depth=5)),
+            part(hole(d=1.6, depth=10, counterbore=(2.9, 4.0), thread="M2", thread_depth=5)),
+        ),
+        (
+            part(hole(d=1.6, depth=10, counterbore=(2.4, 3.1), thread="M2", thread_depth=5)),
+            part(hole(d=1.6, depth=10, counterbore=(2.4, 3.0), thread="M2", thread_depth=5)),
+        ),
+    ],
     "thread-run-out": [
         (
             part(hole(d=2.5, depth=8.9, thread="M3", thread_depth=8)),

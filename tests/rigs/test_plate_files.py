@@ -53,4 +53,4 @@ def test_what_is_not_cut_from_plate_has_no_cut_file():
         for n, p in PARTS.items()
         if p.process in ("milled", "turned", "ground") and not cut_section(p)
     }
-    assert without == {"holder-body", "tip-flat", "weight-pin", "ballast", "SHIM-2.1x2.8x0.3-ring"}
+    assert without == {"holder-body", "tip-flat", "weight-pin", "ballast", "SHIM-3.1x4.1x0.3-ring"}

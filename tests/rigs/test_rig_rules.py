@@ -14,7 +14,6 @@ from tactcad.parts.rules import broken_rules, design_rules
 from tactcad.scenes import NEEDS, chosen_scenes, fitting_rules, left_out, scene_names
 
 WITNESSES = {
-    "axles_carry_wheels": {"cart.bearing": "682-2Z", "cart.shim": 2.0},
     "axles_fit_plate": {"cart.clearance": 3.0},
     "cart_cannot_tip": {"cart.wheel_base": 35.0},
     "holder_on_cart": {"cart.width": 47.0},

@@ -12,6 +12,8 @@ from variants import variant
 
 from tactcad.drawing import guide
 from tactcad.drawing.extent import box_corners, part_box, placed
+from tactcad.drawing.layout_check import layout_faults
+from tactcad.drawing.sensing_face import face_map
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
@@ -157,13 +159,12 @@ def test_the_map_shows_every_element_where_it_stands(case):
         e.text.split(" ")[0].strip(",:"): (float(e.get("x")), float(e.get("y")) - 1.25)
         for e in root.iter("{http://www.w3.org/2000/svg}text")
     }
-    pads = []
+    pads, outlines = [], []
     for e in root.iter("{http://www.w3.org/2000/svg}path"):
-        points = np.array(
-            [[float(v) for v in pair.split(",")] for pair in re.findall(r"[\d.]+,[\d.]+", e.get("d"))]
-        )
-        if e.get("fill") == "#000000" and len(points) == 4:
-            pads.append(points.mean(axis=0))
+        pairs = re.findall(r"[\d.]+,[\d.]+", e.get("d"))
+        points = np.array([[float(v) for v in pair.split(",")] for pair in pairs])
+        if len(points) == 4:
+            (pads if e.get("fill") else outlines).append(points.mean(axis=0))
     at = {p.designator: p for p in scene.placements}
     elements = [d for d in at if re.fullmatch(r"E\d+", d)]
     middles = {}
@@ -185,6 +186,8 @@ def test_the_map_shows_every_element_where_it_stands(case):
     for d in elements:
         here = f * middles[d] + shift
         assert np.abs(drawn - here).max(axis=1).min() < 0.01
+        body = f * box(at[d])[:, :2].mean(axis=0) + shift
+        assert np.abs(np.array(outlines) - body).max(axis=1).min() < 0.01
         if d in texts:
             x, y = texts[d]
             assert abs(y - here[1]) < 0.5, d
@@ -197,6 +200,12 @@ def test_the_map_shows_every_element_where_it_stands(case):
         title = re.search(r"<h2>(?:\d+\. )?(.*?)</h2>", section)
         handles = title and title[1] in ("Gauges", "Stack", "Coplanar pads", "Hold the stop plate down")
         assert bool(handles) == ("sensing-face.svg" in section)
+
+
+@pytest.mark.parametrize("length", [1, 5, 25, 100])
+def test_nothing_on_the_map_covers_its_texts(length):
+    scene = make_scene(variant({"array.row_arms": [[4.0] * length, [5.0] * length]}), "array")
+    assert [fault for fault in layout_faults(face_map(scene, "x")) if " over " in fault] == []
 
 
 def test_an_exploded_stack_lies_open(case):

@@ -15,6 +15,7 @@ import numpy as np
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import tip_compliance
+from tactcad.parts.end_plate import SQUARE, lean
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.stop_gap import stop_gap
@@ -73,10 +74,10 @@ class Assembled:
             m[f"end plates: dowel holes along {axis}"]
             + m[f"end plate, tapped: dowel holes against the pair's along {axis}"]
         )
-        lean = m[f"end plate, tapped: dowel holes' squareness along {axis}"] / (
-            d.clamp.end_plate_thickness / 2
-        )
-        return (root + lean * (self.layout.stack / 2 - y))[:, first]
+        # as a share of the squareness's zone, which is as wide as SQUARE
+        share = m[f"end plate, tapped: dowel holes' squareness along {axis}"] / (SQUARE / 2)
+        slope = lean(self.layout) / (self.layout.stack + d.clamp.end_plate_thickness)
+        return (root + share * slope * (self.layout.stack / 2 - y))[:, first]
 
     def _pin_at_elements(self, axis: str) -> Array:
         row = np.where(self.side > 0, 0, 1)

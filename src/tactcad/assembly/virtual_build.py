@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
 from .requirements import Requirement, requirements
@@ -128,10 +130,12 @@ class Sensor:
         )
 
 
-def sensor(design: Design) -> Sensor:
-    """A design's array and rigs, ready to be built virtually."""
+def sensor(design: Design, scenes: Sequence[Scene] | None = None) -> Sensor:
+    """A design's array, and the rigs of these scenes (by default all), ready to be built virtually."""
     layout = Layout(design)
-    variables, wanted = requirements(layout, [make_scene(design, name) for name in scene_names(design)])
+    if scenes is None:
+        scenes = [make_scene(design, name) for name in scene_names(design)]
+    variables, wanted = requirements(layout, scenes)
     return Sensor(layout, variables, tuple(wanted))
 
 

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tactcad.assembly.stack import SEED
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
+from tactcad.scenes.scene import Scene
 
 COUNT = 1000
 
 
-def check_assembly(design: Design, *seeds: int) -> list[Finding]:
-    """A finding for each seed of chance, by default the published one, whose arrays fail too often."""
-    made, found = sensor(design), []
-    for seed in seeds or (SEED,):
-        builds = made.built(COUNT, seed)
-        if builds.share < LEAST_YIELD:
-            why = made.refusal(builds)
-            found.append(Finding("assembly", "fail", design.name, (), builds.share, LEAST_YIELD, why))
-    return found
+def check_assembly(design: Design, scenes: Sequence[Scene] | None = None, seed: int = SEED) -> list[Finding]:
+    """A finding where too many arrays fail, of the rigs those of `scenes` (by default all).
+
+    `seed` of chance is the published one.
+    """
+    made = sensor(design, scenes)
+    builds = made.built(COUNT, seed)
+    if builds.share >= LEAST_YIELD:
+        return []
+    return [Finding("assembly", "fail", design.name, (), builds.share, LEAST_YIELD, made.refusal(builds))]

@@ -159,8 +159,16 @@ def _threads(part: Part, limit: Machining) -> Iterator[Finding]:
         name, deepest = f"thread {h.name} {h.thread}", limit.thread_reach * h.thread_diameter
         what = f"{name}: {h.thread_depth:g} mm of full thread, at most {limit.thread_reach:g} diameters"
         yield from at_most("thread-depth", part.part_no, h.thread_depth, deepest, what, h.at)
+        wide, start = h.counterbore or (0.0, 0.0)
+        if h.thread in METRIC:
+            tap = METRIC[h.thread]
+            deep = h.thread_depth + (0.0 if tap.tap_shank < wide else start)
+            what = (
+                f"{name}: {deep:g} mm to the end of full thread below {wide:g} mm: the tap's shank of "
+                f"{tap.tap_shank:g} follows {tap.tap_reach:g} mm behind its end"
+            )
+            yield from at_most("tap-reach", part.part_no, deep, tap.tap_reach, what, h.at)
         if not h.through:
-            start = h.counterbore[1] if h.counterbore else 0.0
             room, least = h.depth - start - h.thread_depth, limit.run_out * PITCH[h.thread]
             if room < least - 1e-6:  # mm: depths are rounded to that
                 what = f"{name}: {room:.3g} mm between full thread and drilled depth, at least {least:.3g}"

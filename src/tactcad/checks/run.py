@@ -64,10 +64,10 @@ def run_checks(
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
     report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
-    report.run("assembly", check_assembly, design)
     if "calibration" in scene_names:
         report.run("calibration travel", check_calibration, design)
     scenes = [make_scene(design, name) for name in scene_names]
+    report.run("assembly", check_assembly, design, scenes)
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
     shapes: dict[str, TopoDS_Shape] = {}

@@ -155,8 +155,8 @@ def _hinge(cut: _Cut, neck: Neck, wall: float) -> Finding:
     thinnest = cut.shop.limits.thinnest_published_web
     text = (
         f"hinge {neck.width:.3f} mm thick, slot {_slot_length(cut):.3f} mm long, under the general wall "
-        f"of {wall:.3f} mm: "
-        "quote at least three passes with both hinge faces skimmed, the order of cuts, and the holding tab"
+        f"of {wall:.3f} mm: quote the passes that its limits ask for, both hinge faces skimmed, the order of "
+        "cuts, and the holding tab"
     )
     if neck.width < thinnest:
         published = cut.shop.source["thinnest_published_web"]

@@ -64,7 +64,7 @@ class Cart:
     """[cart]: plate on four ball bearings that roll along the arms."""
 
     bearing: str = given(
-        OneOf(("623-2Z", "624-2Z", "683-2Z", "682-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
+        OneOf(("623-2Z", "624-2Z", "683-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
     )
     length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
     width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)

@@ -11,7 +11,7 @@ from tactcad.parts.description import Characteristic, Part
 
 from .ink import DrawnSheet
 from .layout_check import layout_faults
-from .limit_marks import frame_of
+from .limit_marks import frame_of, times
 
 SAME = 1e-9  # mm
 _VALUE = re.compile(
@@ -56,7 +56,7 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
     runs
         Texts of the page in the order in which they were drawn.
     part
-        Whose geometric tolerances and datums have to stand there once each, and no others.
+        Whose geometric tolerances and datums have to stand there, at each feature once, and no others.
     elsewhere
         How often a text stands on the sheet outside of frames and datum symbols, as letters of the paper's
         zones do.
@@ -66,16 +66,18 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
     list of str
         Zones with their datums, and letters, that stand more often or less.
     """
-    frames = Counter(frame_of(part, g).cells for g in part.geometric)
+    frames = Counter(frame_of(part, g).cells for g in part.geometric for _ in range(times(part, g)))
     wrong = []
-    for cells, times in sorted(frames.items()):
+    for cells, meant in sorted(frames.items()):
         n = len(cells)
         found = sum(tuple(runs[i : i + n]) == cells for i in range(len(runs) - n + 1))
         found -= elsewhere.get(cells[0], 0) if n == 1 else 0
         longer = sum(k for other, k in frames.items() if len(other) > n and other[:n] == cells)
-        if found - longer != times:
-            wrong.append(f"tolerance frame {' '.join(cells)} stands {found - longer} times, not {times}")
-    wanted = Counter([*(d.letter for d in part.datums), *(x for g in part.geometric for x in g.datums)])
+        if found - longer != meant:
+            wrong.append(f"tolerance frame {' '.join(cells)} stands {found - longer} times, not {meant}")
+    wanted = Counter(
+        [*(d.letter for d in part.datums), *(x for cells in frames.elements() for x in cells[1:])]
+    )
     for letter in sorted({*wanted, *"ABC"}):
         found = runs.count(letter) - elsewhere.get(letter, 0)
         if found != wanted[letter]:

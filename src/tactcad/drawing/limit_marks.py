@@ -30,8 +30,18 @@ def frames_of(part: Part, names: Sequence[str]) -> tuple[Frame, ...]:
 
 
 def frame_of(part: Part, g: Geometric) -> Frame:
-    holes = sum(r.hole.name in g.features for r in rounds(part))
-    return Frame(g, max(1, holes))
+    return Frame(g, len(_holes(part, g)))
+
+
+def times(part: Part, g: Geometric) -> int:
+    """How often the frame of a geometric tolerance stands on the sheet: for all its holes once, at each of its
+    edges and faces once."""
+    holes = _holes(part, g)
+    return bool(holes) + len({*g.features} - {*holes})
+
+
+def _holes(part: Part, g: Geometric) -> list[str]:
+    return [r.hole.name for r in rounds(part) if r.hole.name in g.features]
 
 
 def letter_of(part: Part, names: Sequence[str]) -> str:

@@ -127,7 +127,7 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
 
 def title_of(design: Design, part: Part, draft: bool) -> TitleBlock:
     block = block_of(design.design, part.part_no, part.name, draft)
-    material = f"{part.material.name} {part.material.temper}".strip()
+    material = str(part.material)
     return replace(block, document_type="Part drawing", material=material, mass=part.mass, finish=part.finish)
 
 

@@ -11,14 +11,14 @@ from collections.abc import Sequence
 from tactcad.parts.description import Vector
 from tactcad.scenes.scene import Placement, Scene
 
-from .boxes import Box, bounds, corners
-from .extent import placed, projected_box
+from .boxes import Box, bounds, bounds_of, corners
+from .extent import placed
 from .information import Given, for_information
 from .ink import THIN, DrawnSheet, Fill, Item, Point, Stroke, Text, arrow, bounds_of_items, moved, segment
+from .joints import box_of
 
 EYE: Vector = (0.0, 0.0, -1.0)
 UP: Vector = (0.0, -1.0, 0.0)
-RIGHT: Vector = (1.0, 0.0, 0.0)
 LARGEST = (130.0, 110.0)  # of the map's outlines, mm of paper
 HEIGHTS = (2.5, 1.8)  # of numbers, ISO 3098: the larger where all find room
 HEIGHT = HEIGHTS[0]
@@ -35,17 +35,18 @@ def array_of(scene: Scene) -> Scene | None:
 def stacked(scene: Scene) -> list[Placement]:
     """Elements and blanks, from -y to +y: from the top of the view down."""
     own = [p for p in scene.placements if _STACKED.fullmatch(p.designator)]
-    return sorted(own, key=lambda p: round(middle(p)[1], 6), reverse=True)
+    return sorted(own, key=lambda p: round(middle(p), 6), reverse=True)
 
 
 def seen_box(p: Placement) -> Box:
-    return projected_box([p], RIGHT, EYE)
+    """The part's box in the view, mm."""
+    (x0, y0, _), (x1, y1, _) = box_of(p).tolist()
+    return x0, -y1, x1, -y0
 
 
-def middle(p: Placement) -> Point:
-    """Of the part's box in the view, mm."""
-    x0, y0, x1, y1 = seen_box(p)
-    return (x0 + x1) / 2, (y0 + y1) / 2
+def middle(p: Placement) -> float:
+    """Where the middle of its sheet stands in the view, mm upwards."""
+    return -(p.origin[1] + p.rotation[1][2] * p.part.extrusion.thickness / 2)
 
 
 def pad(p: Placement) -> Box | None:
@@ -71,7 +72,7 @@ def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Tex
     texts = []
     for row, sign in zip(rows, (1.0, -1.0)):
         for p in _spaced(row, (height + WHITE) / f):
-            at = (sign * (half + BESIDE), middle(p)[1] * f - height / 2)
+            at = (sign * (half + BESIDE), middle(p) * f - height / 2)
             name = f"{p.designator}{_arm(p)}" if arms else p.designator
             texts.append(Text(at, name, height, "start" if sign > 0 else "end"))
     return texts
@@ -85,7 +86,7 @@ def _spaced(row: Sequence[Placement], least: float) -> list[Placement]:
     """First, last, and between them those that stand at least so far from the one kept before, mm."""
     kept = list(row[:1])
     for p in row[1:]:
-        if abs(middle(p)[1] - middle(kept[-1])[1]) >= least - 1e-9:
+        if abs(middle(p) - middle(kept[-1])) >= least - 1e-9:
             kept.append(p)
     if row and kept[-1] is not row[-1]:
         kept[max(1, len(kept) - 1) :] = [row[-1]]
@@ -144,7 +145,7 @@ def face_map(array: Scene, name: str) -> DrawnSheet:
     """The map of an array: outlines of elements, blanks and end plates, pads filled, numbers and arms beside
     them."""
     plates = [p for p in array.placements if p.designator in ("EP1", "EP2")]
-    x0, y0, x1, y1 = projected_box([*plates, *stacked(array)], RIGHT, EYE)
+    x0, y0, x1, y1 = bounds_of(corners(seen_box(p)) for p in [*plates, *stacked(array)])
     f = min(LARGEST[0] / (x1 - x0), LARGEST[1] / (y1 - y0))
 
     def outline(box: Box) -> tuple[Point, ...]:
@@ -153,15 +154,15 @@ def face_map(array: Scene, name: str) -> DrawnSheet:
     items: list[Item] = [Stroke(outline(seen_box(p)), THIN, closed=True) for p in [*plates, *stacked(array)]]
     items += [Fill(outline(box), "symbol") for p in stacked(array) if (box := pad(p))]
     items += numbers(array, f, x1 * f, arms=True)
-    for plate in plates:
-        y, far = middle(plate)[1], seen_box(plate)
-        edge = far[3] * f + 1.5 if y > 0 else far[1] * f - 1.5 - HEIGHT
-        items.append(Text((0.0, edge), f"{plate.designator}: {plate.part.name.lower()}", HEIGHT, "middle"))
+    over, under = y1 * f + BESIDE, y0 * f - BESIDE - HEIGHT
     items += [
-        Text((x1 * f, y1 * f + 1.5), "row 1", HEIGHT, "end"),
-        Text((x0 * f, y1 * f + 1.5), "row 2", HEIGHT),
+        Text((x1 * f + BESIDE, over), "row 1", HEIGHT),
+        Text((x0 * f - BESIDE, over), "row 2", HEIGHT, "end"),
     ]
-    items += axes((x0 * f, y0 * f - 3.0))
+    for plate in plates:
+        y = over + 2 * HEIGHT if middle(plate) > 0 else under
+        items.append(Text((0.0, y), f"{plate.designator}: {plate.part.name.lower()}", HEIGHT, "middle"))
+    items += axes((x0 * f, under - HEIGHT))
     bx0, by0, bx1, by1 = bounds_of_items(items)
     title = "Sensing face, pads towards you"
     return DrawnSheet(

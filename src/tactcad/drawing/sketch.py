@@ -13,7 +13,7 @@ from tactcad.parts.limits import FACES
 
 from .boxes import bounds
 from .keys import Owner, Quantity, Spot, Variable
-from .limit_marks import places
+from .limit_marks import places, times
 from .measures import Determined, Level, Measure, level, variables
 from .sheet_plan import Dimension, View, seen
 
@@ -137,9 +137,11 @@ def _marked_once(part: Part, views: Sequence[View]) -> None:
     framed = Counter(f.geometric.name for c in called for f in c.frames)
     # of a letter that several views offer one is drawn
     lettered = Counter(c.datum for c in called) + Counter({d.letter for view in views for d in view.datums})
-    shown = [(f"tolerance of {g.symbol} ({g.name})", framed[g.name]) for g in part.geometric]
-    shown += [(f"datum {d.letter}", lettered[d.letter]) for d in part.datums]
-    if wrong := [f"{what} stands {times} times" for what, times in shown if times != 1]:
+    shown = [(f"tolerance of {g.symbol} ({g.name})", framed[g.name], times(part, g)) for g in part.geometric]
+    shown += [(f"datum {d.letter}", lettered[d.letter], 1) for d in part.datums]
+    if wrong := [
+        f"{what} stands {found} times, not {meant}" for what, found, meant in shown if found != meant
+    ]:
         raise CheckFailure(f"drawings: {part.part_no}: {'; '.join(wrong)}")
 
 

@@ -132,9 +132,10 @@ def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tup
 
 
 def _fitted(given: tuple[str, ...], room: float, high: float) -> tuple[list[str] | None, float]:
-    """The lines at the largest size at which they fit, broken where they have to be; None where none fits."""
+    """The lines at the largest size at which they fit, broken only where they have to be; None where none
+    fits."""
     given = tuple(line for line in given if line)
-    for size, whole in ((3.5, True), (2.5, True), (2.5, False), (1.8, True), (1.8, False)):
+    for size, whole in ((3.5, True), (2.5, True), (1.8, True), (2.5, False), (1.8, False)):
         lines = list(given) if whole else [piece for line in given for piece in wrapped(line, size, room)]
         high_enough = size * (1.6 * len(lines) - 0.3) <= high
         if high_enough and all(width(line, size) <= room for line in lines):

@@ -90,7 +90,7 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
     return products
 
 
-def stack_products(design: Design, shapes: Shapes) -> list[Output]:
+def stack_products(design: Design, scenes: Sequence[Scene], shapes: Shapes) -> list[Output]:
     """How the limits of all parts add up: a table, and a page with bars; from one run of virtual builds."""
 
     @cache
@@ -99,12 +99,12 @@ def stack_products(design: Design, shapes: Shapes) -> list[Output]:
         from tactcad.assembly.stack_page import stack_page
         from tactcad.assembly.virtual_build import sensor
 
-        made = sensor(design)
+        made = sensor(design, scenes)
         lines = made.stack()
         title = f"{design.design.title}, revision {design.design.revision}"
         return stack_bytes(lines), stack_page(title, made.built(1000), lines)
 
-    made_by = digest(("stack", shapes.made_by, design))
+    made_by = digest(("stack", shapes.made_by, design, scenes))
     return [
         Output("stack.csv", "report", "", digest((made_by, "csv")), lambda: run()[0]),
         Output("stack.html", "report", "", digest((made_by, "html")), lambda: run()[1]),

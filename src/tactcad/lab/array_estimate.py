@@ -18,8 +18,7 @@ from tactcad.parts.layout import ElementPlace, Layout
 
 @dataclass(frozen=True)
 class ElementEstimate:
-    """One element at one force. Deflection, strain and stress are None above yield; gauge_strain also where
-    the grid does not fit a two-sided hinge."""
+    """One element at one force. Deflection, strain and stress are None above yield."""
 
     number: int
     arm: float  # mm

@@ -10,7 +10,7 @@ from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.as_built import COMMON, half_widths
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.budget_effect import BudgetPair, Effect
-from tactcad.paper.residuals import WIRE_TOLERANCE
+from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
 ROOM_SWING = 5.0  # K; hardware's own figure
 CLOSED_FORM_ERROR = 0.0035  # goal for the closed forms against finite elements

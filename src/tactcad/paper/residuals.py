@@ -17,9 +17,6 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 
-# Wire cutting, half-width in mm by number of passes, the coarser figure of vendors' pages
-# (mecvil.com, tongrencnc.com).
-WIRE_TOLERANCE = {"1 pass": 0.025, "2-3 passes": 0.010, "4 or more passes": 0.005}
 DRAWS = 40_000  # the bands' ends repeat within 0.5 %
 EDGE = 0.02  # ln K closer than this to a band's end is reported at its edge, neither inside nor outside
 BAND = (0.025, 0.975)

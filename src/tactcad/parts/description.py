@@ -181,11 +181,17 @@ def drill_point_height(diameter: float) -> float:
 
 @dataclass(frozen=True)
 class Material:
-    """What a part is made of; density in kg/m3."""
+    """What a part is made of; density in kg/m3. `standard`: by which it is ordered."""
 
     name: str
     density: float
     temper: str = ""
+    standard: str = ""
+
+    def __str__(self) -> str:
+        """As sheets and bills state it."""
+        named = f"{self.name} {self.temper}".strip()
+        return f"{named}, {self.standard}" if self.standard else named
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,13 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from tactcad.contour import Contour, Corner, circle, rounded_polygon
+from tactcad.design.materials import ALLOYS, family
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
 from .limits import FACES, Characteristic, DatumFeature, within
+from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
 
@@ -39,6 +41,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
 
         gap = stop_gap(layout, place)
+    passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
     return Part(
         part_no=element_number(design, place),
@@ -49,7 +52,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
         notes=(
-            "wire-cut in at least three passes, both hinge faces skimmed",
+            f"wire-cut in at least {passes}, both hinge faces skimmed",
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
             *material_notes(design),
@@ -205,15 +208,24 @@ def dowel_hole_diameter(design: Design) -> float:
 
 
 def sheet_material(design: Design) -> Material:
-    return Material(design.material.alloy, design.material.density)
+    known = ALLOYS.get(design.material.alloy)
+    return Material(design.material.alloy, design.material.density, standard=known.standard if known else "")
 
 
 def material_notes(design: Design) -> tuple[str, ...]:
     """Notes that the material requires: from its data, and on values in which the design differs from
     them.
     """
+    bare = ("bare sheet, not clad",) if family(design.material.density) == "aluminium" else ()
     magnetic = ("demagnetise after cutting",) if design.material.magnetic == "yes" else ()
-    return (*magnetic, *(f"designed with other data than its material's: {d}" for d in design.differences))
+    # fatigue: sheet is stronger along its grain than across, and the hinge bends along the arm
+    rolled = "rolling direction along the arm, across the hinge"
+    return (
+        *bare,
+        rolled,
+        *magnetic,
+        *(f"designed with other data than its material's: {d}" for d in design.differences),
+    )
 
 
 def shortest(value: float) -> str:

@@ -41,7 +41,8 @@ def clamping(layout: Layout) -> Clamping:
     """The stack's fasteners.
 
     A cap screw must leave LEAST_UNDER_HEAD under its head and engage 1.5 d in the tapped plate
-    without passing through it; the counterbore takes up the difference to the standard length.
+    without passing through it; the counterbore takes up the difference to the standard length, and sinks the
+    head, or there is none.
     """
     d = layout.design.clamp
     plate, stack = d.end_plate_thickness, layout.stack
@@ -51,9 +52,13 @@ def clamping(layout: Layout) -> Clamping:
         # its thread
         engaged = max(engagement(d.screw), min(round(2 / 3 * plate, 1), TAP_REACH * METRIC[d.screw].d))
         web = round(length - stack - engaged, 9)
+        if plate > web > plate - METRIC[d.screw].head_height:  # a counterbore sinks the whole head
+            web = round(plate - METRIC[d.screw].head_height, 9)
+            engaged = round(length - stack - web, 9)
         # at its longest, in the shortest stack, it still ends inside the plate
         free = deviations("js15", length)[1] + STACK
-        if LEAST_UNDER_HEAD <= web <= plate and engaged + free <= plate:
+        reach = min(plate - free, TAP_REACH * METRIC[d.screw].d)
+        if LEAST_UNDER_HEAD <= web <= plate and engaged <= reach:
             return Clamping(False, length, web, dowel)
     m = METRIC[d.screw]
     ends = m.nut_height + 2 * m.pitch

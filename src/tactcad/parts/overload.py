@@ -11,14 +11,14 @@ from tactcad.mechanics.stop import back_share, deflection_share, stop_share, str
 
 from .hinge_section import design_alloy, hinge_section
 from .layout import ElementPlace, Layout
-from .stop_gap import stop_gap
+from .stop_gap import seat, stop_gap
 
 
 @dataclass(frozen=True)
 class Overload:
-    """One element under the overload force, its stop's gap at the upper limit of its tolerance.
+    """One element under the overload force, its stop's gap as wide as limits make it.
 
-    gap               mm, tolerance included
+    gap               mm as assembled, tolerance and the plate's seat included
     earliest          N at the pad that close the gap at the lower limit of its tolerance
     closing_force     N at the pad that close this gap
     stop_force        reaction of the stop under the whole load, N
@@ -53,14 +53,14 @@ def overloads(layout: Layout) -> list[Overload]:
     gap, give = np.array([stop_gap(layout, p) for p in places]), layout.stop_give
     tip = tip_compliance(s, K, arm)
     earliest = (gap - tolerance) / tip
-    closing = np.minimum((gap + tolerance) / tip, load)
+    closing = np.minimum((gap + tolerance + seat(layout)) / tip, load)
     beyond = load - closing
     # beyond the estimator's range K is NaN, and so are all figures but the gap
     forwards = closing + stress_share(s, K, arm, give) * beyond
     stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, back_share(s, K, arm, give) * beyond))
     yields = strength.yield_force_where_known(s, alloy)
     figures = {
-        "gap": gap + tolerance,
+        "gap": gap + tolerance + seat(layout),
         "earliest": earliest,
         "closing_force": closing,
         "stop_force": beyond * stop_share(s, K, arm, give),

@@ -13,8 +13,11 @@ BRASS = Material("brass, nickel plated", 8500)
 CARBON_STEEL = Material("steel", 7850)
 RUBBER = Material("rubber", 1200)
 STAINLESS = Material("1.4301 stainless steel", 7900)
+# Martensitic: a magnetic chuck holds it for grinding. Density after EN 10088-1.
+MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, standard="EN 10088-3")
 
 
 def plate_material(design: Design) -> Material:
     """End plates, carrier and the rigs' plates: the alloy of [clamp] plate_alloy."""
-    return Material(design.clamp.plate_alloy, ALLOYS[design.clamp.plate_alloy].density)
+    alloy = ALLOYS[design.clamp.plate_alloy]
+    return Material(alloy.name, alloy.density, standard=alloy.standard)

@@ -12,7 +12,7 @@ from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload, tip_compliance
 
-from .end_plate import SQUARE
+from .end_plate import lean
 from .hinge_section import own_parameters, shared_parameters
 from .layout import ElementPlace, HingeShape, Layout
 from .library.dowels import dowel_diameter
@@ -60,14 +60,13 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
 def seat(layout: Layout) -> float:
     """By how much the stop plate may lie above an element's own ledge at its land, mm.
 
-    Other ledges at their upper limit, this one at its lower; the plate's flatness; and pads that stand off the
-    surface plate, here and there, once their dowels' play is used up by their heights and the pins' lean.
+    Other ledges at their upper limit, this one at its lower; the plate's flatness; and pads that stand off
+    the surface plate, here and there, once their heights and the pins' lean use up their dowels' play.
     """
     d = layout.design
     t, h = d.tolerance, d.holes
     play = h.dowel_hole + h.dowel_hole_upper / 2 - dowel_diameter(d.clamp.dowel)
-    lean = SQUARE / d.clamp.end_plate_thickness * layout.stack / 2
-    off = max(0.0, hypot(t.pad_height, lean) - play / 2)
+    off = max(0.0, hypot(t.pad_height, lean(layout) / 2) - play / 2)
     return round(2.0 * t.ledge + STOP_PLATE_FLAT + 1.5 * off, 6)
 
 
@@ -99,7 +98,7 @@ def stop_limit(layout: Layout, place: ElementPlace, give: float | None = None) -
         place.arm,
         design.material.yield_strength / design.rating.deflection_factor,
         design.rating.overload_force,
-        design.stop.tolerance,
+        2.0 * design.stop.tolerance + seat(layout) + STEP_MM,
         layout.stop_give if give is None else give,
     )
 
@@ -120,7 +119,7 @@ def _limit(
     arm: float,
     stress: float,
     overload: float,
-    tolerance: float,
+    narrowest: float,
     give: float,
 ) -> StopLimit:
     """`stop_limit` of the section with these parameters, whose fillet may have `stress` (MPa)."""
@@ -131,6 +130,6 @@ def _limit(
     rated = stress / strain.stress_beyond_the_fit(section, 1.0)
     closing = largest_closing_force(section, K, length, give, overload, rated)
     tip = tip_compliance(section, K, length)
-    narrow = (2.0 * tolerance + STEP_MM) / tip
+    narrow = narrowest / tip
     most = largest_overload(section, K, length, give, narrow, rated)
     return StopLimit(float(closing * tip), float(most))

@@ -1,7 +1,7 @@
 r"""Stop plate on the ledges: the plane that every overload stop closes against.
 
 +-----------------------------------+   ^ z
-+-----------------------------------+   +-> x   ground face down
++-----------------------------------+   +-> x   both faces ground
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from tactcad.contour import rectangle
 from .description import Extrusion, Part
 from .layout import Layout
 from .limits import FACES, DatumFeature, Geometric, within
-from .part_materials import STAINLESS
+from .part_materials import MAGNETIC_STAINLESS
 
 STOP_PLATE_FLAT = 0.005  # mm; chosen: what surface grinding holds, a quarter of the usual gap's tolerances
 
@@ -24,15 +24,15 @@ def stop_plate(layout: Layout) -> Part:
         part_no=f"{d.name}-stop-plate",
         name="Stop plate",
         process="ground",
-        material=STAINLESS,
+        material=MAGNETIC_STAINLESS,
         body=Extrusion(rectangle(-x, -y, x, y), d.clamp.stop_plate_thickness),
         colour="#565d66",
-        finish="both faces ground, Ra 0.4, flat within 0.005",
-        notes=("break edges 0.2", "ground face down, on the ledges"),
+        finish="both faces ground, Ra 0.4, flat and parallel within 0.005",
+        notes=("break edges 0.2", "either face may lie on the ledges"),
         characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05),),
         geometric=(
-            Geometric("flatness", "flatness", STOP_PLATE_FLAT, (FACES[0],)),
-            Geometric("parallelism", "parallelism", 2 * STOP_PLATE_FLAT, (FACES[1],), ("A",)),
+            Geometric("flatness", "flatness", STOP_PLATE_FLAT, FACES),
+            Geometric("parallelism", "parallelism", STOP_PLATE_FLAT, (FACES[1],), ("A",)),
         ),
         datums=(DatumFeature("A", FACES[0]),),
     )

@@ -84,7 +84,7 @@ def release(
     failures = golden_faults(design, design_file)
     _refuse(design, failures, draft, progress)
     # beside the published seed, which the checks take, one that nobody could design for
-    failures += [str(f) for f in check_assembly(design, secrets.randbelow(2**32))]
+    failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
     _refuse(design, failures, draft, progress)
     report = _checked(design, shop_file, progress)
     failures += [str(f) for f in report.failures]

@@ -139,7 +139,7 @@ def _table(contents: ReleaseContents) -> list[str]:
             part.part_no,
             str(contents.quantity(part)),
             str(part.spares or ""),
-            f"{part.material.name} {part.material.temper}".strip(),
+            str(part.material),
             _size(part),
             part.finish,
         )

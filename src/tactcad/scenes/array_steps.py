@@ -98,11 +98,12 @@ def array_steps(layout: Layout, placed: Mapping[str, Sequence[Placement]]) -> tu
 def _gauges(layout: Layout) -> str:
     d = layout.design
     thinnest = min(place.hinge.t for place in layout.elements)
+    face = "each flat face" if d.element.sides == "one" else "the floor of each slot on the pads' side"
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
         "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
         "thickness of every element, and mark its rear body with its number: equal elements differ in what "
-        "was measured. Bond a gauge on each flat face, its grid centred on the hinge within 0.1 mm, carrier "
+        f"was measured. Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier "
         f"trimmed to {d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
         "leads, and lay them in the wire recess towards the rear end."
     )
@@ -182,7 +183,7 @@ def _stop_plate(layout: Layout) -> str:
     )
     return (
         calibrated if layout.design.calibration else ""
-    ) + "Wipe ledges and plate. Lay the stop plate on the ledges, ground face down."
+    ) + "Wipe ledges and plate. Lay the stop plate on the ledges; both faces are ground, either lies down."
 
 
 def _hold_down(layout: Layout) -> str:

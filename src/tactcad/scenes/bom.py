@@ -95,7 +95,7 @@ def _part_row(item: int, part: Part, scene: Scene, revision: str, file: str, sha
         unit="pcs",
         description=part.name,
         make_buy="buy" if part.bought else "make",
-        material=f"{part.material.name} {part.material.temper}".strip(),
+        material=str(part.material),
         process=part.process,
         finish=part.finish,
         standard_designation=order.designation,

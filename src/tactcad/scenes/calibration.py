@@ -20,7 +20,17 @@ from tactcad.parts.rigs.stiffness import series_give
 from .array import array
 from .array_steps import flatness_tools
 from .builder import Builder
-from .common import AXIS_LIFT, CORNERS, LENGTH, STAND, THREAD, UNDER, place_force_axis, place_stand
+from .common import (
+    AXIS_LIFT,
+    CORNERS,
+    JAM_SPANNER,
+    LENGTH,
+    STAND,
+    THREAD,
+    UNDER,
+    place_force_axis,
+    place_stand,
+)
 from .scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
@@ -53,10 +63,12 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
         (0, -130, AXIS_LIFT - 40),
         "Bond the roller in the tip's seat, in the middle of its width. Screw the tip on the gauge's "
         "shaft, roller along y: "
-        "lower it on a flat plate, which must show an even line of light; lock the thread. Above a pad, "
+        "lower it on a flat plate, which must show an even line of light; "
+        "the jam nut against the tip holds it so. Above a pad, "
         "set x by the edge of "
         f"the pad to {c.load_point:g} mm; {c.step * 1e3:g} um steps to {c.travel * 1e3:g} um. "
         + _series(design),
+        tools=(JAM_SPANNER,),
     )
     b.step(
         "Calibrate, then fit the stop plate",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tactcad.design.present import present
 from tactcad.parts import rigs
 from tactcad.parts.consumables import Supply
-from tactcad.parts.library import dowels, orings
+from tactcad.parts.library import dowels, orings, screws
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
 from tactcad.parts.rigs.cart_layout import CartLayout
@@ -19,6 +19,7 @@ from tactcad.parts.rigs.frame import (
     POST_Y,
     STAGE_HOLE,
     STAGE_PLATE,
+    TIP,
 )
 from tactcad.parts.rigs.gauge_plate import GAUGE_SCREW_X, GAUGE_SCREW_Z
 from tactcad.parts.rigs.post import BASE_SCREW, POST_SCREWS
@@ -32,12 +33,13 @@ STAND = "BP1"  # the base plate
 AXIS_LIFT = 200.0  # exploded views: the vertical axis over everything else
 THREAD, LENGTH, UNDER = PLATE_SCREW
 SQUARE = "precision square, 100 mm"
+JAM_SPANNER = f"spanner {screws.JAM_NUT[2][0]:g} mm: the tip's jam nut"
 
 
 def place_stand(b: Builder, rig: StandLayout, stages: bool) -> str:
     """Base plate (STAND) and post; returns the post's designator."""
     b.unit("stand")
-    base = b.place("BP", rigs.base_plate(rig, stages), (0, 0, -BASE[1]))
+    base = b.place("BP", rigs.base_plate(rig), (0, 0, -BASE[1]))
     post = b.place("PO", rigs.post(rig), (0, POST_Y, 0), ALONG_Y)
     b.meet(base, post)
     head = METRIC["M5"].head_height
@@ -81,7 +83,7 @@ def place_cart(
         far = [b.place("SH", shim, (x, y(outer, c.shim), z), ALONG_Y) for x in xs]
         for x, near, ball, beyond in zip(xs, inner, balls, far):
             at = (x, y(outer + c.shim, 0), z)
-            axle = b.screw(rig.axle_thread, present(rig.axle_length), at, (0, -sy, 0), beyond, plate)
+            axle = b.screw(rig.axle_thread, rig.axle_length, at, (0, -sy, 0), beyond, plate)
             b.meet(plate, near)
             b.meet(near, ball)
             b.meet(ball, beyond)
@@ -239,6 +241,9 @@ def place_force_axis(
     else:
         tip = contact = b.place("TI", rigs.flat_tip(rig), (0, 0, tip_z))
     b.meet(gauge, tip, "thread")
+    nut = b.place("JN", screws.jam_nut(), (0, 0, tip_z + TIP))
+    b.meet(tip, nut)
+    b.meet(gauge, nut, "thread")
     b.group(None)
     return contact
 

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
+from tactcad.parts.library.dowels import dowel
 from tactcad.parts.rigs.frame import POST_Y, RISER_PITCH, STAGE_HOLE, pad_middles
 from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
 from tactcad.parts.rigs.rail import rail_holes
-from tactcad.parts.rigs.riser import RISER_SCREW, RISER_UNDER_HEAD
+from tactcad.parts.rigs.riser import (
+    RISER_SCREW,
+    RISER_UNDER_HEAD,
+    STOP_DEPTH,
+    STOP_LENGTH,
+    STOP_PIN,
+    stop_below,
+)
 from tactcad.parts.rigs.stand_layout import StandLayout
 
 from .builder import Builder
@@ -82,10 +90,18 @@ def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
     b.meet(riser, rail)
     for dz in rail_holes(length):
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
+    stop = b.place(
+        "ES",
+        dowel(STOP_PIN, STOP_LENGTH),
+        (0, front + STOP_DEPTH - STOP_LENGTH, z - stop_below(rig)),
+        ALONG_Y,
+    )
+    b.meet(riser, stop, "press")
     b.step(
         "Guide rail",
         (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
-        "middle outwards.",
+        f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: with no cart "
+        "under the array the carriage comes down on it and stays on its rail.",
     )
     return rail

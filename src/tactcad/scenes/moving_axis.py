@@ -176,7 +176,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     for sx in (-1, 1):
         for sy in (-1, 1):
             at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + CARRIAGE_ON_BAR + sy * 5.0)
-            b.screw("M3", 8.0, at, (0, 1, 0), bar, carriage)
+            b.screw("M3", 6.0, at, (0, 1, 0), bar, carriage)
     b.meet(bar, carriage)
     b.step(
         "Bar on the carriage",

@@ -8,7 +8,7 @@ from tactcad.parts.rigs.cart_layout import cart_layout
 from tactcad.parts.rigs.stand_layout import StandLayout
 
 from .builder import Builder
-from .common import AXIS_LIFT, place_cart, place_force_axis, place_stand
+from .common import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
 from .scene import REST, Motion, Pose, Scene
 
 
@@ -26,10 +26,11 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     b.step(
         "Tip",
         (0, -130, AXIS_LIFT - 40),
-        "Screw the flat tip on the gauge's shaft by hand, its long side along y, and lock it with a trace of "
-        "thread lacquer. Lower it until the gauge reads 0.01 N: that is zero. Then "
+        "Screw the flat tip on the gauge's shaft by hand, its long side along y; the jam nut against it "
+        "holds it so. Lower it until the gauge reads 0.01 N: that is zero. Then "
         f"{s.step * 1e3:g} um steps to {s.travel * 1e3:g} um, three times; subtract the gauge's own "
         f"{gauge.load_cell_stiffness:g} N/mm.",
+        tools=(JAM_SPANNER,),
     )
     if pose.height == 0:
         b.meet(contact, sample)

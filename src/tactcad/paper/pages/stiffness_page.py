@@ -20,7 +20,8 @@ from tactcad.paper.report import (
     signed_percent,
     tabulated,
 )
-from tactcad.paper.residuals import WIRE_TOLERANCE, Residuals
+from tactcad.paper.residuals import Residuals
+from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
 SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
 

@@ -38,6 +38,8 @@ class Metric:
     nut: float  # across flats
     nut_height: float
     torque: float  # N m
+    tap_shank: float
+    tap_reach: float  # length of the tap before its shank
 
 
 _ROWS = rows("screws")
@@ -201,26 +203,34 @@ _THREADED = re.compile(r"(?:ISO4762|ISO4026|DIN976-1)-(M[\d.]+)x")
 def nut(thread: str) -> Part:
     """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along +z."""
     m = METRIC[thread]
+    return _nut("ISO 4032", f"Hexagon nut {thread}", thread, m.tap_drill, (m.nut, m.nut_height), "DIN 934")
+
+
+# M6, of the force gauge's shaft: tap drill (ISO 2306), across flats and largest height of a thin nut (ISO
+# 4035)
+JAM_NUT = "M6", 5.0, (10.0, 3.2)
+
+
+def jam_nut() -> Part:
+    """ISO 4035 thin nut M6, as `nut`."""
+    thread, drill, size = JAM_NUT
+    return _nut("ISO 4035", f"Thin hexagon nut {thread}", thread, drill, size, "DIN 439")
+
+
+def _nut(standard: str, name: str, thread: str, drill: float, size: tuple[float, float], other: str) -> Part:
+    """A nut of that size: across flats and height, mm."""
+    across, height = size
     return Part(
-        part_no=f"ISO4032-{thread}-A2-70-nut",
-        name=f"Hexagon nut {thread}",
+        part_no=f"{standard.replace(' ', '')}-{thread}-A2-70-nut",
+        name=name,
         process="bought",
         material=STAINLESS,
-        body=Extrusion(_hexagon(m.nut), m.nut_height),
+        body=Extrusion(_hexagon(across), height),
         features=(
-            Hole(
-                "thread",
-                (0, 0, 0),
-                (0, 0, 1),
-                m.tap_drill,
-                m.nut_height,
-                True,
-                thread=thread,
-                thread_depth=m.nut_height,
-            ),
+            Hole("thread", (0, 0, 0), (0, 0, 1), drill, height, True, thread=thread, thread_depth=height),
         ),
         colour="#8a8d91",
-        purchase=Purchase(f"ISO 4032 {thread} A2-70", alternates=f"DIN 934 {thread} A2"),
+        purchase=Purchase(f"{standard} {thread} A2-70", alternates=f"{other} {thread} A2"),
         spares=2,
     )
 

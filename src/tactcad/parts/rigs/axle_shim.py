@@ -9,9 +9,12 @@ from __future__ import annotations
 
 from tactcad.contour import circle
 
-from ..description import Extrusion, Part
+from ..description import Characteristic, Extrusion, Part
 from ..part_materials import STAINLESS
 from .cart_layout import CartLayout
+
+# mm; chosen: a ring faced on both sides holds it, and it is small against the air that the shim gives
+SHIM_TOLERANCE = 0.02
 
 
 def axle_shim(rig: CartLayout) -> Part:
@@ -27,5 +30,6 @@ def axle_shim(rig: CartLayout) -> Part:
         body=Extrusion(circle((0, 0), outside), t, (circle((0, 0), bore),)),
         colour="#5c6066",
         finish="faces parallel within 0.01, burr-free",
+        characteristics=(Characteristic("thickness", t, t + SHIM_TOLERANCE, t - SHIM_TOLERANCE),),
         spares=2,
     )

@@ -19,7 +19,7 @@ from .guide_layout import GuideLayout
 
 BAR_SCREW_X = 7.0
 BAR_MIDDLE = BAR_FRONT + BAR / 2
-BAR_UNDER_HEAD = 5.6  # of the carriage's screws: 2.4 mm in its 3 mm of thread, which they may not bottom in
+BAR_UNDER_HEAD = 3.6  # of the carriage's screws, M3x6: 2.4 mm in its 3 mm of thread, heads sunk
 
 
 def bar(rig: GuideLayout) -> Part:

@@ -22,26 +22,26 @@ from .post import POST_SCREWS
 from .stand_layout import StandLayout
 
 
-def base_plate(rig: StandLayout, stages: bool) -> Part:
-    """Base plate under the post; with the threads of the horizontal stages where `stages` stand on it."""
+def base_plate(rig: StandLayout) -> Part:
+    """Base plate under the post, one for all set-ups: with the threads of the horizontal stages where the
+    design has a calibration. The cart's wheels roll beside them or keep most of their width on the plate."""
     t, x = BASE[1], rig.base_length / 2
     middle = POST_Y + POST[1] / 2
     m5 = METRIC["M5"]
     features: list[Feature] = [
         sunk("post", "M5", (px, middle + py, 0.0), (0, 0, 1), t, t - m5.head_height) for px, py in POST_SCREWS
     ]
-    if stages:
+    if rig.design.calibration is not None:
         features += [
             tapped_blind("stage", "M4", (px, py, t), (0, 0, -1)) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
         ]
-    kind = "stages" if stages else "cart"
     return plate(
         rig.design,
-        f"base-{kind}",
-        f"Base plate, for {kind}",
+        "base",
+        "Base plate",
         Extrusion(rectangle(-x, rig.base_front, x, rig.base_back), t),
         features,
         colour="#6f7a86",
         finish="upper face ground or fly-cut, Ra 0.8, flat within 0.02",
-        notes=("break edges 0.5",),
+        notes=("break edges 0.5", "threads countersunk 0.3, no burr: wheels roll over this face"),
     )

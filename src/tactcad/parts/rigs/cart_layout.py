@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sqrt
 
-from tactcad.design.present import present
 from tactcad.design.rigs import Cart, Holder, Sample
 from tactcad.design.tree import Design
 from tactcad.parts.library import orings
@@ -48,15 +47,16 @@ class CartLayout:
         return f"M{self.bearing.d:g}"
 
     @cached_property
-    def axle_length(self) -> float | None:
-        """Shortest ISO 4762 screw whose plain shank carries the whole bearing; None where there is none.
+    def axle_length(self) -> float:
+        """Shortest ISO 4762 screw whose plain shank carries the whole bearing: even for the thickest shims
+        there is one.
 
         The standard's threaded length is 2 d + 12; longer screws have a plain shank for the rest.
         """
         m = METRIC[self.axle_thread]
         need = self.cart.shim + self.bearing.B
         lengths = CAP_SCREW_LENGTHS[self.axle_thread]
-        return next((n for n in lengths if n - (2 * m.d + 12) >= need), None)
+        return next(n for n in lengths if n - (2 * m.d + 12) >= need)
 
     @property
     def axle_z(self) -> float:
@@ -65,7 +65,7 @@ class CartLayout:
     @property
     def axle_in_plate(self) -> float:
         """How deep the axle reaches into the plate."""
-        return round(present(self.axle_length) - 2 * self.cart.shim - self.bearing.B, 9)
+        return round(self.axle_length - 2 * self.cart.shim - self.bearing.B, 9)
 
     @property
     def wheel_y(self) -> float:

@@ -50,5 +50,5 @@ def flat_tip(rig: StandLayout) -> Part:
 def shaft_thread(
     at: tuple[float, float, float] = (0.0, 0.0, TIP), axis: tuple[float, float, float] = (0, 0, -1)
 ) -> Hole:
-    """M6 for the gauge's shaft: 9 of its 10 mm engaged."""
+    """M6 for the gauge's shaft: 6 of its 10 mm engaged, a jam nut on the rest."""
     return Hole("shaft", at, axis, 5.0, 12.0, False, thread="M6", thread_depth=10.0, drill_point=True)

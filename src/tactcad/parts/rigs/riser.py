@@ -5,6 +5,7 @@ r"""Block between post and guide rail.
 |    o    |   ^ z
 |    o    |   |     the rail's M3 threads
 | O     O |   +-> x
+|    o    |   end stop's pin, below the rail
 +---------+
 """
 
@@ -12,7 +13,8 @@ from __future__ import annotations
 
 from tactcad.contour import rectangle
 
-from ..description import Extrusion, Feature, Part
+from ..description import Extrusion, Feature, Hole, Part
+from ..library.dowels import dowel_diameter
 from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
 from .frame import POST, RISER_PITCH, STAGE_HOLE
@@ -21,12 +23,22 @@ from .rail import rail_holes
 
 RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, head deep in the riser
 
+# Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
+# from 6.5 on, and the foot passes it.
+STOP_PIN, STOP_LENGTH, STOP_DEPTH = "3", 16.0, 8.0
+
+
+def stop_below(rig: GuideLayout) -> float:
+    """How far the end stop's pin stands below the rail's middle, mm: 0.5 clear of its end."""
+    return rig.grasping.rail_length / 2 + 2.0
+
 
 def riser(rig: GuideLayout) -> Part:
     """Block between post and guide rail. Front face (the rail's) at local z = 0, contour in (x, z) about its
     middle."""
     length, depth = rig.grasping.rail_length, rig.riser_depth
     half = max(length / 2, RISER_PITCH + 8.0)
+    low = max(half, stop_below(rig) + 6.0)  # material below the pin: its diameter from the middle, and 2 mm
     features: list[Feature] = [
         sunk(
             "post",
@@ -39,12 +51,22 @@ def riser(rig: GuideLayout) -> Part:
         for sx in (-1, 1)
         for sy in (-1, 1)
     ]
-    features += [tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length)]
+    pin = Hole(
+        "end_stop",
+        (0.0, -stop_below(rig), 0.0),
+        (0, 0, 1),
+        dowel_diameter(STOP_PIN),
+        STOP_DEPTH,
+        False,
+        drill_point=True,
+        tolerance="H7",
+    )
+    features += [pin, *(tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length))]
     return plate(
         rig.design,
         "riser",
         "Riser",
-        Extrusion(rectangle(-POST[0] / 2, -half, POST[0] / 2, half), depth),
+        Extrusion(rectangle(-POST[0] / 2, -low, POST[0] / 2, half), depth),
         features,
         finish="rail face Ra 0.8, parallel to the back within 0.01",
     )

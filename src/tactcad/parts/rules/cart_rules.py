@@ -32,17 +32,7 @@ def on_cart(find: Callable[[CartLayout], Iterable[Finding]]) -> Find:
 
 @rule(after="stop_land_above_arm")
 @on_cart
-def axles_carry_wheels(rig: CartLayout) -> Iterator[Finding]:
-    if rig.axle_length is None:
-        what = f"no ISO 4762 {rig.axle_thread} has so long a plain shank"
-        yield wrong("cart.shim", what, rig.cart.shim, "thinner shims")
-
-
-@rule(after="stop_land_above_arm")
-@on_cart
 def axles_fit_plate(rig: CartLayout) -> Iterator[Finding]:
-    if rig.axle_length is None:
-        return
     m, c = METRIC[rig.axle_thread], rig.cart
     around = m.clearance / 2 + WALL
     highest = rig.axle_z - around

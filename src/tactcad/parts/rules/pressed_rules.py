@@ -11,7 +11,7 @@ from ..element import outline
 from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
 from ..rigs.calibration_loads import calibration_loads
-from ..stop_gap import stop_gap
+from ..stop_gap import seat, stop_gap
 from . import misfit
 from .rule import rule, wrong
 
@@ -24,7 +24,8 @@ def turns(layout: Layout) -> list[float]:
     """
     design = layout.design
     gives = layout.stop_give * design.rating.overload_force
-    tips = [stop_gap(layout, p) + design.stop.tolerance + gives * p.load_arm / p.arm for p in layout.elements]
+    wider = design.stop.tolerance + seat(layout)
+    tips = [stop_gap(layout, p) + wider + gives * p.load_arm / p.arm for p in layout.elements]
     if design.calibration is not None and misfit(layout, "calibration") is None:
         for n, load in enumerate(calibration_loads(design)):
             pad = design.calibration.travel if load.refused else load.deflection

@@ -8,7 +8,7 @@ from math import ceil, floor, hypot, pi, sqrt, tan
 
 from ..finding import SAME, Finding
 from ..layout import Layout
-from ..stop_gap import land_room, stop_gap, stop_limit
+from ..stop_gap import land_room, seat, stop_gap, stop_limit
 from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
 from .rule import at_least, at_most, rule, wrong
 
@@ -158,7 +158,7 @@ def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
     stop = layout.design.stop
     for p in layout.elements:
         given = stop.gaps.get(p.arm) if stop.gaps else None
-        widest = stop_limit(layout, p).gap - stop.tolerance
+        widest = stop_limit(layout, p).gap - stop.tolerance - seat(layout)
         if given is not None:
             yield from at_most(
                 f"stop.gaps.{p.arm:g}",
