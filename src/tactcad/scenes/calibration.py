@@ -12,7 +12,7 @@ from tactcad.parts import rigs
 from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs.calibration_loads import calibration_loads
-from tactcad.parts.rigs.carrier_screws import CARRIER_SCREW, carrier_pattern, under_carrier_screw
+from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
 from tactcad.parts.rigs.frame import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
 from tactcad.parts.rigs.stiffness import series_give
@@ -144,7 +144,7 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
     b.meet(mount, "CA1")
     for x, y in carrier_pattern(rig.array):
         at = (dx + x, dy + y, z + PLATE - under_carrier_screw(rig.design))
-        b.screw(rig.design.clamp.mount_thread, CARRIER_SCREW, at, (0, 0, 1), mount, "CA1")
+        b.screw(rig.design.clamp.mount_thread, carrier_screw_length(rig.design), at, (0, 0, 1), mount, "CA1")
     b.step(
         "Array on its mount",
         (0, 0, 120),

@@ -16,7 +16,7 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import cap_screw
 from tactcad.parts.rigs.ballast import ballast_thickness
 from tactcad.parts.rigs.bar import BAR_MIDDLE, BAR_SCREW_X, BAR_UNDER_HEAD
-from tactcad.parts.rigs.carrier_screws import CARRIER_SCREW, carrier_pattern, under_carrier_screw
+from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
 from tactcad.parts.rigs.foot import FOOT_UNDER_HEAD
 from tactcad.parts.rigs.frame import (
     BAR,
@@ -165,7 +165,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.meet("CA1", foot)
     for x, y in carrier_pattern(rig.array):
         at = (x, y, rig.foot_bottom + lift + under_carrier_screw(rig.design))
-        b.screw(design.clamp.mount_thread, CARRIER_SCREW, at, (0, 0, -1), foot, "CA1")
+        b.screw(design.clamp.mount_thread, carrier_screw_length(design), at, (0, 0, -1), foot, "CA1")
     b.step(
         "Array under the foot",
         (0, -140, -35),

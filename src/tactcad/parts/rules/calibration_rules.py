@@ -11,9 +11,9 @@ from ..deflected import deflection_at_pad_edge
 from ..finding import SAME, Finding
 from ..layout import HOLE_WEB, Layout
 from ..library.dowels import dowel_diameter, dowel_lengths
-from ..library.screws import counterbore_diameter
+from ..library.screws import METRIC, counterbore_diameter
 from ..rigs.calibration_loads import calibration_loads
-from ..rigs.carrier_screws import CARRIER_SCREW, under_carrier_screw
+from ..rigs.carrier_screws import LEAST_UNDER_HEAD, carrier_screw_length, under_carrier_screw
 from ..rigs.frame import FOOT, STAGE_HOLE, pad_middles
 from ..rigs.stand_layout import StandLayout
 from . import misfit
@@ -96,11 +96,13 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
 def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     c = layout.design.clamp
     under = under_carrier_screw(layout.design)
-    if not 2.0 - SAME <= under <= FOOT + SAME:
-        low, high = CARRIER_SCREW + 0.3 - FOOT, CARRIER_SCREW + 0.3 - 2.0
+    most = FOOT - METRIC[c.mount_thread].head_height  # heads sunk
+    if not LEAST_UNDER_HEAD - SAME <= under <= most + SAME:
+        length = carrier_screw_length(layout.design)
+        low, high = (round(c.carrier_thickness + under - u, 9) for u in (most, LEAST_UNDER_HEAD))
         yield wrong(
             "clamp.carrier_thickness",
-            f"{CARRIER_SCREW:g} mm screws into the carrier leave {under:g} mm under their heads",
+            f"{length:g} mm screws into the carrier leave {under:g} mm under their heads",
             c.carrier_thickness,
             f"from {low:g} to {high:g} mm",
         )
