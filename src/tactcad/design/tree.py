@@ -125,7 +125,11 @@ class Element:
     pad_length: float = given(Number("mm", 0.05, 50, "contact pad's length along the arm"))
     pad_height: float = given(Number("mm", 0.01, 50, "how far the pad stands out of the flat face"))
     sides: str = given(
-        OneOf(("one", "two"), "slot from the back only (flat gauge face), or from both faces"), "one"
+        OneOf(
+            ("one", "two"),
+            "slot from the back only (flat gauge face), or from both faces (the gauge lies in a slot, whole)",
+        ),
+        "one",
     )
     pad_root_radius: float = given(Number("mm", 0.005, 10, "fillet between pad and flat face"), 0.3)
     corner_radius: float = given(

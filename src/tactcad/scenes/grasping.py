@@ -103,5 +103,6 @@ def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
         f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: with no cart "
         "under the array the carriage comes down on it and stays on its rail.",
+        tools=("parallel, as long as the rail", "soft-faced hammer"),
     )
     return rail

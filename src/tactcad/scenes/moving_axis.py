@@ -82,6 +82,7 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
         (0, 0, 305),
         f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the "
         "ballast thinner until it is.",
+        tools=("balance, 0.1 g",),
     )
     return name, z + disc.extrusion.thickness
 
