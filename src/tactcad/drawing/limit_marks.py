@@ -34,8 +34,8 @@ def frame_of(part: Part, g: Geometric) -> Frame:
 
 
 def times(part: Part, g: Geometric) -> int:
-    """How often the frame of a geometric tolerance stands on the sheet: for all its holes once, at each of its
-    edges and faces once."""
+    """How often the frame of a geometric tolerance stands on the sheet: once for all its holes, and once at
+    each of its edges and faces."""
     holes = _holes(part, g)
     return bool(holes) + len({*g.features} - {*holes})
 
