@@ -242,6 +242,8 @@ def test_a_sheet_with_a_limit_too_many_is_refused(sheets, parts):
     assert any("datum A stands" in said for said in faults(sheet, fewer))
     bare = replace(parts["stop-plate"], geometric=(), datums=())
     assert any("datum A stands 2 times" in said for said in faults(sheets["stop-plate"], bare))
+    more = replace(sheet, items=(*sheet.items, Text((30, 30), "Q", 2.5, role="symbol")))
+    assert "datum Q stands 1 times in frames, not 0" in faults(more, part)
     twice = replace(sheet, items=(*sheet.items, Text((30, 30), "A", 2.5, role="symbol")))
     assert any("datum A stands 7 times in frames, not 6" in said for said in faults(twice, part))
 

@@ -78,7 +78,7 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
     wanted = Counter(
         [*(d.letter for d in part.datums), *(x for cells in frames.elements() for x in cells[1:])]
     )
-    for letter in sorted({*wanted, *"ABC"}):
+    for letter in sorted({*wanted, *(run for run in runs if len(run) == 1 and run.isupper())}):
         found = runs.count(letter) - elsewhere.get(letter, 0)
         if found != wanted[letter]:
             wrong.append(f"datum {letter} stands {found} times in frames, not {wanted[letter]}")
