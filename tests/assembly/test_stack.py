@@ -7,7 +7,7 @@ import pytest
 
 from tactcad.assembly.mechanic import Assembled
 from tactcad.assembly.stack import stack
-from tactcad.assembly.variables import DimensionLimits
+from tactcad.assembly.variables import STACK_LENGTH, DimensionLimits
 from tactcad.assembly.virtual_build import sensor
 from tactcad.assembly.virtual_shop import made
 from tactcad.parts.designs import load
@@ -24,14 +24,14 @@ def lines(macro):
 
 
 def test_the_carriers_screws_by_hand(lines):
-    """Five sheets of 3 +-0.1, six spacers of 1 +-0.01, threads within 0.2 and holes within 0.1 at both ends:
-    0.5 + 0.06 + 0.2 + 0.1 = 0.86; an M3 in a hole of 3.9 leaves 0.9."""
+    """The stack's length +-0.2, threads within 0.2 and holes within 0.1 at both ends: 0.2 + 0.2 + 0.1; an M3
+    in a hole of 3.5 leaves just that."""
     line = lines["carrier's screws enter the end plates"]
-    assert (line.worst_low, line.worst_high) == pytest.approx((-0.86, 0.86))
-    assert (line.requirement.lower, line.requirement.upper) == pytest.approx((-0.9, 0.9))
+    assert (line.worst_low, line.worst_high) == pytest.approx((-0.5, 0.5))
+    assert (line.requirement.lower, line.requirement.upper) == pytest.approx((-0.5, 0.5))
     shares = {c.name: c.share for c in line.contributors}
-    squares = {"sheet": 0.5**2, "spacer": 0.06**2, "threads": 2 * 0.1**2, "holes": 2 * 0.05**2}
-    assert shares["sheet: thickness"] == pytest.approx(squares["sheet"] / sum(squares.values()))
+    squares = {"stack": 0.2**2, "threads": 2 * 0.1**2, "holes": 2 * 0.05**2}
+    assert shares[STACK_LENGTH] == pytest.approx(squares["stack"] / sum(squares.values()))
 
 
 def test_the_carriers_own_screws_by_hand(lines):
@@ -44,9 +44,9 @@ def test_the_carriers_own_screws_by_hand(lines):
 
 
 def test_the_clamping_screws_by_hand(lines):
-    """M3x30 js15 (+-0.42) through a plate (+-0.05, counterbore +-0.1), five sheets and six spacers."""
+    """M3x30 js15 (+-0.42) through a plate (+-0.05, counterbore +-0.1) and the stack (+-0.2)."""
     line = next(x for name, x in lines.items() if name.startswith("M3x30") and name.endswith("engages"))
-    reach = 0.42 + 0.05 + 0.1 + 5 * 0.1 + 6 * 0.01
+    reach = 0.42 + 0.05 + 0.1 + 0.2
     assert (line.worst_low, line.worst_high) == pytest.approx((line.nominal - reach, line.nominal + reach))
 
 

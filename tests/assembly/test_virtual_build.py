@@ -8,7 +8,7 @@ from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
 from tactcad.assembly.mechanic import PAD, Assembled
-from tactcad.assembly.variables import variable
+from tactcad.assembly.variables import STACK_LENGTH, variable
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
 from tactcad.assembly.virtual_shop import made
 from tactcad.checks.goes_together import check_assembly
@@ -53,8 +53,8 @@ BEFORE = {
         "element: ledge over the pad face", -0.2, 0.2, "stop closes within the rated deflection"),
     "H7 holes for pressed pins": (
         "end plate, tapped: dowel hole diameter", 0.0, 0.010, "pins hold in the tapped end plate"),
-    "spacers as rolled": (
-        "spacer: thickness", -0.3, 0.3, "carrier's screws enter the end plates"),
+    "a stack as long as its sheets make it": (
+        STACK_LENGTH, -0.56, 0.56, "carrier's screws enter the end plates"),
 }  # fmt: skip
 
 
@@ -71,10 +71,9 @@ def test_a_loose_limit_keeps_arrays_from_going_together(macro, what):
 
 
 def test_a_refusal_is_confirmed_by_the_worst_case(macro):
-    name = "spacer: thickness"
-    worse = replace(macro, variables={**macro.variables, name: variable(name, -0.3, 0.3)})
+    worse = replace(macro, variables={**macro.variables, STACK_LENGTH: variable(STACK_LENGTH, -0.56, 0.56)})
     (line,) = worse.stack("carrier's screws enter the end plates")
-    assert line.shortfall == pytest.approx(0.5 + 6 * 0.3 + 0.3 - 0.9)
+    assert line.shortfall == pytest.approx(0.56 + 0.2 + 0.1 - 0.5)
 
 
 def test_perfect_parts_make_the_array_as_drawn(macro):
@@ -126,7 +125,7 @@ def test_gaps_agree_with_rigid_bodies_placed_by_a_general_minimiser(macro):
             constraints={"type": "ineq", "fun": free},
             options={"ftol": 1e-12, "maxiter": 500},
         )
-        assert best.success
+        assert free(best.x).min() > -1e-6  # where it stops at its precision it says so
         plate = a.plate[k]
         assert plate[0] == pytest.approx(best.x[0] / 1e3, abs=1e-6)
         # it may rock over two ledges: then nowhere further from a ledge than the minimiser's
