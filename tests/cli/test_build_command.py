@@ -1,0 +1,40 @@
+"""`tactcad build`: what it prints, in words and as JSON, its status, and what it refuses."""
+
+import json
+
+import pytest
+
+from tactcad.cli.main import main
+
+
+def test_the_shipped_array_goes_together(capsys):
+    assert main(["build", "macro-array", "--count", "200", "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert {"count", "assembled", "yield", "failures", "elements", "seconds", "seed"} <= set(made)
+    assert made["count"] == 200 and made["assembled"] == round(200 * made["yield"])
+    assert made["yield"] == min(made["distributions"][d]["yield"] for d in ("normal", "uniform"))
+    assert [e["number"] for e in made["elements"]] == list(range(1, 11))
+    for line in made["requirements"]:
+        assert line["worst_low"] <= line["nominal"] <= line["worst_high"]
+        assert sum(c["share"] for c in line["contributors"]) == pytest.approx(1.0)
+
+
+def test_the_same_seed_says_the_same(capsys):
+    said = []
+    for _ in range(2):
+        assert main(["build", "soft-tissue", "--count", "50", "--seed", "3"]) == 0
+        said.append(capsys.readouterr().out)
+    assert said[0] == said[1] and "normal" in said[0] and "largest contributor" in said[0]
+
+
+@pytest.mark.parametrize(
+    ("options", "what"),
+    [(["--count", "0"], "--count"), (["--count", "x"], "--count"), (["--seed", "-1"], "--seed")],
+)
+def test_bad_numbers_are_refused_in_one_line(options, what, capsys):
+    try:
+        status = main(["build", "macro-array", *options])
+    except SystemExit as ended:
+        status = ended.code
+    error = capsys.readouterr().err.strip()
+    assert status == 2 and what in error and "\n" not in error
