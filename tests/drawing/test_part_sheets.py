@@ -78,8 +78,9 @@ def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro)
             macro.design.organisation,
             orders[number].part.name,
             str(orders[number].part.material),
-            "ISO 2768-1:1989-m",
-            "ISO 2768-2:1989-K",
+            "tolerancing ISO 8015",
+            "ISO 2768-1:1989-m,",
+            "ISO 2768-2:1989-K for the rest",
         ):
             assert text in runs, (number, text)
         assert "f" * 64 in " ".join(runs) and "some_B.dxf" in " ".join(runs)

@@ -10,14 +10,16 @@ from math import cos, hypot, radians, sin
 import numpy as np
 
 from .boxes import Box, Chord, Point, bounds, corners, grown, overlap
-from .dimension_lines import ARROW, HEIGHT, PAD, datum, datum_letter
+from .dimension_lines import ARROW, HEIGHT, PAD
 from .fonts import width
-from .ink import THIN, Fill, Item, Stroke, Text, arrow, bounds_of_items, polar, segment
+from .ink import THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
 from .layout_check import BESIDE_LINE, Quad, chord_meets, quads_meet
 from .sheet_plan import Callout, Datum
+from .tolerance_frames import FRAME, block, datum, frame_width
 
 STEP = 1.7 * HEIGHT  # between lines of a callout
 SHELF = 3.0  # of the leader beside the text
+BELOW_LINE = 1.5  # from the last line's baseline to a frame
 # Lengths of leaders tried, mm.
 REACHES = (7.0, 9.0, 11.0, 14.0, 17.0, 20.0, 24.0, 28.0, 33.0, 38.0, 44.0, 50.0, 58.0, 66.0, 75.0, 85.0, 95.0)
 MOST_TARGETS = 12  # of equal features tried for the leader
@@ -109,7 +111,7 @@ class Board:
     def datum(self, d: Datum, scale: float, origin: Point) -> bool:
         """Place a datum's triangle on its edge, the letter outside, where both are free."""
         ux, uy = d.away
-        for reach in (8.0, 9.5, 11.0, 12.5, 14.0, 16.0, 18.0, 20.0, 22.0, 25.0, 28.0, 32.0, 36.0, 40.0):
+        for reach in (6.5, 8.0, 9.5, 11.0, 12.5, 14.0, 16.0, 18.0, 20.0, 22.0, 25.0, 28.0, 32.0, 36.0, 40.0):
             for share in (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9, 0.05, 0.95):
                 on = d.at(share)
                 x, y = origin[0] + scale * on[0], origin[1] + scale * on[1]
@@ -139,9 +141,9 @@ class Board:
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
         texts, extras = _block(c, start, towards)
-        quads = [t.corners(AROUND) for t in texts] + [
-            corners(grown(bounds_of_items([x]), PAD / 2)) for x in extras
-        ]
+        quads = [t.corners(AROUND) for t in texts]
+        if extras:
+            quads.append(corners(grown(bounds_of_items(extras), PAD / 2)))
         if not self.free(quads):
             return [], 0.0
         tried = [self.passed(leg) for leg in ((tip, elbow), (elbow, start))]
@@ -231,14 +233,16 @@ def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, 
     ]
 
 
-def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Stroke]]:
-    """Texts beside the shelf's end, the first line level with it, and the frame of a datum's letter below."""
+def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[Item]]:
+    """Texts beside the shelf's end, the first line level with it; below them tolerance frames and a datum's
+    symbol, level with it where there is no text."""
     x, y = start
-    wide = max(width(line, HEIGHT) for line in c.lines)
-    left = x + 1.0 if towards > 0 else x - 1.0 - wide
+    wide = max([FRAME, *(width(line, HEIGHT) for line in c.lines), *map(frame_width, c.frames)])
+    aside = 1.0 if c.lines else 0.0
+    left = x + aside if towards > 0 else x - aside - wide
     base = y - HEIGHT / 2
     texts = [Text((left, base - STEP * i), line, HEIGHT) for i, line in enumerate(c.lines)]
-    if not c.datum:
+    if not c.frames and not c.datum:
         return texts, []
-    frame, letter = datum_letter(c.datum, (left + 2.5, y - STEP * len(c.lines) - 1.9))
-    return [*texts, letter], [frame]
+    top = texts[-1].at[1] - BELOW_LINE if texts else y + (FRAME / 2 if c.frames else 0.0)
+    return texts, block(c.frames, c.datum, (left, top), wide)

@@ -14,6 +14,7 @@ from .contours import contours, in_part
 from .holes import Group, widest
 from .ink import Point
 from .keys import OUTER, Owner, Quantity, Spot
+from .limit_marks import frames_of, letter_of
 from .measures import MeasureDifference, Offset, Radius, Slope, Span, Width, halfway, level, size
 from .sheet_plan import Callout, Dimension, View, seen
 from .sketch import ALIKE, Sketch, edge_level
@@ -29,7 +30,10 @@ def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
     for d in g.dimensions:
         sketch.must(d)
     targets = [(seen(view, r.at), widest(r.hole) / 2) for r in g.holes]
-    return Callout(g.lines, tuple(sorted(targets, key=lambda t: _to_outside(view, t[0]))), g.dimensions)
+    nearest = tuple(sorted(targets, key=lambda t: _to_outside(view, t[0])))
+    names = [r.hole.name for r in g.holes]
+    frames, letter = frames_of(sketch.part, names), letter_of(sketch.part, names)
+    return Callout(g.lines, nearest, g.dimensions, frames=frames, datum=letter)
 
 
 def _to_outside(view: View, p: Point) -> float:

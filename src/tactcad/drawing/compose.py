@@ -41,6 +41,7 @@ APART = 12.0  # between views, their dimensions included
 NARROWEST = 100.0  # column of notes beside the title block
 LABEL = 3.5  # height of views' letters
 PLANE = 3.0  # more between a view and its dimensions where a cutting plane ends
+DATUM = 3.0  # and where a datum's symbol stands between them
 LARGEST = 200.0  # mm of paper, on A4 and A3: a view is not enlarged beyond
 # Shares of the room that details may take, tried in turn.
 SHRUNK = (1.0, 0.6, 0.35)
@@ -135,7 +136,7 @@ def _attempt(
     drawn = []
     for n, v in enumerate(plan.views):
         own = _detail_scale(v, v.window, shrunk) if v.window else scale
-        drawn.append(_drawn(v, curves[v.name], own, plan.values, {} if n else spread))
+        drawn.append(_drawn(v, curves[v.name], own, plan.values, _room_for_datums(v, {} if n else spread)))
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
         return None, [f"the views at {shown(scale)} do not fit {paper.name}"]
@@ -164,18 +165,32 @@ def _attempt(
                 lettered[edge.letter] = board.datum(edge, factor(d.scale), places[d.view.name])
     for d in drawn:
         for edge in d.view.datums:
-            if not lettered[edge.letter]:  # stated in words at the end of a leader
+            if not lettered[edge.letter]:  # at the end of a leader
                 spots = tuple((edge.at(share), 0.0) for share in (0.5, 0.25, 0.75))
-                said = Callout((f"datum {edge.letter}",), spots)
+                said = Callout((), spots, datum=edge.letter)
                 lettered[edge.letter] = board.callout(said, factor(d.scale), places[d.view.name])
     if not all(lettered.values()):
         return None, [f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place"]
     for d in drawn:
         for callout in d.view.callouts:
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
-                return None, [f"callout {callout.lines[0]!r} finds no place"]
+                return None, [f"callout {_said(callout)!r} finds no place"]
     sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items))
     return sheet, layout_faults(sheet)
+
+
+def _room_for_datums(view: View, spread: Mapping[str, float]) -> dict[str, float]:
+    """By how much running dimensions stand further off, so that a datum's symbol fits between them and its
+    edge."""
+    sides = {"top": (0.0, 1.0), "bottom": (0.0, -1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}
+    edges = {d.away for d in view.datums}
+    return dict(spread) | {
+        r.side: spread.get(r.side, 0.0) + DATUM for r in view.runnings if sides[r.side] in edges
+    }
+
+
+def _said(c: Callout) -> str:
+    return " ".join([*c.lines[:1], *(cell for f in c.frames for cell in f.cells), c.datum]).strip()
 
 
 def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from .boxes import Box, Point, corners, grown
+from .boxes import Box, Point
 from .fonts import ink_box, width
 from .ink import CENTRE, THIN, DrawnArc, Fill, Item, Stroke, Text, arrow, polar, segment
 from .keys import Values
@@ -25,7 +25,8 @@ BEYOND = 12.0  # from the part to the text of a dimension across a web
 ABOVE = 1.0  # from the dimension line to the text
 CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow head, and white beside a line
 PAD = 1.1  # around the text of a key characteristic
-LABELS = 4.4  # least distance of running dimensions' texts
+BASIC = 0.8  # around that of a theoretically exact dimension
+LABELS = 4.4  # least distance of running dimensions' texts, without their frames
 
 
 @dataclass
@@ -65,16 +66,19 @@ def boxed(text: Text, key: int) -> list[Item]:
     mark = Text(polar(start, PAD, text.angle), f"K{key}", text.height, angle=text.angle)
     shift = mark.width + 2 * PAD
     shown = Text(polar(start, shift + PAD, text.angle), text.text, text.height, angle=text.angle)
-    length = shift + text.width + 2 * PAD
+    outline = _outline(start, text, shift + text.width + 2 * PAD, PAD)
+    low, high = (polar(p, shift, text.angle) for p in (outline.points[0], outline.points[3]))
+    return [mark, shown, outline, segment(low, high, THIN, "symbol")]
+
+
+def _outline(start: Point, text: Text, length: float, pad: float) -> Stroke:
+    """A frame from `start` on along the text's line of writing, `pad` mm higher and lower than it."""
 
     def at(u: float, v: float) -> Point:
         return polar(polar(start, u, text.angle), v, text.angle + 90)
 
-    low, high = -PAD, text.height + PAD
-    outline = Stroke(
-        (at(0, low), at(length, low), at(length, high), at(0, high)), THIN, "symbol", closed=True
-    )
-    return [mark, shown, outline, segment(at(shift, low), at(shift, high), THIN, "symbol")]
+    low, high = -pad, text.height + pad
+    return Stroke((at(0, low), at(length, low), at(length, high), at(0, high)), THIN, "symbol", closed=True)
 
 
 def boxed_width(text: str, key: int) -> float:
@@ -210,7 +214,8 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
         ((*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops), key=lambda stop: stop[0]
     )
     origin = next(s for s, _, d in stops if d is None)
-    places = _spread([s for s, _, _ in stops], LABELS)
+    framed = any(d and d.basic for _, _, d in stops)
+    places = _spread([s for s, _, _ in stops], LABELS + (BASIC if framed else 0.0))
     items: list[Item] = [segment(on_paper(stops[0][0], o), on_paper(stops[-1][0], o))]
     for n, ((s, foot, d), label) in enumerate(zip(stops, places)):
         aside = abs(label - s) > 1e-6
@@ -219,7 +224,13 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
         items.append(segment(on_paper(s, foot + GAP), on_paper(s, bend), THIN, "extension"))
         items.append(segment(on_paper(s, bend), end, THIN, "extension"))
         items += _stop(on_paper, stops, n, origin, o)
-        items.append(_label(on_paper, r.side, label, o + 8.0, "0" if d is None else d.text(values)))
+        text = "0" if d is None else d.text(values)
+        if d and d.basic:
+            shown = _label(on_paper, r.side, label, o + 8.0 + BASIC, text)
+            start = polar(shown.origin, -BASIC, shown.angle)
+            items += [shown, _outline(start, shown, shown.width + 2 * BASIC, BASIC)]
+        else:
+            items.append(_label(on_paper, r.side, label, o + 8.0, text))
     return items
 
 
@@ -275,26 +286,6 @@ def across(a: Across, scale: float, values: Values) -> list[Item]:
     at = (end[0] + shelf + (0.0 if key else 1.0), end[1] - HEIGHT / 2)
     shown = Text(at, text, HEIGHT)
     return [*items, *(boxed(shown, key) if key else [shown])]
-
-
-def datum(at: Point, away: Point, reach: float, letter: str) -> list[Item]:
-    """Filled triangle on an edge, and the letter in a square `reach` mm away from it (ISO 5459)."""
-    (x, y), (ux, uy) = at, away
-    tip = (x + 3.0 * ux, y + 3.0 * uy)
-    end = (x + (reach - 2.5) * ux, y + (reach - 2.5) * uy)
-    triangle = Fill(((x - 1.75 * uy, y + 1.75 * ux), (x + 1.75 * uy, y - 1.75 * ux), tip), "symbol")
-    return [
-        triangle,
-        segment(tip, end, THIN, "symbol"),
-        *datum_letter(letter, (x + reach * ux, y + reach * uy)),
-    ]
-
-
-def datum_letter(letter: str, middle: Point) -> tuple[Stroke, Text]:
-    """A letter in its square."""
-    x, y = middle
-    square = Stroke(corners(grown((x, y, x, y), 2.5)), THIN, "symbol", True)
-    return square, Text((x, y - HEIGHT / 2), letter, HEIGHT, "middle")
 
 
 def centre_lines(centre: Point, diameter: float, scale: float) -> list[Item]:

@@ -1,7 +1,7 @@
 """The plan of a sensing element: the whole side view, the arm enlarged (X), the hinge enlarged (Z), and the
 edge.
 
-Heights count from the flat face (datum A) and, for the clamp, from the dowel hole (datum B), which is also
+Heights count from the flat face and, for the clamp, from the dowel hole, which is also
 the origin of lengths of the rear body; lengths of the arm count from its tip, as the arm length itself does.
 """
 
@@ -19,9 +19,10 @@ from .boxes import Box, Point
 from .callouts import equal_radii, hole_callout
 from .holes import Group, Round, groups, rounds
 from .keys import OUTER, THICKNESS, Spot
+from .limit_marks import with_marks
 from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .prism import FRONT, side_view
-from .sheet_plan import Across, Callout, Datum, Dimension, Linear, SheetPlan, View
+from .sheet_plan import Across, Callout, Dimension, Linear, SheetPlan, View
 from .sketch import ALIKE, Sketch, closed, view_of
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
@@ -91,7 +92,7 @@ def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetP
     sketch = Sketch(part)
     for row in conventions(OUTER, o.contour):
         sketch.convention(row)
-    called = groups(rounds(part), sketch.values, {2: FRONT[0]}, part.characteristics)
+    called = groups(rounds(part), sketch.values, {2: FRONT[0]}, part)
     holes = [r for g in called for r in g.holes]
     dowel = next(r for r in holes if r.label == "dowel hole")
     for r in holes:
@@ -101,9 +102,10 @@ def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetP
     arm = _arm_view(sketch, o, *left)
     front = _front_view(sketch, part, o, called, dowel)
     thickness = Dimension("sheet thickness", (size(THICKNESS),))
-    edge = replace(side_view(sketch, part, front, [], thickness), hidden=False, datums=())
-    closed(sketch)
-    return SheetPlan(part, sketch.values, tuple(sketch.conventions), (front, edge, arm, hinge), tuple(notes))
+    edge = replace(side_view(sketch, part, front, [], thickness), hidden=False)
+    views = with_marks(part, (front, edge, arm, hinge))
+    closed(sketch, views)
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), views, tuple(notes))
 
 
 def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group], dowel: Round) -> View:
@@ -136,14 +138,12 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
     over = (Span(o.y("pad_face"), level(dowel.owner.place(1))),)
     pad = sketch.must(Dimension(PAD_HEIGHT, over))
     linears.append(Linear(pad, "left", o.start("pad_face"), at))
-    callouts = [replace(hole_callout(sketch, view, g), datum="B" if dowel in g.holes else "") for g in called]
+    callouts = [hole_callout(sketch, view, g) for g in called]
     callouts += _radii(sketch, view, o, ("ledge_root", "recess_root"))
-    flat = o.segment(face)
     return replace(
         view,
         linears=tuple(linears),
         callouts=tuple(callouts),
-        datums=(Datum("A", flat.start, flat.end, (0.0, -1.0)),),
         centres=tuple((r.at[:2], r.hole.diameter) for g in called for r in g.holes),
     )
 
@@ -213,13 +213,7 @@ def _hinge_view(
                 (f"{rough[0]}, both hinge faces",), (((middle - 0.2 * min(xb - xa, MOST_LEAF), low), 0.0),)
             )
         )
-    shown = face > window[1]
-    lettered = (
-        (Datum("A", (window[0] if one else xb, face), (window[2], face), (0.0, -1.0)),) if shown else ()
-    )
-    view = replace(
-        view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts), datums=lettered
-    )
+    view = replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
     return view, ([*heights, along], called) if tall else ([], [])
 
 
@@ -310,8 +304,4 @@ def _arm_view(sketch: Sketch, o: Outline, more: Sequence[Linear], called: Sequen
     angle = ramp.text(sketch.values).removeprefix("-")
     callouts.append(Callout((f"ramp {angle}",), ((spot, 0.0),), (ramp,)))
     centre_line = ((middle, flat - 0.1 * back), (middle, max(ledge, back) + margin / 2))
-    low = o.corner("front_slot_body_wall", "body_face").at if "body_face" in o else o.start("flat_face")
-    face = Datum("A", low, (window[2] if "body_face" in o else xa, low[1]), (0.0, -1.0))
-    return replace(
-        view, linears=(*linears, *more), callouts=(*callouts, *called), axes=(centre_line,), datums=(face,)
-    )
+    return replace(view, linears=(*linears, *more), callouts=(*callouts, *called), axes=(centre_line,))

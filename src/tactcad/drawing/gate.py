@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from tactcad.parts.description import Characteristic, Part
 
 from .ink import DrawnSheet
 from .layout_check import layout_faults
+from .limit_marks import frame_of, times
 
 SAME = 1e-9  # mm
 _VALUE = re.compile(
@@ -41,7 +43,46 @@ def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) ->
     texts = [t.text for t in sheet.texts if t.role != "watermark"]
     lost = [t for t in set(texts) if runs.count(t) < texts.count(t)]
     wrong += [f"{t!r} is not found again" for t in sorted(lost)]
-    return wrong + key_faults(runs, [c for c in part.characteristics if c.key]) + layout_faults(sheet)
+    wrong += key_faults(runs, [c for c in part.characteristics if c.key])
+    elsewhere = Counter(t.text for t in sheet.texts if t.role != "symbol")
+    return wrong + geometric_faults(runs, part, elsewhere) + layout_faults(sheet)
+
+
+def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, int]) -> list[str]:
+    """What is wrong with tolerance frames and datum letters on a sheet.
+
+    Parameters
+    ----------
+    runs
+        Texts of the page in the order in which they were drawn.
+    part
+        Whose geometric tolerances and datums have to stand there, at each feature once, and no others.
+    elsewhere
+        How often a text stands on the sheet outside of frames and datum symbols, as letters of the paper's
+        zones do.
+
+    Returns
+    -------
+    list of str
+        Zones with their datums, and letters, that stand more often or less.
+    """
+    frames = Counter(frame_of(part, g).cells for g in part.geometric for _ in range(times(part, g)))
+    wrong = []
+    for cells, meant in sorted(frames.items()):
+        n = len(cells)
+        found = sum(tuple(runs[i : i + n]) == cells for i in range(len(runs) - n + 1))
+        found -= elsewhere.get(cells[0], 0) if n == 1 else 0
+        longer = sum(k for other, k in frames.items() if len(other) > n and other[:n] == cells)
+        if found - longer != meant:
+            wrong.append(f"tolerance frame {' '.join(cells)} stands {found - longer} times, not {meant}")
+    wanted = Counter(
+        [*(d.letter for d in part.datums), *(x for cells in frames.elements() for x in cells[1:])]
+    )
+    for letter in sorted({*wanted, *(run for run in runs if len(run) == 1 and run.isupper())}):
+        found = runs.count(letter) - elsewhere.get(letter, 0)
+        if found != wanted[letter]:
+            wrong.append(f"datum {letter} stands {found} times in frames, not {wanted[letter]}")
+    return wrong
 
 
 def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:

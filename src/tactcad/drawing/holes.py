@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import isclose
@@ -66,21 +66,16 @@ class Group:
         return self.holes[0].axis
 
 
-def groups(
-    holes: Sequence[Round],
-    values: Values,
-    eye_of: Mapping[int, Vector],
-    limits: Sequence[Characteristic] = (),
-) -> list[Group]:
-    """Equal holes together; `eye_of` gives the eye of the view that shows the holes along axis 0, 1, 2 as
-    circles. `limits` are the part's; those of a diameter stand at its holes."""
+def groups(holes: Sequence[Round], values: Values, eye_of: Mapping[int, Vector], part: Part) -> list[Group]:
+    """Equal holes of the part together; `eye_of` gives the eye of the view that shows the holes along axis 0,
+    1, 2 as circles. Holes that geometric tolerances or datums tell apart are not equal."""
     kinds: dict[tuple, list[Round]] = {}
     for r in holes:
         h = r.hole
         side = h.axis if not _same_from_both_sides(h) else tuple(abs(a) for a in h.axis)
-        kinds.setdefault((side, _spec(h)), []).append(r)
+        kinds.setdefault((side, (*_spec(h), *_stated(part, h.name))), []).append(r)
     merged = _both_ends(kinds)
-    own = {c.name: c for c in limits}
+    own = {c.name: c for c in part.characteristics}
     return [_group(some, both, values, eye_of, own) for some, both in merged]
 
 
@@ -99,6 +94,12 @@ def _spec(h: Hole) -> tuple:
         h.drill_point,
         h.tolerance,
     )
+
+
+def _stated(part: Part, name: str) -> Iterator[str]:
+    """What is stated of the holes of a name: geometric tolerances by their names, datums by their letters."""
+    yield from (g.name for g in part.geometric if name in g.features)
+    yield from (d.letter for d in part.datums if d.feature == name)
 
 
 def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]]:

@@ -20,11 +20,12 @@ from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outl
 from .contours import contours
 from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
+from .limit_marks import with_marks
 from .measures import Level, MeasureDifference, Span, conventions, halfway, level, size
 from .running import depth_running, face_running, filled, running_along
 from .section_view import section_of, section_view
-from .sheet_plan import Datum, Dimension, Linear, SheetPlan, Side, View, opposite, seen
-from .sketch import ALIKE, Coordinate, Sketch, closed, edge_level, view_of
+from .sheet_plan import Dimension, Linear, SheetPlan, Side, View, opposite, seen
+from .sketch import Coordinate, Sketch, closed, edge_level, view_of
 
 FRONT = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0))
 BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
@@ -46,7 +47,7 @@ def prism_plan(
     Raises
     ------
     CheckFailure
-        Where a characteristic or a variable of the part stays without dimension.
+        Where a variable or a limit of the part does not stand on the sheet, or a limit twice.
     """
     body = part.extrusion
     sketch = Sketch(part)
@@ -60,7 +61,7 @@ def prism_plan(
     right = View("", eye, up, (0, 0, 0, 0)).right
     below = _below_eye(holes, up)
     eyes = {2: eye, 1: below or up, 0: opposite(right)}
-    called = groups(holes, sketch.values, eyes, part.characteristics)
+    called = groups(holes, sketch.values, eyes, part)
     breaks, rows = None, []
     if shortened:
         x0, y0, x1, y1 = body.outer.box
@@ -82,8 +83,9 @@ def prism_plan(
         views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
     if section and (below or section.axis == 1):
         views.append(section_view(part, front, below, section))
-    closed(sketch)
-    return SheetPlan(part, sketch.values, tuple(sketch.conventions), tuple(views), tuple(notes), breaks)
+    marked = with_marks(part, views)
+    closed(sketch, marked)
+    return SheetPlan(part, sketch.values, tuple(sketch.conventions), marked, tuple(notes), breaks)
 
 
 def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
@@ -146,13 +148,11 @@ def _front_view(
     for k in (0, 1):
         rest = [c for c in points if c.quantity == PLACES[k]]
         runnings[k] = filled(sketch, view, runnings[k], k, rest)
-    datums = () if disc else _datums(view, outer)
     return replace(
         view,
         linears=tuple(linears),
         runnings=tuple(r for r in runnings if len(r.stops) > 1),
         callouts=tuple(callouts),
-        datums=datums,
         centres=tuple((seen(view, r.at), widest(r.hole)) for g in along_z for r in g.holes)
         + (((seen(view, (*disc[0], 0.0)), 2 * disc[1]),) if disc else ()),
         threads=_threads(view, along_z),
@@ -181,17 +181,6 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
             Linear(space, "bottom" if k == 0 else "left", p, q),
         )
     return list(shown.values())
-
-
-def _datums(view: View, outer: Contour) -> tuple[Datum, ...]:
-    """Letters on the two edges that the running dimensions start from: on the longest there that has room."""
-    lines = [(seen(view, (*s.start, 0.0)), seen(view, (*s.end, 0.0))) for s in outer if isinstance(s, Line)]
-    datums = []
-    for letter, k, away in (("B", 0, (-1.0, 0.0)), ("C", 1, (0.0, -1.0))):
-        on = [(p, q) for p, q in lines if max(abs(p[k] - view.box[k]), abs(q[k] - view.box[k])) < ALIKE]
-        longest = sorted(on, key=lambda e: -round(abs(e[0][1 - k] - e[1][1 - k]), 6))
-        datums += [Datum(letter, *edge, away) for edge in longest]
-    return tuple(datums)
 
 
 def _is_centre(c: Coordinate) -> bool:
@@ -258,7 +247,6 @@ def _sunk_view(
         callouts=tuple(callouts),
         runnings=(face_running(sketch, view, side, 0, mine), depth_running(sketch, view, part, "left", mine)),
         centres=tuple((seen(view, r.at), widest(r.hole)) for g in mine for r in g.holes),
-        datums=_underside(view, part),
         threads=_threads(view, mine),
     )
 
@@ -283,15 +271,4 @@ def side_view(
         raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")
     d = sketch.must(thickness or sketch.stating("thickness", (size(THICKNESS),)))
     x0, y0, x1, y1 = view.box
-    return replace(view, linears=(Linear(d, "bottom", (x0, y0), (x1, y0)),), datums=_underside(view, part))
-
-
-def _underside(view: View, part: Part) -> tuple[Datum, ...]:
-    """Letter A on the face z = 0."""
-    u0, v0, u1, v1 = view.box
-    zu, zv = view.right[2], view.up[2]
-    if zu:
-        u = u0 if zu > 0 else u1
-        return (Datum("A", (u, v0), (u, v1), (-zu, 0.0)),)
-    v = v0 if zv > 0 else v1
-    return (Datum("A", (u0, v), (u1, v), (0.0, -zv)),)
+    return replace(view, linears=(Linear(d, "bottom", (x0, y0), (x1, y0)),))

@@ -5,12 +5,15 @@ something new.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tactcad.parts.description import Part
+from tactcad.parts.limits import FACES
 
 from .boxes import Point
 from .holes import Group
 from .keys import OUTER, THICKNESS
+from .limit_marks import places
 from .measures import Span
 from .sheet_plan import Running, Side, View, seen
 from .sketch import ALIKE, Coordinate, Sketch
@@ -36,14 +39,16 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
     Returns
     -------
     Running
-        From the view's left or lower edge, of a disc from its centre; without points it has no stops.
+        From the datum across the axis; without one from the view's left or lower edge, of a disc from its
+        centre. Without points it has no stops.
     """
     if not points:
         return Running(side, ())
-    way = _way(view, k)
     features = [c for c in points if not c.corner]
     edges = [c for c in features if c.contour == OUTER]
-    origin = min(edges or features, key=lambda c: way * c.at[k])
+    first = _first_datum(sketch.part, features)
+    origin = first or min(edges or features, key=lambda c: _right_or_up(view, k) * c.at[k])
+    way = _way(sketch, view, k, origin)
     sketch.known[k].append(origin)
     # the outline first: what is centred on it follows from it
     features.sort(key=lambda c: (c not in edges, round(way * c.at[k], 6), str(c.variable)))
@@ -53,13 +58,16 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
 
 def filled(sketch: Sketch, view: View, r: Running, k: int, points: Sequence[Coordinate]) -> Running:
     """The running dimensions, with stops for corners and centres that still determine something."""
-    return _with_stops(r, sketch, view, k, sketch.known[k][0], _way(view, k), points) if r.stops else r
+    if not r.stops:
+        return r
+    origin = sketch.known[k][0]
+    return _with_stops(r, sketch, view, k, origin, _way(sketch, view, k, origin), points)
 
 
 def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequence[Group]) -> Running:
     """Holes of a side face along the face (axis k), from the same edge as in the front view."""
     known, origin = sketch.known[k], sketch.known[k][0]
-    way = (view.right, view.up)[0 if side in ("top", "bottom") else 1][k]
+    way = _way(sketch, view, k, origin)
     holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[k], str(r.owner)))
     points = [Coordinate(f"{r.label} {'xyz'[k]}", r.owner.place(k), r.at) for r in holes]
     sketch.known[k] = [origin]
@@ -70,24 +78,43 @@ def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequenc
 
 
 def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Sequence[Group]) -> Running:
-    """Holes of a side face across the thickness, from the face z = 0, and the thickness itself."""
+    """Holes of a side face across the thickness, from the face that is a datum, otherwise from z = 0, and the
+    thickness itself."""
     body = part.extrusion
     x0 = body.outer.box[0]
-    origin = Coordinate("underside", None, (x0, 0.0, 0.0))
+    faces = {
+        FACES[0]: Coordinate("thickness", None, (x0, 0.0, 0.0), states="thickness"),
+        FACES[1]: Coordinate("thickness", THICKNESS, (x0, 0.0, body.thickness), states="thickness"),
+    }
+    origin = faces.pop(next((d.feature for d in part.datums if d.feature in faces), FACES[0]))
+    way = 1.0 if origin.variable is None else -1.0
     sketch.known[2] = [origin]
-    holes = sorted((r for g in called for r in g.holes), key=lambda r: (r.at[2], str(r.owner)))
+    holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[2], str(r.owner)))
     points = [
         Coordinate(f"{r.label} z", r.owner.place(2), r.at, states=HEIGHTS.get(r.label, "")) for r in holes
     ]
-    points.append(Coordinate("thickness", THICKNESS, (x0, 0.0, body.thickness), states="thickness"))
-    # z = 0 may be the upper edge of the view: the numbers still count from it
+    points += faces.values()
+    # the origin may be the upper edge of the view: the numbers still count from it
     bare = Running(side, ((None, seen(view, origin.at)),))
-    return _with_stops(bare, sketch, view, 2, origin, 1.0, points)
+    return _with_stops(bare, sketch, view, 2, origin, way, points)
 
 
-def _way(view: View, k: int) -> float:
+def _first_datum(part: Part, points: Sequence[Coordinate]) -> Coordinate | None:
+    """Of the points the one that the first datum stands on."""
+    on = [variable for d in part.datums for _, variable in places(part, (d.feature,))]
+    return next((c for variable in on for c in points if c.variable == variable), None)
+
+
+def _right_or_up(view: View, k: int) -> float:
     """1 where the part's axis k runs to the right or up in the view, -1 where it runs the other way."""
     return (view.right if k == 0 else view.up)[k] or 1.0
+
+
+def _way(sketch: Sketch, view: View, k: int, origin: Coordinate) -> float:
+    """Sign of counting along axis k: to the right or up, from an edge at that end the other way."""
+    way, box = _right_or_up(view, k), sketch.part.extrusion.outer.box
+    last = max(way * box[k], way * box[k + 2])
+    return -way if abs(way * origin.at[k] - last) < ALIKE else way
 
 
 def _with_stops(
@@ -112,6 +139,7 @@ def _with_stops(
             continue
         row = Span(origin.level, c.level) if way > 0 else Span(c.level, origin.level)
         d = sketch.stating(c.states, (row,), plain=c.name)
+        d = replace(d, basic=d.characteristic is None and sketch.locates(origin, c, k))
         if sketch.new(d):
             sketch.known[k].append(c)
             stops.append((d, _foot(view, r.side, c)))

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tactcad.parts.description import Characteristic, Part, Vector, vector
+from tactcad.parts.limits import Geometric
 
 from .boxes import Box, Point
 from .keys import Values, Variable
@@ -21,7 +22,8 @@ class Dimension:
     `sign` stands before the number, `unit` after it. `limits` are upper and lower deviation from the number
     shown, of a part modelled at `modelled` (deviation of the model from that number). `key` is the number of
     the key characteristic that it states, 0 for none. An `auxiliary` one follows from others and stands in
-    parentheses, for information. `characteristic` is the part's own that it states.
+    parentheses, for information. `characteristic` is the part's own that it states. A `basic` one
+    (theoretically exact, ISO 1101) locates the zone of a position tolerance, and stands in a frame.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Dimension:
     counted: bool = True
     auxiliary: bool = False
     characteristic: Characteristic | None = None
+    basic: bool = False
 
     def value(self, values: Values) -> float:
         """mm or degrees. Raises ValueError where the rows differ: the features are not equal."""
@@ -107,14 +110,31 @@ class Running:
 
 
 @dataclass(frozen=True)
+class Frame:
+    """A tolerance frame: a geometric tolerance, and the number of holes that it holds for."""
+
+    geometric: Geometric
+    count: int
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Texts after the symbol: the zone, of a pattern combined (CZ, ISO 5458), and the datums."""
+        g = self.geometric
+        combined = " CZ" if g.symbol == "position" and self.count > 1 else ""
+        return (f"{'⌀' if g.round else ''}{number(g.zone)}{combined}", *g.datums)
+
+
+@dataclass(frozen=True)
 class Callout:
     """Texts at the end of a leader that points at one of the targets: circles, or points (radius 0), or arcs
-    that are entered from their centre (`inside`). `dimensions` are those that the lines state."""
+    that are entered from their centre (`inside`). `dimensions` are those that the lines state; tolerance
+    frames stand below the lines, and the symbol of the datum that the feature is below these."""
 
     lines: tuple[str, ...]
     targets: tuple[tuple[Point, float], ...]
     dimensions: tuple[Dimension, ...] = ()
     spans: tuple[tuple[float, float], ...] = ()  # of arcs: start and end angle, degrees, a target each
+    frames: tuple[Frame, ...] = ()
     datum: str = ""
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import count, product
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Part, Vector
+from tactcad.parts.limits import FACES
 
 from .boxes import bounds
 from .keys import Owner, Quantity, Spot, Variable
+from .limit_marks import places, times
 from .measures import Determined, Level, Measure, level, variables
 from .sheet_plan import Dimension, View, seen
 
@@ -53,6 +57,12 @@ class Sketch:
         self.conventions: list[Measure] = []
         self.known: dict[int, list[Coordinate]] = {0: [], 1: [], 2: []}
         self.unstated = {c.name: c for c in part.characteristics}
+        # (axis, coordinate) of datums, of what has a position tolerance, and what of it is not located
+        faces = {FACES[0]: 0.0, FACES[1]: part.extrusion.thickness}
+        self.bases = {(2, faces[d.feature]) for d in part.datums if d.feature in faces}
+        self.bases |= self._spots(d.feature for d in part.datums)
+        self.exact = self._spots(f for g in part.geometric if g.symbol == "position" for f in g.features)
+        self.unlocated = self.exact - self.bases
 
     def convention(self, row: Measure) -> None:
         self.conventions.append(row)
@@ -67,6 +77,17 @@ class Sketch:
             return True
         self.account.basis = before
         return False
+
+    def _spots(self, features: Iterable[str]) -> set[tuple[int, float]]:
+        return {(k, _alike(self.values[v])) for k, v in places(self.part, tuple(features))}
+
+    def locates(self, origin: Coordinate, c: Coordinate, k: int) -> bool:
+        """Whether a dimension along axis k locates something with a position tolerance from a datum."""
+        start, end = ((k, _alike(spot.at[k])) for spot in (origin, c))
+        if start not in self.bases or end not in self.exact:
+            return False
+        self.unlocated.discard(end)
+        return True
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
         """The dimension that states the characteristic of that name; a plain one where the part has none, or
@@ -92,16 +113,36 @@ class Sketch:
         return dimension
 
 
-def closed(sketch: Sketch) -> None:
-    """Raise CheckFailure unless every characteristic is stated, and everything but the place on the paper
-    determined."""
+def _alike(value: float) -> float:
+    return round(value, 6) + 0.0
+
+
+def closed(sketch: Sketch, views: Sequence[View]) -> None:
+    """Raise CheckFailure unless every limit is stated, geometric tolerances and datums once each, and
+    everything but the place on the paper determined."""
+    number = sketch.part.part_no
     if sketch.unstated:
-        raise CheckFailure(
-            f"drawings: {sketch.part.part_no}: no dimension states {', '.join(sketch.unstated)}"
-        )
+        raise CheckFailure(f"drawings: {number}: no dimension states {', '.join(sketch.unstated)}")
     missing = len(sketch.values) - 2 - sketch.account.rank
     if missing:
-        raise CheckFailure(f"drawings: {sketch.part.part_no}: {missing} dimensions are missing")
+        raise CheckFailure(f"drawings: {number}: {missing} dimensions are missing")
+    if sketch.unlocated:
+        open_ = ", ".join(f"{'xyz'[k]} = {at:g}" for k, at in sorted(sketch.unlocated))
+        raise CheckFailure(f"drawings: {number}: nothing locates {open_} from a datum")
+    _marked_once(sketch.part, views)
+
+
+def _marked_once(part: Part, views: Sequence[View]) -> None:
+    called = [c for view in views for c in view.callouts]
+    framed = Counter(f.geometric.name for c in called for f in c.frames)
+    # of a letter that several views offer one is drawn
+    lettered = Counter(c.datum for c in called) + Counter({d.letter for view in views for d in view.datums})
+    shown = [(f"tolerance of {g.symbol} ({g.name})", framed[g.name], times(part, g)) for g in part.geometric]
+    shown += [(f"datum {d.letter}", lettered[d.letter], 1) for d in part.datums]
+    if wrong := [
+        f"{what} stands {found} times, not {meant}" for what, found, meant in shown if found != meant
+    ]:
+        raise CheckFailure(f"drawings: {part.part_no}: {'; '.join(wrong)}")
 
 
 def view_of(part: Part, name: str, eye: Vector, up: Vector) -> View:

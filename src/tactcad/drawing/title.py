@@ -14,7 +14,9 @@ from .paper import Paper
 
 WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
 LABEL = 1.8  # height of the cells' headings, ISO 3098 series
-GENERAL_TOLERANCES = ("ISO 2768-1:1989-m", "ISO 2768-2:1989-K")
+TOLERANCING = "tolerancing ISO 8015"  # each limit by itself
+# Of what states no limit of its own.
+GENERAL_TOLERANCES = ("ISO 2768-1:1989-m,", "ISO 2768-2:1989-K for the rest")
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
             12,
             (
                 (96, "Surface finish", t.finish),
-                (54, "Dimensions", "mm, angles in degrees"),
+                (54, "Dimensions", ("mm, angles in degrees", TOLERANCING)),
                 (15, "Paper", paper.name),
                 (15, "Language", "en"),
             ),

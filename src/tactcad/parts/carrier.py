@@ -70,13 +70,14 @@ def carrier(layout: Layout) -> Part:
         Extrusion(rectangle(-length / 2, -width / 2, length / 2, width / 2), t),
         features,
         geometric=(
-            Geometric("end plate screw holes", "position", PLACE, ("end_plate_screw",), ("A",), True),
-            Geometric("mounting threads", "position", 2 * PLACE, ("mount",), ("A",), True),
+            Geometric("end plate screw holes", "position", PLACE, ("end_plate_screw",), FRAME, True),
+            Geometric("mounting threads", "position", 2 * PLACE, ("mount",), FRAME, True),
         ),
-        datums=(DatumFeature("A", FACES[0]),),
+        datums=(DatumFeature("A", FACES[0]), DatumFeature("B", "left edge"), DatumFeature("C", "lower edge")),
     )
 
 
+FRAME = ("A", "B", "C")  # the datums that its holes stand from
 # Zone of the screw holes' pattern, mm; chosen: drilled in one clamping.
 PLACE = 0.1
 
