@@ -26,7 +26,7 @@ AGREES = 1e-6  # mm
 
 
 @dataclass(frozen=True)
-class Frame:
+class LocalAxes:
     """A right-handed frame: where it stands, its x axis, and its axis z."""
 
     at: Vector = (0.0, 0.0, 0.0)
@@ -58,7 +58,7 @@ class Wall:
 
     segment: Segment
     depth: float
-    frame: Frame = Frame()
+    frame: LocalAxes = LocalAxes()
 
     def holds(self, p: Vector) -> bool:
         u, v, w = self.frame.local(p)
@@ -95,7 +95,7 @@ class Wall:
 class Floor:
     """The plane z = 0 of a frame, or as much of it as lies within a contour."""
 
-    frame: Frame
+    frame: LocalAxes
     within: Contour | None = None
     diameter: None = None
     reach: float = 0.0
@@ -120,7 +120,7 @@ def pieces(part: Part, feature: str) -> list[Piece]:
     """Every piece of the part's surface that the feature of that name bounds; an extrusion's alone."""
     body = part.extrusion
     if feature in FACES:
-        return [Floor(Frame((0.0, 0.0, 0.0 if feature == FACES[0] else body.thickness)))]
+        return [Floor(LocalAxes((0.0, 0.0, 0.0 if feature == FACES[0] else body.thickness)))]
     found: list[Piece] = [
         Wall(s, body.thickness) for c in (body.outer, *body.openings) for s in _edges(c) if s.name == feature
     ]
@@ -144,18 +144,18 @@ def _hole(hole: Hole, feature: str) -> Iterator[Piece]:
         yield Wall(
             Arc((r, 0.0), (r, 0.0), (0.0, 0.0), True),
             hole.depth,
-            Frame(hole.at, _across(hole.axis), hole.axis),
+            LocalAxes(hole.at, _across(hole.axis), hole.axis),
         )
 
 
 def _pocket(pocket: Pocket, feature: str) -> Iterator[Piece]:
-    frame = Frame(pocket.at, pocket.x_axis, pocket.axis)
+    frame = LocalAxes(pocket.at, pocket.x_axis, pocket.axis)
     for s in (s for c in (pocket.contour, *pocket.island) for s in _edges(c)):
         if feature in (pocket.name, f"{pocket.name} {s.name}"):
             yield Wall(s, pocket.depth, frame)
     if feature == pocket.name:
         bottom = vector(p + pocket.depth * a for p, a in zip(pocket.at, pocket.axis))
-        yield Floor(Frame(bottom, pocket.x_axis, pocket.axis), pocket.contour)
+        yield Floor(LocalAxes(bottom, pocket.x_axis, pocket.axis), pocket.contour)
 
 
 def _across(axis: Vector) -> Vector:
