@@ -44,6 +44,16 @@ class Assembled:
     layout: Layout
     made: Deviations
 
+    def with_new(self, name: str, deviations: Array) -> Assembled:
+        """The same arrays with other parts in one dimension; contacts that it does not enter are not solved
+        anew."""
+        changed = Assembled(self.layout, {**self.made, name: deviations})
+        if not name.startswith(UNDER_THE_PADS):
+            changed.__dict__["pose"] = self.pose
+            if not name.startswith(UNDER_THE_PLATE):
+                changed.__dict__["plate"] = self.plate
+        return changed
+
     # --- where things are as drawn ---
 
     @cached_property
@@ -250,3 +260,6 @@ class Assembled:
 
 
 PAD = "element: pad height over the dowel hole's centre"
+# First words of what enters the pose on the surface plate, and of what enters the stop plate's beside.
+UNDER_THE_PADS = (PAD, "element: dowel hole", "dowel pin", "end plates: dowel", "end plate, tapped: dowel")
+UNDER_THE_PLATE = ("element: ledge", "blank: ledge")

@@ -20,7 +20,7 @@ from .virtual_shop import made
 HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_high", "sigma", "yield")
 CONTRIBUTORS = 5  # columns of the table; a stack's further ones are small
 SEED = 20261122  # published: the day on which stacks were first made
-CORNERS = 250  # arrays on their corners: effects to some percent of the whole
+CORNERS, EFFECTS = 250, 125  # arrays on their corners, and of these for effects: to some percent of the whole
 # A requirement counts as kept where it is missed by no more than rounding, in its unit.
 ROUNDING = 1e-9
 
@@ -115,11 +115,12 @@ def _behind_contacts(
     anew = made(variables, count, "corners", rng, alike=False)
     instance = {r.name: int(np.argmin(r.margin(r.value(built)).min(axis=0))) for r in wanted}
     seen = {r.name: _at(r.value(corners), instance[r.name]) for r in wanted}
+    some = Assembled(layout, {name: v[:EFFECTS] for name, v in corners.made.items()})
     effect: dict[str, dict[str, float]] = {r.name: {} for r in wanted}
     for name in (v for v in variables if v.startswith(OF_THE_ARRAY)):
-        changed = Assembled(layout, {**corners.made, name: anew[name]})
+        changed = some.with_new(name, anew[name][:EFFECTS])
         for r in wanted:
-            moved = _at(r.value(changed), instance[r.name]) - seen[r.name]
+            moved = _at(r.value(changed), instance[r.name]) - seen[r.name][:EFFECTS]
             effect[r.name][name] = float((moved**2).mean() / 2)
     for r in wanted:
         value, at = seen[r.name], instance[r.name]
