@@ -27,7 +27,7 @@ def stop_plate(layout: Layout) -> Part:
         material=MAGNETIC_STAINLESS,
         body=Extrusion(rectangle(-x, -y, x, y), d.clamp.stop_plate_thickness),
         colour="#565d66",
-        finish="both faces ground, Ra 0.4, flat and parallel within 0.005",
+        finish="both faces ground, Ra 0.4",
         notes=("break edges 0.2", "either face may lie on the ledges"),
         characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05, between=FACES),),
         geometric=(
