@@ -14,7 +14,7 @@ from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rules.pressed_rules import turns
-from tactcad.parts.stop_gap import stop_gap
+from tactcad.parts.stop_gap import seat, stop_gap
 
 
 @pytest.mark.parametrize("name", names())
@@ -31,7 +31,7 @@ def test_opposite_pads_come_nearer_by_what_their_height_turns():
     give = (
         layout.stop_give * design.rating.overload_force * (4 - 1) / 4
     )  # the plate's, under the load at 3 of 4 mm
-    w = asin((0.12 + design.stop.tolerance + give) / 4)
+    w = asin((0.12 + design.stop.tolerance + seat(layout) + give) / 4)
     towards = (2 + 0.125) * sin(w) - 4 * (1 - cos(w))
     assert arms.most(first) == pytest.approx(w)
     one = _nearest(arms.of(first, w), map(_mirrored, arms.of(second, 0.0)))

@@ -38,6 +38,8 @@ WHOLE = {
     "full round": {"element.fillet_radius": 0.44},
     "arm 0.5 mm": {
         "array.row_arms": [[0.5, 0.5]],
+        "tolerance.ledge": 0.0005,
+        "tolerance.pad_height": 0.002,
         "array.row_pitch": 0.4,
         "element.pad_length": 0.1,
         "element.pad_height": 0.3,
@@ -54,10 +56,14 @@ WHOLE = {
         "gauge.grid_length": 0.1,
         "stop.land_length": 0.06,
         "stop.tolerance": 0.001,
-        "clamp.stop_plate_thickness": 4.4,
+        "clamp.stop_plate_thickness": 5.0,
     },
     "arm 100 mm": {"array.row_arms": [[100.0]], "clamp.stop_plate_thickness": 5.0},
-    "arms of 4 and 100 mm": {"array.row_arms": [[4.0, 100.0]], "clamp.hold_down_pitch": 100.0},
+    "arms of 4 and 100 mm": {
+        "array.row_arms": [[4.0, 100.0]],
+        "clamp.hold_down_pitch": 100.0,
+        "rating.overload_force": 12.0,
+    },
     "1 x 1": {"array.row_arms": [[4.0]]},
     "2 x 20": {"array.row_arms": [LONG * 4] * 2},
     "foil of 0.1 mm": {
@@ -81,7 +87,7 @@ REFUSED = {
     "slot of its least length": (
         {"element.hinge_length": 0.01, "element.fillet_radius": 0.005},
         "stop.tolerance",
-        "0.01",
+        "0.005",
         "less",
     ),
     "slot longer than the arm": (
@@ -154,7 +160,7 @@ REFUSED = {
         {"rating.overload_force": 13040.0},
         "rating.overload_force",
         "13040.0",
-        "at most 219.5",
+        "at most 179.1",
     ),
     "screws of a jaw": ({"holes.dowel_hole": 3.012 / 25}, "holes.dowel_hole", "0.12048", "from 0.2 to 20 mm"),
 }

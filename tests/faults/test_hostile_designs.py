@@ -286,7 +286,8 @@ def test_legal_text_is_escaped_in_every_kind_of_file(work):
                 assert TITLE in "".join(found.itertext())
         elif kind == "html":
             page = Page(data.decode())
-            assert "script" not in page.tags and page.tags.count("title") == 1 and "svg" not in page.tags
+            assert "script" not in page.tags and page.tags.count("title") == 1
+            assert ("svg" in page.tags) == path.endswith("stack.html")
             assert TITLE in page.text
         elif kind == "step":
             head = data.decode("ascii").split("DATA;")[0]
@@ -296,7 +297,8 @@ def test_legal_text_is_escaped_in_every_kind_of_file(work):
         elif kind == "csv":
             rows = list(csv.reader(data.decode().splitlines()))
             assert len({len(row) for row in rows}) == 1
-            assert not [cell for row in rows for cell in row if cell[:1] in tuple("=+-@\t\r") and cell[:1]]
+            cells = [cell for row in rows for cell in row if not re.fullmatch(r"-?[\d.]+(e-?\d+)?", cell)]
+            assert not [cell for cell in cells if cell[:1] in tuple("=+-@\t\r") and cell[:1]]
         elif kind == "json":
             json.loads(data)
         elif kind == "dxf":

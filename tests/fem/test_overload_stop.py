@@ -22,6 +22,7 @@ from tactcad.parts.element import element
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.overload import overloads
+from tactcad.parts.stop_gap import seat
 
 # every different element of the shipped designs, under its design's overload force
 KINDS = sorted(
@@ -142,7 +143,7 @@ def test_no_hinge_passes_its_rated_deflection_under_the_whole_load(name, arm):
     # of the mean over the width, which plane stress gives
     limit = design.material.yield_strength / rating.deflection_factor / width_share(name)
     rated_deflection = limit / np.abs(press.stress).max() * press.deflection
-    widest = gap_of(layout, place) + design.stop.tolerance
+    widest = gap_of(layout, place) + design.stop.tolerance + seat(layout)
     state, reaction = stopped(widest)
     assert state.tip == pytest.approx(widest) and 0 < reaction < rating.overload_force
     assert state.deflection <= rated_deflection

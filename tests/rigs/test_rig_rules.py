@@ -35,7 +35,7 @@ WITNESSES = {
 MISFITS = {
     "stages_reach_pads": ("calibration", {"calibration.stage_travel": 7.5}),
     "mount_clears_carrier": ("calibration", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
-    "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 9.0}),
+    "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 8.95, "clamp.mount_thread": "M5"}),
     "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
     "mount_holes_apart": (
         "calibration",
