@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tactcad.parts import seating
+from tactcad.parts.fasteners import STACK as STACK_TOLERANCE
 from tactcad.parts.fasteners import Clamping, clamping, dowel_depth
 from tactcad.parts.layout import Layout
 
@@ -129,7 +130,8 @@ def _stack(layout: Layout, stacked: Sequence[Placement]) -> str:
         rows.append(f"Row {row}, on the {side}: {order}.")
     return (
         "Slide the parts on the dowels in this order, the first one on first, pads towards you and arms to "
-        f"the middle. {' '.join(rows)} Nothing is tight yet."
+        f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers are "
+        f"{layout.stack:g} mm long within {STACK_TOLERANCE:g}: measure it; if not, take spacers of the next thickness."
     )
 
 
