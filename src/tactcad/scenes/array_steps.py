@@ -130,8 +130,9 @@ def _stack(layout: Layout, stacked: Sequence[Placement]) -> str:
         rows.append(f"Row {row}, on the {side}: {order}.")
     return (
         "Slide the parts on the dowels in this order, the first one on first, pads towards you and arms to "
-        f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers are "
-        f"{layout.stack:g} mm long within {STACK_TOLERANCE:g}: measure it; if not, take spacers of the next thickness."
+        f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers "
+        f"are {layout.stack:g} mm long within {STACK_TOLERANCE:g}: measure it; if not, take spacers of the "
+        "next thickness."
     )
 
 
