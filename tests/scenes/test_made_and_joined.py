@@ -140,4 +140,5 @@ def test_passes_are_those_that_hold_the_hinge(design):
 def test_a_magnetic_chuck_holds_the_stop_plate():
     (plate,) = [p for p in make_scene(load("macro-array"), "array").parts if p.part_no.endswith("stop-plate")]
     assert re.search(r"Cr1[0-9](?!Ni)", plate.material.name)  # chromium without nickel: martensitic
-    assert "parallel" in plate.finish and not any("ground face down" in n for n in plate.notes)
+    assert {g.symbol for g in plate.geometric} == {"flatness", "parallelism"}
+    assert "both faces ground" in plate.finish and not any("ground face down" in n for n in plate.notes)
