@@ -106,6 +106,44 @@ def test_measured_dimensions_give_the_ladders_stiffness_of_that_element_alone(tm
             assert rows[i]["stiffness"] == pytest.approx(float(expected[i]), rel=1e-12)
 
 
+def test_a_blank_load_arm_follows_from_arm_and_pad(tmp_path, capsys):
+    """Who fills in the two that the sheet dimensions gets what who fills in the third would."""
+    two = {**measured("E1", "arm length", "4.03", "0.004"), **measured("E1", "pad length", "2.02", "0.006")}
+    told = estimated(tmp_path, capsys, filled(measured("E1", "load arm", "3.02", "0.005")))
+    followed = estimated(tmp_path, capsys, filled(two))
+    for name in ("stiffness", "gauge_strain"):
+        assert followed["elements"][0][name] == pytest.approx(told["elements"][0][name], rel=1e-12)
+        ends = (sheet["elements"][0]["intervals"][name] for sheet in (followed, told))
+        assert next(ends) == pytest.approx(next(ends), rel=1e-12)
+    # a load arm that was measured itself stands
+    both = filled({**two, **measured("E1", "load arm", "3.00")})
+    assert estimated(tmp_path, capsys, both)["elements"][0]["stiffness"] == pytest.approx(
+        estimated(tmp_path, capsys, BLANK)["elements"][0]["stiffness"]
+    )
+
+
+def test_a_measured_fillet_narrows_the_interval(tmp_path, capsys):
+    def width(text: str) -> float:
+        low, high = estimated(tmp_path, capsys, text)["elements"][0]["intervals"]["stiffness"]
+        return high - low
+
+    assert width(filled(measured("E1", "fillet radius", "0.30", "0.002"))) < 0.97 * width(BLANK)
+
+
+def test_a_full_round_beside_other_fillets_is_read(tmp_path, capsys):
+    """It has no radius to measure: its slot's width is its diameter."""
+    text = (HARDWARE / "macro-array.toml").read_text()
+    mixed = tmp_path / "mixed.toml"
+    mixed.write_text(text.replace("[holes]", "[element.override.1]\nfillet_radius = 0.44\n\n[holes]", 1))
+    sheet = inspection_bytes(Layout(load(str(mixed)))).decode()
+    rows = [row for row in csv.DictReader(io.StringIO(sheet)) if row["characteristic"] == "fillet radius"]
+    assert len(rows) == 9
+    narrower = filled(measured("E1", "slot length", "0.87"), sheet)
+    made = estimated(tmp_path, capsys, narrower, str(mixed))["elements"][0]
+    drawn = estimated(tmp_path, capsys, sheet, str(mixed))["elements"][0]
+    assert made["stiffness"] > drawn["stiffness"]
+
+
 def test_the_short_rungs_interval_is_the_textbooks(tmp_path, capsys):
     """K = E b t^3/(12 l L^2): relative half-widths add as squares with the exponents 3, 1, 1, 2."""
     text = filled(

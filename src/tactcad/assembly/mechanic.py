@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import HingeSection
@@ -61,6 +62,11 @@ class Assembled:
         """1 for elements of row one, which stand at positive x, -1 for row two."""
         return np.array([1.0 if p.row == 1 else -1.0 for p in self.layout.elements])
 
+    @property
+    def row(self) -> NDArray[np.intp]:
+        """0 for elements of row one, 1 for row two."""
+        return np.where(self.side > 0, 0, 1)
+
     @cached_property
     def y(self) -> Array:
         return np.array([p.y for p in self.layout.elements])
@@ -69,30 +75,35 @@ class Assembled:
     def dowel_x(self) -> float:
         return min(self.layout.dowel_x)
 
-    def _of_row(self, pins: Array) -> Array:
-        """By element, of what (arrays, pins) says of the first pin of each row, rows in turn."""
-        per_row = len(self.layout.dowel_x)
-        return pins[:, np.where(self.side > 0, 0, per_row)]
+    @property
+    def first_pins(self) -> list[int]:
+        """Of both rows, among all pins."""
+        return [0, len(self.layout.dowel_x)]
+
+    @property
+    def at_dowels(self) -> Array:
+        """Places of the elements' dowel holes, (elements, 2)."""
+        return np.column_stack([self.side * self.dowel_x, self.y])
 
     # --- pins and the pads on the surface plate ---
 
+    def holes(self, which: str, axis: str) -> Array:
+        """How far the first dowel holes of both rows are off in the `tapped` or `head` plate, (arrays, 2)."""
+        pair = self.made[f"end plates: dowel holes along {axis}"]
+        own = self.made[f"end plate, {which}: dowel holes against the pair's along {axis}"]
+        return (pair + own)[:, self.first_pins]
+
     def pin(self, axis: str, y: Array | float) -> Array:
         """How far the first pins of both rows are off along an axis at y, (arrays, 2)."""
-        m, d = self.made, self.layout.design
-        first = [0, len(self.layout.dowel_x)]
-        root = (
-            m[f"end plates: dowel holes along {axis}"]
-            + m[f"end plate, tapped: dowel holes against the pair's along {axis}"]
-        )
+        layout = self.layout
         # as a share of the squareness's zone, which is as wide as SQUARE
-        share = m[f"end plate, tapped: dowel holes' squareness along {axis}"] / (SQUARE / 2)
-        slope = lean(self.layout) / (self.layout.stack + d.clamp.end_plate_thickness)
-        return (root + share * slope * (self.layout.stack / 2 - y))[:, first]
+        zone = self.made[f"end plate, tapped: dowel holes' squareness along {axis}"][:, self.first_pins]
+        slope = lean(layout) / (layout.stack + layout.design.clamp.end_plate_thickness)
+        return self.holes("tapped", axis) + zone / (SQUARE / 2) * slope * (layout.stack / 2 - y)
 
     def _pin_at_elements(self, axis: str) -> Array:
-        row = np.where(self.side > 0, 0, 1)
         at = {y: self.pin(axis, y) for y in sorted(set(self.y))}
-        return np.column_stack([at[y][:, r] for y, r in zip(self.y, row)])
+        return np.column_stack([at[y][:, r] for y, r in zip(self.y, self.row)])
 
     @cached_property
     def play(self) -> Array:
@@ -102,24 +113,25 @@ class Assembled:
             h.dowel_hole
             - size
             + self.made["element: dowel hole diameter"]
-            - self._of_row(self.made["dowel pin: diameter"])
+            - self.made["dowel pin: diameter"][:, self.first_pins][:, self.row]
         )
 
     @cached_property
     def pose(self) -> Array:
         """Where the tapped plate stands over the surface plate: its height in the middle, its slopes along x
         and y, as level as the pads allow, and by how much the worst pad misses."""
-        points = np.column_stack([self.side * self.dowel_x, self.y])
         heights = self.made[PAD] - self._pin_at_elements("z")
-        return nearest_pose(points, heights, self.play / 2)
+        return nearest_pose(self.at_dowels, heights, self.play / 2)
+
+    def stands(self, points: Array) -> Array:
+        """Height of the tapped plate's frame over the surface plate at points (n, 2), (arrays, n)."""
+        return self.pose[:, :1] + self.pose[:, 1:3] @ points.T
 
     @cached_property
     def pads(self) -> Array:
         """Height of each pad over the surface plate: what its pin carries it off; negative where it would
         press into the plate, and so lifts the others."""
-        points = np.column_stack([self.side * self.dowel_x, self.y])
-        pin = self.pose[:, :1] + self.pose[:, 1:3] @ points.T + self._pin_at_elements("z")
-        beyond = pin - self.made[PAD]
+        beyond = self.stands(self.at_dowels) + self._pin_at_elements("z") - self.made[PAD]
         return np.sign(beyond) * np.maximum(np.abs(beyond) - self.play / 2, 0.0)
 
     @property
@@ -130,26 +142,21 @@ class Assembled:
     # --- end plates ---
 
     @property
+    def head_play(self) -> Array:
+        """Radial play of the head plate on the tighter of its pins, (arrays, 1)."""
+        m = self.made
+        play = m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]
+        return play.min(axis=1, keepdims=True) / 2
+
+    @property
     def head_misses(self) -> Array:
         """Least radial play that the head plate's holes have left over its pins, (arrays, 1).
 
         The plate shifts and turns within its play: two pins only ask for the distance of its holes.
         """
-        m = self.made
         y = -self.layout.stack / 2 - self.layout.design.clamp.end_plate_thickness / 2
-        apart = []
-        for axis in "xz":
-            pins = self.pin(axis, y)
-            holes = (
-                m[f"end plates: dowel holes along {axis}"]
-                + m[f"end plate, head: dowel holes against the pair's along {axis}"]
-            )[:, [0, len(self.layout.dowel_x)]]
-            off = pins - holes
-            apart.append((off[:, :1] - off[:, 1:]) / 2)
-        play = (m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]).min(
-            axis=1, keepdims=True
-        ) / 2
-        return play - np.abs(apart[0])  # across the pins' line the plate turns
+        off = self.pin("x", y) - self.holes("head", "x")
+        return self.head_play - np.abs(off[:, :1] - off[:, 1:]) / 2
 
     @property
     def press(self) -> Array:
@@ -162,23 +169,14 @@ class Assembled:
 
         The head plate is levelled with the tapped one as far as the play of its holes allows.
         """
-        m, layout = self.made, self.layout
-        first = [0, len(layout.dowel_x)]
+        layout = self.layout
         y = layout.stack / 2 + layout.design.clamp.end_plate_thickness / 2
-        ends = {}
+        ends = {}  # heights of the upper edges over the pins, as drawn 0
         for which, at in (("tapped", y), ("head", -y)):
             points = np.array([[self.dowel_x, at], [-self.dowel_x, at]])
-            pins = self.pose[:, :1] + self.pose[:, 1:3] @ points.T + self.pin("z", at)
-            hole = (
-                m["end plates: dowel holes along z"]
-                + m[f"end plate, {which}: dowel holes against the pair's along z"]
-            )
-            ends[which] = pins - hole[:, first]  # heights of its upper edge over the pins, as drawn 0
+            ends[which] = self.stands(points) + self.pin("z", at) - self.holes(which, "z")
         off = ends["head"] - ends["tapped"]
-        free = (m["end plate, head: dowel hole diameter"] - m["dowel pin: diameter"]).min(
-            axis=1, keepdims=True
-        ) / 2
-        left = np.sign(off) * np.maximum(np.abs(off) - free, 0.0)
+        left = np.sign(off) * np.maximum(np.abs(off) - self.head_play, 0.0)
         along = left.mean(axis=1, keepdims=True) / (2 * y)
         across = (ends["tapped"][:, :1] - ends["tapped"][:, 1:]) / (2 * self.dowel_x)
         return np.degrees(np.hstack([along, across]))
@@ -215,7 +213,7 @@ class Assembled:
         if blanks := layout.blanks():
             way = np.array([1.0 if row == 1 else -1.0 for row, _ in blanks])
             y = np.array([layout.position_y(index) for _, index in blanks])
-            pins = self.pose[:, :1] + self.pose[:, 1:3] @ np.array([way * self.dowel_x, y])
+            pins = self.stands(np.column_stack([way * self.dowel_x, y]))
             points = np.vstack([points, np.column_stack([way * seat, y])])
             heights = np.hstack([heights, pins + self.made["blank: ledge over the dowel hole"]])
         return resting_plane(points, heights)
@@ -239,10 +237,11 @@ class Assembled:
     def section(self) -> HingeSection:
         """Hinges as made, of shape (arrays, elements)."""
         drawn, m = hinge_section(self.layout, self.layout.elements), self.made
-        changed = {f: getattr(drawn, f) + m[name] for name, f in HINGE.items() if name in m}
+        zero = np.zeros(1)  # a full round has no fillet of its own
+        changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
         arm = m["element: arm length"] - m["element: pad length"] / 2
         modulus = drawn.youngs_modulus * (1.0 + m["sheet: Young's modulus, relative"])
-        full = np.minimum(changed.get("fillet_radius", drawn.fillet_radius), changed["hinge_length"] / 2)
+        full = np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2)
         return drawn.with_(
             **{**changed, "load_arm": drawn.load_arm + arm, "youngs_modulus": modulus, "fillet_radius": full}
         )

@@ -9,8 +9,8 @@ from math import inf
 
 import numpy as np
 
-from tactcad.parts.carrier import PLACE, carrier_clearance
-from tactcad.parts.end_plate import SCREWS
+from tactcad.parts.carrier import PLACE, carrier, carrier_clearance
+from tactcad.parts.end_plate import HOLES, SCREWS
 from tactcad.parts.layout import SUNK, Layout
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.library.screws import METRIC
@@ -18,7 +18,7 @@ from tactcad.parts.stop_gap import stop_limit
 from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
-from .screwed_joints import LENGTH, ScrewedJoint, joints
+from .screwed_joints import LENGTH, ScrewedJoint, joints, thickness
 from .variables import STACK_LENGTH, Array, DimensionLimits, array_variables, variable
 
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
@@ -131,14 +131,19 @@ def _carrier_mounts(layout: Layout, known: dict[str, DimensionLimits]) -> Requir
 
 def _set_screws_sunk(layout: Layout, known: dict[str, DimensionLimits]) -> Requirement:
     """The axis's plate lies flat on the carrier: set screws end below its top."""
-    d = layout.design.clamp
-    known.setdefault(name := "end plates: upper edge over the ledge", variable(name, -0.1, 0.1))
+    d, t = layout.design.clamp, layout.design.tolerance
+    # the edge over the dowel holes, these over the pads, and the ledges over those
+    edge = HOLES / 2 + t.pad_height + t.ledge
+    known.setdefault(name := "end plates: upper edge over the ledge", variable(name, -edge, edge))
     length = layout.hold_down.length or 0.0
     screw = f"{d.screw}x{length:g} set screw: length"
     known.setdefault(screw, variable(screw, *deviations(LENGTH, length)))
-    carrier = f"{layout.design.name}-carrier: thickness"
-    known.setdefault(carrier, variable(carrier, -0.05, 0.05))
-    terms = ((carrier, 1.0), (name, 1.0), (screw, -1.0), ("stop plate: thickness", -1.0))
+    terms = (
+        (thickness(carrier(layout), known), 1.0),
+        (name, 1.0),
+        (screw, -1.0),
+        ("stop plate: thickness", -1.0),
+    )
     return _sum("set screws end below the carrier's top", 0.0, inf, SUNK, terms)
 
 

@@ -6,7 +6,6 @@ Read off the placements: a cap screw, the tapped hole it stands in, and every pa
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -46,8 +45,7 @@ class ScrewedJoint:
     room: float | None
     terms: tuple[tuple[str, float], ...]
     deeper: str
-    bought: bool = False
-    count: int = 1
+    bought: bool
 
 
 def joints(design: str, scene: Scene, known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
@@ -61,15 +59,15 @@ def joints(design: str, scene: Scene, known: dict[str, DimensionLimits]) -> list
         Variables by name; those of the joints are added where they are not known yet.
     """
     by_name = {p.designator: p for p in scene.placements}
-    kinds: Counter[ScrewedJoint] = Counter()
+    kinds: dict[ScrewedJoint, None] = {}
     for contact in scene.contacts:
         if contact.kind != "thread":
             continue
         pair = (by_name[contact.first], by_name[contact.second])
         for screw, tapped in (pair, pair[::-1]):
             if CAP_SCREW.match(screw.part.part_no):
-                kinds.update(_joint(design, scene, screw, tapped, known))
-    return [ScrewedJoint(**{**vars(j), "count": n}) for j, n in kinds.items()]
+                kinds |= dict.fromkeys(_joint(design, scene, screw, tapped, known))
+    return list(kinds)
 
 
 def _joint(
@@ -93,7 +91,7 @@ def _joint(
             if pierced.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED)):
                 terms[STACK_LENGTH] = -1.0
                 continue
-            thick = _thickness(pierced.part, known)
+            thick = thickness(pierced.part, known)
             terms[thick] = terms.get(thick, 0.0) - 1.0
             if clearance.counterbore:
                 deep = clearance.counterbore[1]
@@ -106,7 +104,7 @@ def _joint(
                 _general(known, f"{tapped.part.part_no}: thread depth", hole.thread_depth),
             )
         elif end <= hole.depth:
-            room, deeper = hole.depth - end, _thickness(tapped.part, known)
+            room, deeper = hole.depth - end, thickness(tapped.part, known)
         yield ScrewedJoint(
             f"{thread}x{length:g} {through}into {_short(design, tapped)} ({hole.name.replace('_', ' ')})",
             thread,
@@ -163,11 +161,11 @@ def _general(known: dict[str, DimensionLimits], name: str, size: float) -> str:
     return _known(known, variable(name, -general(size), general(size)))
 
 
-def _thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
+def thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
     """The variable of a part's thickness along its contour's axis: its own limits, or the general ones."""
     own = next((c for c in part.characteristics if c.name == "thickness"), None)
     if own is None:
-        thickness = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
-        return _general(known, f"{part.part_no}: thickness", thickness)
+        nominal = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
+        return _general(known, f"{part.part_no}: thickness", nominal)
     name = f"{part.part_no}: thickness"
     return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal))

@@ -18,7 +18,7 @@ th,td{text-align:left;padding:.35em .6em;border-bottom:1px solid #d8dee4;vertica
 td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}
 .share{display:flex;height:10px;background:#eef1f4;border-radius:2px;overflow:hidden;margin-bottom:3px}
 .share i{background:#c2d5e6}.share i:nth-child(1){background:#31618f}.share i:nth-child(2){background:#7da3c7}
-td:last-child{min-width:26em}
+td:first-child{min-width:18em}td:last-child{min-width:24em}
 small{color:#4a5866}
 tr.missed td:first-child{border-left:4px solid #b3372b}
 """

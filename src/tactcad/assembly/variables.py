@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.design.present import present
-from tactcad.parts.blank import blank, blank_ledge_zone
+from tactcad.parts.blank import blank
 from tactcad.parts.description import Part
 from tactcad.parts.element import element
 from tactcad.parts.end_plate import end_plate
@@ -54,12 +54,13 @@ def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
 
 def _array(layout: Layout) -> Iterable[DimensionLimits]:
     d, places = layout.design, layout.elements
-    kinds: dict[tuple, Part] = {}
-    parts = [kinds.setdefault((p.arm, p.hinge), element(layout, p)) for p in places]
-    limits = [
-        {c.name: (c.lower - c.nominal, c.upper - c.nominal) for c in part.characteristics} for part in parts
-    ]
-    for name in limits[0]:
+    kinds: dict[tuple, dict[str, tuple[float, float]]] = {}
+    for p in places:  # a long row has few kinds of element
+        if (p.arm, p.hinge) not in kinds:
+            own_limits = element(layout, p).characteristics
+            kinds[p.arm, p.hinge] = {c.name: (c.lower - c.nominal, c.upper - c.nominal) for c in own_limits}
+    limits = [kinds[p.arm, p.hinge] for p in places]
+    for name in dict.fromkeys(name for each in kinds.values() for name in each):
         own = [each.get(name, (0.0, 0.0)) for each in limits]
         if name == "sheet thickness":
             yield variable("sheet: thickness", *own[0])
@@ -71,8 +72,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     modulus = present(d.tolerance.youngs_modulus)
     yield variable("sheet: Young's modulus, relative", -modulus, modulus)
     if layout.blanks():
-        half = blank_ledge_zone(d) / 2
-        assert blank(layout).geometric  # the zone stands on its sheet
+        half = next(g.zone for g in blank(layout).geometric if g.name == "ledge") / 2
         yield variable("blank: ledge over the dowel hole", -half, half, len(layout.blanks()))
     yield _characteristic("spacer", spacer(layout), "thickness")
     yield variable(STACK_LENGTH, -STACK, STACK)

@@ -32,7 +32,7 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
         if step.title == COPLANAR:
-            lines.append(f"All pads in one plane within {design.tolerance.pad_height:g} mm. {step.text}")
+            lines.append(f"All pads in one plane within {2 * design.tolerance.pad_height:g} mm. {step.text}")
     lines.append("Item numbers are those of the bill of materials; what has no solid has no balloon")
     lines.append(
         "Dimensions in parentheses are for information; "

@@ -3,15 +3,16 @@ from the nominal ones.
 
 The intervals are for 95 %. The half-width (k = 2) of each dimension is propagated through the estimator by
 itself, and the results are added as squares. The half-width of a dimension that was not measured is its
-tolerance in the design's [tolerance]; that of one measured without an uncertainty is zero. What the sheet
-does not ask for (fillet radius, modulus of the lot, recast layer, clamp) enters with its tolerance. The
-model's own error is not included.
+tolerance in the design's [tolerance]; that of one measured without an uncertainty is zero. A load arm that
+was not measured itself follows from arm and pad where both were. What the sheet does not ask for (modulus of
+the lot, recast layer, clamp) enters with its tolerance. The model's own error is not included.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -67,11 +68,13 @@ def as_made(
     force = layout.design.rating.force if force is None else force
     designed = hinge_section(layout, layout.elements)
     of = {p.number: tuple(r for r in readings if r.number == p.number) for p in layout.elements}
+    entering = {number: _entering(own) for number, own in of.items()}
     parameters = list(dict.fromkeys(r.dimension.enters for r in readings if r.dimension.enters))
-    table = {name: [_of_dimension(of[p.number], name) for p in layout.elements] for name in parameters}
-    values = {name: np.array([_value(r) for r in column]) for name, column in table.items()}
+    table = {name: [entering[p.number].get(name) for p in layout.elements] for name in parameters}
+    drawn = {name: np.broadcast_to(getattr(designed, name), designed.shape) for name in parameters}
+    values = {name: np.array([_value(r, n) for r, n in zip(table[name], drawn[name])]) for name in parameters}
     halves = {name: np.array([_half_width(r) for r in column]) for name, column in table.items()}
-    section = designed.with_(**values)
+    section = _rounded(designed.with_(**values))
     nominal = estimate_sections(layout, designed, rung, force)
     made = estimate_sections(layout, section, rung, force)
     half_widths = _half_widths(layout, section, halves, rung, force)
@@ -81,15 +84,31 @@ def as_made(
     ]
 
 
-def _of_dimension(readings: Sequence[Reading], enters: str) -> Reading:
-    return next(r for r in readings if r.dimension.enters == enters)
+def _rounded(section: HingeSection) -> HingeSection:
+    """No fillet is rounder than half its slot: a full round has no radius of its own."""
+    return section.with_(fillet_radius=np.minimum(section.fillet_radius, section.hinge_length / 2))
 
 
-def _value(r: Reading) -> float:
-    return r.dimension.nominal if r.measured is None else r.measured
+def _entering(readings: Sequence[Reading]) -> dict[str, Reading]:
+    """One element's readings by the parameter that they set; the load arm's from arm and pad where it is
+    blank."""
+    named = {r.dimension.name: r for r in readings}
+    arm, pad = named["arm length"], named["pad length"]
+    load = named["load arm"]
+    if load.measured is None and arm.measured is not None and pad.measured is not None:
+        known = (arm.uncertainty or 0.0, (pad.uncertainty or 0.0) / 2)
+        load = replace(load, measured=arm.measured - pad.measured / 2, uncertainty=hypot(*known))
+    return {r.dimension.enters: r for r in (*readings, load) if r.dimension.enters}
 
 
-def _half_width(r: Reading) -> float:
+def _value(r: Reading | None, drawn: float) -> float:
+    """mm; as drawn where there is no such dimension, or it was not measured."""
+    return drawn if r is None or r.measured is None else r.measured
+
+
+def _half_width(r: Reading | None) -> float:
+    if r is None:
+        return 0.0
     if r.measured is None:
         return (r.dimension.upper - r.dimension.lower) / 2
     return r.uncertainty or 0.0
@@ -103,13 +122,12 @@ def _half_widths(
     A dimension contributes half the difference between the estimates with it at either end of its half-width.
     """
     tolerance = layout.design.tolerance
-    unmeasured = {
-        "fillet_radius": np.minimum(tolerance.fillet_radius, section.straight_length / 2),
-        "youngs_modulus": tolerance.youngs_modulus * section.youngs_modulus,
-    }
+    unmeasured = {"youngs_modulus": tolerance.youngs_modulus * section.youngs_modulus}
+    if "fillet_radius" in halves:  # no rounder than the slot
+        halves = halves | {"fillet_radius": np.minimum(halves["fillet_radius"], section.straight_length / 2)}
 
     def at(moved: HingeSection) -> Array:
-        rows = estimate_sections(layout, moved, rung, force)
+        rows = estimate_sections(layout, _rounded(moved), rung, force)
         # None becomes NaN
         return np.array([[getattr(row, name) for row in rows] for name in INTERVALS], dtype=float)
 

@@ -79,7 +79,7 @@ def end_plate(layout: Layout, head: bool) -> Part:
             "upper edge and dowel holes of both end plates machined in one clamping; mark the pair",
         ),
         characteristics=(bore,),
-        geometric=(*_places(layout), *(() if head else (_square(depth),))),
+        geometric=(*_places(layout), *(() if head else (SQUARENESS,))),
         datums=(DatumFeature("A", INNER), DatumFeature("B", "upper edge"), DatumFeature("C", "left edge")),
     )
 
@@ -135,8 +135,7 @@ def _places(layout: Layout) -> tuple[Geometric, ...]:
     )
 
 
-def _square(depth: float) -> Geometric:
-    return Geometric("dowel holes' squareness", "perpendicularity", SQUARE, ("dowel_hole",), ("A",), True)
+SQUARENESS = Geometric("dowel holes' squareness", "perpendicularity", SQUARE, ("dowel_hole",), ("A",), True)
 
 
 def _screw_hole(name: str, d: Design, c: Clamping, head: bool, at: Vector, depth: float) -> Hole:

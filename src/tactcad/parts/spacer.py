@@ -31,8 +31,8 @@ def spacer(layout: Layout) -> Part:
         colour="#9aa4ae",
         notes=(
             "burr-free, flat faces as rolled",
-            f"thickness to suit: {d.array.pitch:g} less the measured thickness of the elements' sheet, "
-            f"{d.sheet.thickness:g} as drawn; the whole stack {layout.stack:g} +-{STACK:g}",
+            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else, to the same "
+            f"limits, {d.array.pitch:g} less what it measures; the whole stack {layout.stack:g} ±{STACK:g}",
         ),
         characteristics=(
             within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
