@@ -32,7 +32,7 @@ def spacer(layout: Layout) -> Part:
         notes=(
             "burr-free, flat faces as rolled",
             f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else, to the same "
-            f"limits, {d.array.pitch:g} less what it measures; the whole stack {layout.stack:g} ±{STACK:g}",
+            f"limits, {d.array.pitch:g} less what it measures; the whole stack {layout.stack:g} +-{STACK:g}",
         ),
         characteristics=(
             within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
