@@ -86,6 +86,11 @@ class Sensor:
                 elements = _elements(self.layout, arrays)
         return Builds(count, seed, kept, failures, elements)
 
+    def missed(self, arrays: Assembled, count: int) -> dict[str, Array]:
+        """By requirement, which of `count` arrays miss it."""
+        bad = {r.name: r.margin(r.value(arrays)).min(axis=1) < -ROUNDING for r in self.requirements}
+        return {name: np.broadcast_to(which, (count,)) for name, which in bad.items()}
+
     def _all(
         self, count: int, distribution: Distribution, rng: np.random.Generator
     ) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -96,9 +101,8 @@ class Sensor:
         for start in range(0, count, at_once):
             some = min(at_once, count - start)
             arrays = Assembled(self.layout, made(self.variables, some, distribution, rng))
-            for r in self.requirements:
-                bad = r.margin(r.value(arrays)).min(axis=1) < -ROUNDING
-                missed[r.name].append(np.broadcast_to(bad, (some,)))
+            for name, bad in self.missed(arrays, some).items():
+                missed[name].append(bad)
             if distribution == "normal":
                 for name, value in _figures(arrays).items():
                     figures.setdefault(name, []).append(value)

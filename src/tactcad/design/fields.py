@@ -170,6 +170,28 @@ class Numbers:
 
 
 @dataclass(frozen=True)
+class SomeOf:
+    """A list of one or more of a few words, each once."""
+
+    options: tuple[str, ...]
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return "a list of one or more of " + ", ".join(repr(o) for o in self.options)
+
+    def read(self, value: Any, where: str) -> tuple[str, ...]:
+        if not isinstance(value, list) or not value or len(set(map(str, value))) < len(value):
+            raise InputError(where, "not a list of different words", value=value, legal=self.legal)
+        return tuple(OneOf(self.options, self.meaning).read(v, f"{where}[{i}]") for i, v in enumerate(value))
+
+    def schema(self) -> dict:
+        items = {"type": "string", "enum": list(self.options)}
+        return {"type": "array", "items": items, "minItems": 1, "uniqueItems": True}
+
+
+@dataclass(frozen=True)
 class NumberRows:
     """One or two rows of numbers; a third row is refused with the reason."""
 
@@ -200,7 +222,7 @@ class NumberRows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Whole | OneOf | TextLine | Day | Numbers | NumberRows
+Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | NumberRows
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

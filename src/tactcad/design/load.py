@@ -78,7 +78,7 @@ def from_table(table: dict[str, Any]) -> Design:
     sections = {f.name: f for f in dataclasses.fields(Design)}
     for name, value in table.items():
         if name not in sections:
-            raise _unknown(name, list(sections))
+            raise unknown_field(name, list(sections))
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
     values = {}
@@ -90,7 +90,7 @@ def from_table(table: dict[str, Any]) -> Design:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
         if name not in table and section.default is None:
             continue  # a rig that this design does not have
-        values[name] = _section(kind, table.get(name, {}), name)
+        values[name] = read_table(kind, table.get(name, {}), name)
     values["material"] = _material(values["material"])
     values["tolerance"] = _tolerance(values["tolerance"], values["material"].alloy)
     design = Design(**values, origin={})
@@ -106,11 +106,12 @@ SECTION_TYPES = {
 }
 
 
-def _section(kind: type, table: dict[str, Any], path: str) -> Any:
+def read_table(kind: type, table: dict[str, Any], path: str) -> Any:
+    """One table of a file as its dataclass, field by field; `path` is the table's name. Raises InputError."""
     fields = {f.name: f for f in dataclasses.fields(kind)}
     for name in table:
         if name not in fields:
-            raise _unknown(f"{path}.{name}", [f"{path}.{n}" for n in fields])
+            raise unknown_field(f"{path}.{name}", [f"{path}.{n}" for n in fields])
     values: dict[str, Any] = {}
     for name, f in fields.items():
         where = f"{path}.{name}"
@@ -135,7 +136,7 @@ def _overrides(table: Any, where: str) -> dict[int, Hinge]:
             raise InputError(f"{where}.{key}", "not an element number", legal="1 and up")
         if not isinstance(value, dict):
             raise InputError(f"{where}.{key}", "not a table", value=value)
-        overrides[int(key)] = _section(Hinge, value, f"{where}.{key}")
+        overrides[int(key)] = read_table(Hinge, value, f"{where}.{key}")
     return dict(sorted(overrides.items()))
 
 
@@ -186,7 +187,7 @@ def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:
     known = paths(design)
     for path in flat:
         if path not in known:
-            raise _unknown(f"origin.{path}", [f"origin.{p}" for p in known])
+            raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known])
     return dict(sorted(flat.items()))
 
 
@@ -210,5 +211,6 @@ def paths(design: Design) -> dict[str, Any]:
     return flat
 
 
-def _unknown(path: str, known: list[str]) -> InputError:
+def unknown_field(path: str, known: list[str]) -> InputError:
+    """The refusal of a name that is no field of the file."""
     return InputError(path, "unknown field", legal=near(path, known) or "see `tactcad schema`")

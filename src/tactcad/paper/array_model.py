@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
@@ -17,10 +14,8 @@ from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
-from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -87,8 +82,8 @@ def from_design(design: Design) -> ArrayModel:
         design.element.pad_length,
         design.element.pad_height,
         *pads.places(layout),
-        _pick(Gauge, gauge),
-        _pick(ReadOut, readout),
+        design_gauge(design),
+        design_readout(design),
         Power(
             gauge.resistance,
             gauge.carrier_conductivity,
@@ -114,8 +109,3 @@ def from_design(design: Design) -> ArrayModel:
             grasping.weights,
         ),
     )
-
-
-def _pick(kind: Callable[..., T], table: object) -> T:
-    """A record filled with the table's values of the same names."""
-    return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})

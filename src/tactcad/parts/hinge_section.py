@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import inspect
+from collections.abc import Callable, Sequence
+from typing import TypeVar
 
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
+from tactcad.mechanics.gauge_signal import Gauge
+from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 
 from .layout import ElementPlace, HingeShape, Layout
+
+T = TypeVar("T")
 
 
 def hinge_section(layout: Layout, places: Sequence[ElementPlace]) -> HingeSection:
@@ -74,3 +80,18 @@ def design_alloy(design: Design) -> Alloy:
     return Alloy(
         own["alloy"], **{k: own[k] for k in (*PROPERTIES, *OPTIONAL)}, source=row.source if row else ""
     )
+
+
+def design_gauge(design: Design) -> Gauge:
+    """The design's strain gauge, alike on all elements."""
+    return _filled(Gauge, design.gauge)
+
+
+def design_readout(design: Design) -> ReadOut:
+    """The design's bridge, amplifier and converter."""
+    return _filled(ReadOut, design.readout)
+
+
+def _filled(kind: Callable[..., T], table: object) -> T:
+    """A record filled with the table's values of the same names."""
+    return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})

@@ -1,0 +1,280 @@
+"""Candidates: arrays of a few kinds of element, many at a time, with what each of them can do.
+
+A candidate is a row of whole numbers: for each kind an arm (steps of ARM mm), a hinge's thickness (steps of
+THICKNESS mm) and how many there are; then the slot's length and its fillet's radius, which all share. Steps
+are what a drawing states and a shop's wire can tell apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil
+
+import numpy as np
+
+from tactcad.design.materials import ALLOYS, Alloy
+from tactcad.design.tree import Design, SheetMaterial
+from tactcad.mechanics import strength
+from tactcad.mechanics.section import Array, HingeSection
+from tactcad.mechanics.stop import tip_compliance
+from tactcad.parts.hinge_section import design_alloy, design_readout, shared_parameters
+from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import STEP_MM, land_room, seat
+
+from .interval import bounds, motion
+from .knowledge import Elements, elements, knowledge, reading_noise
+from .target import Target
+
+ARM, THICKNESS, SLOT, RADIUS = 0.1, 0.005, 0.02, 0.01  # mm, steps
+LEAST_STEPS = 4  # of a calibration: one more than a line needs
+POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
+AIR = 0.02  # mm; a stop stays open by as much at the largest force, beyond its tolerances; chosen: two steps of a gauge
+LONGEST_SLOT = (
+    4.0  # over the thickest hinge; closed forms hold further, but the slot then costs arm for nothing
+)
+
+
+@dataclass(frozen=True)
+class Stand:
+    """One choice of what is not searched: sheet, alloy, hinge tolerance and how many kinds of element.
+
+    base    the target's base design with sheet, alloy, tolerance, pitch, forces and rows set
+    """
+
+    target: Target
+    base: Design
+    kinds: int
+
+    @cached_property
+    def layout(self) -> Layout:
+        return Layout(self.base)
+
+    @cached_property
+    def alloy(self) -> Alloy:
+        return design_alloy(self.base)
+
+    @cached_property
+    def noise(self) -> float:
+        return reading_noise(self.base)
+
+    @cached_property
+    def points(self) -> Array:
+        """K_obj that decide, (points, 1, 1)."""
+        return np.geomspace(*self.target.stiffness_range, POINTS)[:, np.newaxis, np.newaxis]
+
+    @cached_property
+    def most(self) -> int:
+        """Elements that the room takes."""
+        rows, wide = self.target.room.rows, self.target.room.width
+        return int(min(self.target.room.elements[1], rows * max(_that_fit(self.layout, wide), 0)))
+
+    @cached_property
+    def beyond_slot(self) -> float:
+        """Half the carrier's length along the arms less the longest arm and half its slot, mm."""
+        longest = max(p.hinge_x + p.hinge.l / 2 for p in self.layout.elements)
+        return self.layout.carrier_size[0] / 2 - longest + self.layout.pad_inner
+
+    @cached_property
+    def limits(self) -> tuple[Array, Array]:
+        """Least and largest of each whole number of a candidate."""
+        wish, e = self.target.elements, self.base.element
+        room = (self.target.room.length / 2 - self.beyond_slot) / ARM
+        low = [ceil(wish.arms[0] / ARM - 1e-9), ceil(wish.hinges[0] / THICKNESS - 1e-9), wish.of_a_kind]
+        high = [
+            int(min(wish.arms[1] / ARM + 1e-9, room)),
+            int(wish.hinges[1] / THICKNESS + 1e-9),
+            max(self.most - (self.kinds - 1) * wish.of_a_kind, wish.of_a_kind),
+        ]
+        radius = ceil(e.corner_radius / 2 / RADIUS - 1e-9)
+        slot = (ceil(max(2 * radius * RADIUS, self.base.gauge.grid_length) / SLOT), e.hinge_length * 2 / SLOT)
+        both = [slot[0], radius], [int(max(slot)), int(max(e.fillet_radius * 2 / RADIUS, radius))]
+        return np.array(low * self.kinds + both[0]), np.array(high * self.kinds + both[1])
+
+    def candidates(self, rows: Array) -> Candidates:
+        """Candidates of whole numbers, (candidates, numbers)."""
+        n = 3 * self.kinds
+        kinds = np.rint(rows[:, :n]).reshape(len(rows), self.kinds, 3)
+        slot, radius = np.rint(rows[:, n]) * SLOT, np.rint(rows[:, n + 1]) * RADIUS
+        return Candidates(
+            self,
+            kinds[..., 0] * ARM,
+            kinds[..., 1] * THICKNESS,
+            kinds[..., 2],
+            slot,
+            np.minimum(radius, slot / 2),
+        )
+
+
+def _that_fit(layout: Layout, width: float) -> int:
+    """Elements of a row whose carrier is no wider than `width`."""
+    d = layout.design
+    beside = layout.carrier_size[1] - layout.positions * d.array.pitch
+    return int((width - beside) / d.array.pitch + 1e-9) if width < layout.carrier_size[1] or beside > 0 else 0
+
+
+def stands(target: Target) -> list[Stand]:
+    """Every choice of what is not searched."""
+    out = []
+    for sheet in target.stock.sheets:
+        for alloy in target.stock.alloys:
+            for tolerance in target.stock.hinge_tolerances:
+                base = _base(target, sheet, alloy, tolerance)
+                out += [Stand(target, base, kinds) for kinds in range(2, target.elements.kinds + 1)]
+    return out
+
+
+def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
+    d = target.base
+    spacer = Layout(d).spacer
+    pitch = max(target.room.pitch, round(sheet + spacer, 6))
+    own = d.material if alloy == d.material.alloy else SheetMaterial(alloy, *_values(alloy))
+    spread = d.tolerance.youngs_modulus if own is d.material else ALLOYS[alloy].spread["youngs_modulus"]
+    rows = tuple((6.0,) * 2 for _ in range(target.room.rows))
+    return replace(
+        d,
+        material=own,
+        sheet=replace(d.sheet, thickness=sheet),
+        array=replace(d.array, pitch=pitch, spacer=round(pitch - sheet, 6), row_arms=rows),
+        element=replace(d.element, override={}),
+        tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
+        rating=replace(d.rating, overload_force=target.grasp.overload),
+        stop=replace(d.stop, gaps=None),
+    )
+
+
+def _values(alloy: str) -> list:
+    row = vars(ALLOYS[alloy])
+    return [row[name] for name in list(SheetMaterial.__dataclass_fields__)[1:]]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Many candidates of one stand: arm, thickness and count (candidates, kinds), slot and radius
+    (candidates,); mm."""
+
+    stand: Stand
+    arm: Array
+    thickness: Array
+    count: Array
+    slot: Array
+    radius: Array
+
+    @cached_property
+    def section(self) -> HingeSection:
+        d = self.stand.base
+        longest = self.arm.max(axis=1, keepdims=True)
+        return HingeSection.of(
+            hinge_thickness=self.thickness,
+            hinge_length=self.slot[:, np.newaxis],
+            fillet_radius=self.radius[:, np.newaxis],
+            load_arm=self.arm - d.element.pad_length / 2,
+            arm_height=d.element.arm_height,
+            body_length=longest - self.arm + d.element.seat_length,
+            **shared_parameters(d),
+        )
+
+    @cached_property
+    def elements(self) -> Elements:
+        return elements(self.section, self.stand.base)
+
+    @cached_property
+    def total(self) -> Array:
+        """Elements of each candidate."""
+        return self.count.sum(axis=1)
+
+    @cached_property
+    def yield_force(self) -> Array:
+        """Force at the pad at which the fillet yields, N."""
+        return strength.yield_force_where_known(self.section, self.stand.alloy)
+
+    @cached_property
+    def rated_deflection(self) -> Array:
+        return self.yield_force / self.stand.base.rating.deflection_factor / self.elements.stiffness
+
+    @cached_property
+    def steps(self) -> Array:
+        """Steps of a calibration, (candidates, 1): as many as the base design's and as every hinge bears."""
+        rig = self.stand.base.calibration
+        if rig is None:
+            return np.zeros((len(self.arm), 1))
+        soft = 1.0 + self.elements.stiffness / rig.load_cell_stiffness
+        bears = (self.rated_deflection - AIR) * soft / rig.step
+        most = min(
+            rig.travel / rig.step, rig.load_cell_range / rig.step
+        )  # the second never binds on soft cells
+        full = self.elements.stiffness / soft * rig.step  # N a step
+        bears = np.minimum(bears, rig.load_cell_range / full)
+        return np.floor(np.clip(bears.min(axis=1, keepdims=True), 0.0, most) + 1e-9)
+
+    @cached_property
+    def half_width(self) -> Array:
+        """Largest relative half-width over the object's range."""
+        s = self.stand
+        known = knowledge(s.target, s.base, self.elements, np.maximum(self.steps, LEAST_STEPS))
+        grip = s.target.grasp
+        got = bounds(self.elements, self.count, known, s.points, s.noise, grip.force, grip.loads)
+        return got.half_width(s.points[..., 0]).max(axis=0)
+
+    @cached_property
+    def largest_force(self) -> Array:
+        """Of each kind, over the object's range, N."""
+        s = self.stand
+        m = motion(self.elements, self.count, s.points, s.target.grasp.force, s.target.grasp.loads)
+        return m.largest.max(axis=0)
+
+    @cached_property
+    def misses(self) -> dict[str, Array]:
+        """By limit, how far each candidate is beyond it, relative; 0 and below where it is kept."""
+        s, e = self.stand, self.elements
+        grip, room, d = s.target.grasp, s.target.room, s.base
+        tip = tip_compliance(self.section, e.stiffness, self.arm)
+        closing = np.minimum(
+            self.yield_force / d.rating.deflection_factor * tip, land_room(s.layout, s.layout.common_hinge)
+        )
+        least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
+        volts = e.signal * self.largest_force / e.stiffness
+        readout = design_readout(d)
+        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
+        return {
+            "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
+            "strength": (self.largest_force * d.rating.yield_factor / self.yield_force - 1.0).max(axis=1),
+            "stop": (self.largest_force * tip / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
+            "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
+            "room.elements": np.maximum(self.total / s.most, room.elements[0] / self.total) - 1.0,
+            "room.length": length / room.length - 1.0,
+            "calibration": np.where(
+                s.target.known.how == "calibrated",
+                LEAST_STEPS / np.maximum(self.steps[:, 0], 0.1) - 1.0,
+                -1.0,
+            ),
+        }
+
+    @cached_property
+    def violation(self) -> Array:
+        """Sum of what is beyond limits; inf where the estimator does not reach."""
+        total = sum(np.maximum(v, 0.0) for v in self.misses.values())
+        known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
+        return np.where(known & np.isfinite(total), total, np.inf)
+
+    @cached_property
+    def area(self) -> Array:
+        """Of the carrier, mm2."""
+        s = self.stand
+        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
+        a_row = np.ceil(self.total / s.target.room.rows)
+        beside = s.layout.carrier_size[1] - s.layout.positions * s.base.array.pitch
+        return length * (a_row * s.base.array.pitch + beside)
+
+    @cached_property
+    def cut(self) -> Array:
+        """Wire's way around all elements, mm: each as long as the longest arm's, whose rear is the base's."""
+        d = self.stand.base.element
+        around = 2.0 * (self.arm.max(axis=1) + self.slot + d.seat_length + d.rear_length + d.rear_height)
+        return self.total * around
+
+    @cached_property
+    def different(self) -> Array:
+        """Number of different elements."""
+        code = np.sort(np.rint(self.arm / ARM) * 1e4 + np.rint(self.thickness / THICKNESS), axis=1)
+        return 1.0 + (np.diff(code, axis=1) > 0).sum(axis=1)

@@ -1,0 +1,162 @@
+"""What is known of an array's elements when it is used: errors of K and K_v, relative, one standard deviation.
+
+drawn       all dimensions lie within their tolerances
+inspected   the hinge's thickness is measured, the rest lies within tolerances
+calibrated  force and signal were read against the stage's displacement, several runs an element
+
+Two errors come to each: the contact's place along the arm, in use against as known; and, uncalibrated, the
+gauge's own sensitivity. What all elements share is kept apart: one sheet, one lot, one machine's offset.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tactcad.assembly.virtual_shop import OFFSET_SHARE, SIGMAS
+from tactcad.design.tree import Design
+from tactcad.lab.regression import KNOWN
+from tactcad.mechanics import as_built, gauge_signal, ladder, readout
+from tactcad.mechanics.section import Array, HingeSection
+from tactcad.parts.hinge_section import design_gauge, design_readout
+
+from .target import Target
+
+STEP = 1e-4  # relative, of the differences that derivatives are made from
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """Errors of belief, relative; arrays of the elements' shape.
+
+    of_k, of_v   variances of K and K_v, each element's own
+    cross        their covariance
+    common       by name, (K, K_v) for one standard deviation of what all elements share
+    load_cell    half-width of the limits of the load cell's compliance, mm/N: K_obj's 1/K_obj shifts by it
+    dof          degrees of freedom of each element's own variances
+    """
+
+    of_k: Array
+    of_v: Array
+    cross: Array
+    common: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    load_cell: float = 0.0
+    dof: float = KNOWN
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Elements as the interval's model sees them; arrays of one shape.
+
+    section      their hinges
+    stiffness    K, N/mm; NaN beyond the estimator's range
+    signal       K_v, V/mm
+    """
+
+    section: HingeSection
+    stiffness: Array
+    signal: Array
+
+
+def elements(section: HingeSection, design: Design) -> Elements:
+    """K and K_v of hinges by the closed forms, with the design's gauge and read-out."""
+    gauge = design_gauge(design)
+    fitted = ladder.evaluate(section)
+    inside = fitted.valid
+    safe = section if inside.all() else section.rows(np.flatnonzero(inside.ravel()))
+    signal = np.full(section.shape, np.nan)
+    if inside.any():
+        per_mm = readout.volts_per_strain(gauge.factor, design_readout(design))
+        signal[inside] = (per_mm * gauge_signal.foil_strain_per_deflection(safe, gauge)).reshape(-1)
+    return Elements(section, fitted.stiffness, signal)
+
+
+def reading_noise(design: Design) -> float:
+    """Standard deviation of one averaged reading in a grasp, V: the read-out's noise, and the drift of the
+    bridge's zero by its leads' warmth, whose half-width is taken as two standard deviations."""
+    r = design_readout(design)
+    drift = r.excitation * r.gain * design.tolerance.zero_drift / 4.0
+    return float(np.hypot(r.averaged_noise, drift / SIGMAS))
+
+
+def knowledge(target: Target, design: Design, e: Elements, steps: Array | None = None) -> Knowledge:
+    """What `target.known` says of these elements.
+
+    Parameters
+    ----------
+    target, design
+        What is asked for, and the design's tolerances, read-out and calibration.
+    e
+        The elements.
+    steps
+        calibrated: displacements of the calibration after 0, of a shape that broadcasts with the elements.
+    """
+    sensitivity = _log_derivative(e, design, "load_arm") / e.section.load_arm
+    place = (target.known.contact / SIGMAS * sensitivity) ** 2
+    of_k, of_v = place[0], place[1]
+    cross = np.sign(sensitivity[0] * sensitivity[1]) * np.sqrt(of_k * of_v)
+    if target.known.how == "calibrated":
+        own = _calibrated(target, design, e, np.asarray(steps, dtype=float))
+        cell = design.calibration
+        assert cell is not None
+        limits = cell.load_cell_accuracy / cell.load_cell_stiffness
+        known = (of_k + own[0], of_v + own[1], cross + own[2])
+        return Knowledge(*known, load_cell=limits, dof=target.known.runs - 1.0)
+    of_v = of_v + (target.known.gauge_factor / SIGMAS) ** 2
+    common = {}
+    for name, half, derivative, shared in _dimensions(target, design, e):
+        k, v = derivative * half / SIGMAS
+        if shared > 0.0:
+            common[name] = (shared**0.5 * k, shared**0.5 * v)
+        own_share = 1.0 - shared
+        of_k, of_v, cross = of_k + own_share * k * k, of_v + own_share * v * v, cross + own_share * k * v
+    return Knowledge(of_k, of_v, cross, common)
+
+
+def _dimensions(target: Target, design: Design, e: Elements) -> list[tuple[str, float, Array, float]]:
+    """Name, half-width, derivative of ln K and ln K_v, and the share that all elements have alike, of every
+    quantity that an uncalibrated array's elements are not known in."""
+    t = design.tolerance
+    rows = []
+    for name, parameter in as_built.DIMENSIONS.items():
+        half, alike = getattr(t, name), 1.0 if name in as_built.COMMON else OFFSET_SHARE
+        if name == "hinge_thickness" and target.known.how == "inspected":
+            half, alike = target.known.thickness, 0.0
+        rows.append(
+            (name, half, _log_derivative(e, design, parameter) / getattr(e.section, parameter), alike)
+        )
+    modulus = np.stack([np.ones(e.stiffness.shape), np.zeros(e.stiffness.shape)])
+    rows.append(("youngs_modulus", float(t.youngs_modulus or 0.0), modulus, 1.0))
+    return rows
+
+
+def _log_derivative(e: Elements, design: Design, parameter: str) -> Array:
+    """dln K/dln p and dln K_v/dln p, (2, elements)."""
+    nominal = getattr(e.section, parameter)
+    changed = elements(e.section.with_(**{parameter: nominal * (1.0 + STEP)}), design)
+    pairs = ((changed.stiffness, e.stiffness), (changed.signal, e.signal))
+    return np.stack([np.log(after / before) / np.log1p(STEP) for after, before in pairs])
+
+
+def _calibrated(target: Target, design: Design, e: Elements, steps: Array) -> tuple[Array, Array, Array]:
+    """Variances of K and K_v and their covariance, relative, of `runs` regressions on the stage's
+    displacement.
+
+    With k = K K_c/(K + K_c) and v = K_v K_c/(K + K_c) per displacement, an error of the displacement enters
+    both; then K = k K_c/(K_c - k) and K_v = v/(1 - k/K_c) carry dln K = (1 + K/K_c) dln k and
+    dln K_v = dln v + K/K_c dln k.
+    """
+    rig, known = design.calibration, target.known
+    assert rig is not None
+    noise_v = design_readout(design).averaged_noise
+    soft = e.stiffness / rig.load_cell_stiffness
+    k, v = e.stiffness / (1.0 + soft), e.signal / (1.0 + soft)
+    spread = steps * (steps**2 - 1.0) / 12.0 * rig.step**2  # even steps; the reading at 0 is left out
+    both = known.displacement_noise**2 / spread
+    own_k = known.force_noise**2 / spread / k**2 + known.run_scatter**2
+    own_v = noise_v**2 / spread / v**2 + known.run_scatter**2
+    of_k = (1.0 + soft) ** 2 * (both + own_k)
+    of_v = (1.0 + soft) ** 2 * both + own_v + soft**2 * own_k
+    cross = (1.0 + soft) ** 2 * both + (1.0 + soft) * soft * own_k
+    return of_k / known.runs, of_v / known.runs, cross / known.runs

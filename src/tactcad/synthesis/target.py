@@ -1,0 +1,286 @@
+"""What is to be felt and with what: one frozen dataclass a table of a target file.
+
+Lengths in mm, forces in N, stiffnesses in N/mm, stresses in MPa.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Whole, given, shown_text
+from tactcad.design.files import read_text
+from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
+from tactcad.design.materials import ALLOYS
+from tactcad.design.messages import InputError
+from tactcad.design.toml_text import parse_toml
+from tactcad.design.tree import Design, Element, Identity, Rating, Sheet, Tolerance
+from tactcad.lab.calibration import RUN_SCATTER
+from tactcad.lab.pads import INCOMPRESSIBLE
+from tactcad.lab.simulate import Noise
+from tactcad.mechanics.sample_coupling import pad_stiffness
+
+LEAST = ("width", "kinds", "room", "cut", "tolerance")
+KNOWN = ("drawn", "inspected", "calibrated")
+
+
+def _spec(kind: type, name: str) -> Any:
+    return kind.__dataclass_fields__[name].metadata["spec"]
+
+
+def _range(spec: Number, meaning: str) -> Numbers:
+    return Numbers(spec, 2, 2, meaning)
+
+
+def _percent(meaning: str) -> Number:
+    return Number("%", 0.1, 50, meaning)
+
+
+@dataclass(frozen=True)
+class Wish:
+    """[target]: what the sensor is to reach."""
+
+    name: str = given(_spec(Identity, "name"))
+    title: str = given(_spec(Identity, "title"), "Array from a target")
+    base: str = given(
+        TextLine(r"[^\x00-\x1f]{1,200}", "a named design or a path", "design whose other values are kept"),
+        DEFAULT_DESIGN,
+    )
+    half_width: float | None = given(
+        _percent("half-width of the 95 % interval of K_obj over the whole range, at most"),
+        None,
+        "the best to be had",
+    )
+    share: float = given(Number("", 0.5, 0.999, "share of arrays made that meet the target, at least"), 0.95)
+    least: str = given(OneOf(LEAST, "what is made least once the target is met"), "width")
+
+
+@dataclass(frozen=True)
+class Object:
+    """[object]: what is felt, as stiffness under one pad, or as modulus and thickness."""
+
+    stiffness: tuple[float, ...] | None = given(
+        _range(Number("N/mm", 1e-3, 1e4, "K_obj"), "least and largest stiffness under one pad"),
+        None,
+        "from modulus and thickness",
+    )
+    modulus: tuple[float, ...] | None = given(
+        _range(Number("MPa", 1e-4, 1e4, "E"), "least and largest Young's modulus"), None, "not needed"
+    )
+    thickness: float | None = given(
+        Number("mm", 0.1, 1e3, "of the object, bonded to a rigid base"), None, "a half-space"
+    )
+
+
+@dataclass(frozen=True)
+class Grip:
+    """[grasp]: forces."""
+
+    force: float = given(Number("N", 1e-3, 1e4, "largest force on the whole array"))
+    overload: float = given(_spec(Rating, "overload_force"))
+    element_force: float = given(Number("N", 1e-6, 1e4, "largest force on one element"), 1e4)
+    loads: int = given(Whole(4, 1000, "loads at which signals are read, evenly up to the largest"), 10)
+
+
+@dataclass(frozen=True)
+class Room:
+    """[room]: what the array may take up."""
+
+    rows: int = given(Whole(1, 2, "rows of elements"), 2)
+    elements: tuple[float, ...] = given(
+        Numbers(Number("", 2, 1000, "elements"), 2, 2, "least and largest number of elements"), (2, 10)
+    )
+    pitch: float = given(Number("mm", 0.2, 50, "least distance of neighbouring pads"), 0.2)
+    length: float = given(Number("mm", 1, 2000, "along the arms, carrier and all"), 2000.0)
+    width: float = given(Number("mm", 1, 2000, "along the rows, carrier and all"), 2000.0)
+    height: float = given(Number("mm", 1, 500, "from the pads to the carrier's top"), 500.0)
+
+
+@dataclass(frozen=True)
+class Stock:
+    """[stock]: what is at hand to make it."""
+
+    sheets: tuple[float, ...] = given(
+        Numbers(_spec(Sheet, "thickness"), 1, 8, "sheet thicknesses"), None, "the base design's"
+    )
+    alloys: tuple[str, ...] = given(
+        SomeOf(tuple(ALLOYS), "sheet materials, names of the table"), None, "the base design's material"
+    )
+    hinge_tolerances: tuple[float, ...] = given(
+        Numbers(_spec(Tolerance, "hinge_thickness"), 1, 6, "what the wire's passes hold of the hinge"),
+        None,
+        "the base design's",
+    )
+
+
+@dataclass(frozen=True)
+class Kinds:
+    """[elements]: what may be chosen of them."""
+
+    arms: tuple[float, ...] = given(
+        _range(Number("mm", 0.1, 100, "arm length"), "shortest and longest arm"), (4.0, 8.0)
+    )
+    hinges: tuple[float, ...] = given(
+        _range(_spec(Element, "hinge_thickness"), "thinnest and thickest hinge"), (0.15, 0.6)
+    )
+    kinds: int = given(Whole(2, 4, "different elements, at most"), 2)
+    of_a_kind: int = given(Whole(1, 500, "elements of each kind, at least"), 1)
+
+
+@dataclass(frozen=True)
+class Known:
+    """[known]: what is known of each element when the array is used."""
+
+    how: str = given(
+        OneOf(KNOWN, "from the drawing, from an inspection, or from a calibration"), "calibrated"
+    )
+    thickness: float = given(
+        Number("mm", 0, 0.1, "inspected: expanded uncertainty (k = 2) of a hinge's thickness"), 0.002
+    )
+    runs: int = given(Whole(2, 100, "calibrated: runs of every element"), 3)
+    run_scatter: float = given(
+        Number("", 0, 0.2, "calibrated: standard deviation of a slope from run to run, relative"), RUN_SCATTER
+    )
+    force_noise: float = given(Number("N", 0, 10, "calibrated: of one reading"), Noise.force)
+    displacement_noise: float = given(Number("mm", 0, 0.1, "calibrated: of one reading"), Noise.displacement)
+    gauge_factor: float = given(
+        Number("", 0, 0.2, "drawn or inspected: half-width of each gauge's own sensitivity, relative"), 0.02
+    )
+    contact: float = given(
+        Number("mm", 0, 1, "half-width of the contact's place along the arm, in use against as known"), 0.01
+    )
+
+
+@dataclass(frozen=True)
+class Target:
+    """A whole target file, with the design that it starts from."""
+
+    target: Wish
+    object: Object
+    grasp: Grip
+    base: Design
+    room: Room = Room()
+    stock: Stock = Stock(None, None, None)  # type: ignore[arg-type]
+    elements: Kinds = Kinds()
+    known: Known = Known()
+    origin: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def stiffness_range(self) -> tuple[float, float]:
+        """Least and largest K_obj, N/mm."""
+        if self.object.stiffness:
+            return self.object.stiffness[0], self.object.stiffness[1]
+        e = self.base.element.pad_length
+        low, high = self.object.modulus or (0.0, 0.0)
+        unit = pad_stiffness(1.0, e, self.base.sheet.thickness, self.object.thickness or inf, INCOMPRESSIBLE)
+        return low * unit, high * unit
+
+    def with_(self, path: str, value: Any) -> Target:
+        """A copy with another value of one field, "grasp.force"."""
+        table, name = path.split(".")
+        changed = dataclasses.replace(getattr(self, table), **{name: value})
+        return dataclasses.replace(self, **{table: changed})
+
+
+TABLES: dict[str, type] = {
+    "target": Wish,
+    "object": Object,
+    "grasp": Grip,
+    "room": Room,
+    "stock": Stock,
+    "elements": Kinds,
+    "known": Known,
+}
+REQUIRED = ("target", "object", "grasp")
+
+
+def read_target(path: str | Path) -> Target:
+    """A target file, field by field.
+
+    Raises
+    ------
+    InputError
+        The file is missing or no target, a value is not legal, or two contradict each other.
+    """
+    return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
+
+
+def parse_target(text: str, where: str) -> Target:
+    """A target from TOML text; `where` names the text in messages. Raises as `read_target`."""
+    table = parse_toml(text, where)
+    for name, value in table.items():
+        if name not in (*TABLES, "origin"):
+            raise unknown_field(name, [*TABLES, "origin"])
+        if not isinstance(value, dict):
+            raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
+    for name in REQUIRED:
+        if name not in table:
+            raise InputError(name, "missing table", legal=f"a table [{name}]")
+    values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
+    base = read(values["target"].base)
+    stock = values["stock"]
+    values["stock"] = Stock(
+        stock.sheets or (base.sheet.thickness,),
+        stock.alloys or (base.material.alloy,),
+        stock.hinge_tolerances or (base.tolerance.hinge_thickness,),
+    )
+    target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values))
+    _refuse_contradictions(target)
+    return target
+
+
+def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
+    known = [f"{name}.{f.name}" for name, value in values.items() for f in dataclasses.fields(value)]
+    for path, text in table.items():
+        if path not in known:
+            raise unknown_field(f"origin.{path}", [f"origin.{p}" for p in known])
+        shown_text(text, f"origin.{path}", "where the value is from")
+    return dict(table)
+
+
+def _refuse_contradictions(target: Target) -> None:
+    o, room, e = target.object, target.room, target.elements
+    if (o.stiffness is None) == (o.modulus is None):
+        raise InputError("object", "needs one of stiffness and modulus", legal="stiffness = [2, 10] (N/mm)")
+    if o.stiffness and o.thickness:
+        raise InputError("object.thickness", "belongs to a modulus", value=o.thickness, legal="left out")
+    for path, pair in (
+        ("object.stiffness", o.stiffness),
+        ("object.modulus", o.modulus),
+        ("room.elements", room.elements),
+        ("elements.arms", e.arms),
+        ("elements.hinges", e.hinges),
+    ):
+        if pair and pair[0] > pair[1]:
+            raise InputError(path, "its first value is above its second", value=list(pair), legal="low, high")
+    if 2 * e.of_a_kind > room.elements[1]:
+        raise InputError(
+            "elements.of_a_kind",
+            "two kinds of so many are more than room.elements allows",
+            value=e.of_a_kind,
+            legal=f"at most {int(room.elements[1]) // 2}",
+        )
+    if target.known.how == "calibrated" and target.base.calibration is None:
+        raise InputError(
+            "known.how",
+            f"design {target.base.name} has no [calibration] table",
+            value=target.known.how,
+            legal="drawn or inspected, or another target.base",
+        )
+    if o.modulus:
+        pad = (target.base.element.pad_length * target.base.sheet.thickness) ** 0.5
+        if o.thickness and o.thickness < LEAST_LAYER * pad:
+            raise InputError(
+                "object.thickness",
+                "is too thin for the relation between modulus and stiffness",
+                value=o.thickness,
+                legal=f"at least {LEAST_LAYER * pad:.3g} mm, a pad's side times {LEAST_LAYER:g}",
+            )
+
+
+# Layers thinner than this share of a pad's side press out sideways so little that the even pressure, which
+# the relation takes, is no longer near what a rigid pad gives.
+LEAST_LAYER = 0.5
