@@ -30,7 +30,7 @@ ROUNDS = 6  # of the fixed point for each end; each shrinks its error by about t
 
 
 @dataclass(frozen=True)
-class Motion:
+class InGrasp:
     """Elements in a grasp, arrays (..., elements): per unit of the loads' spread.
 
     s, f      deflection and force of each
@@ -62,7 +62,7 @@ class Bounds:
         return (self.high - self.low) / 2.0 / x
 
 
-def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> Motion:
+def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InGrasp:
     """Deflections and forces of elements on separate springs x (N/mm) under `loads` even loads up to `force`
     (N); `count` says how many there are of each. x broadcasts against (..., elements)."""
     share = x / (e.stiffness + x)
@@ -71,10 +71,10 @@ def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> Mot
     spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
     approach = spread / total
     s = share * approach
-    return Motion(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
+    return InGrasp(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
 
 
-def weights(m: Motion, e: Elements, known: Knowledge, x: Array, noise: float) -> tuple[Array, Array]:
+def weights(m: InGrasp, e: Elements, known: Knowledge, x: Array, noise: float) -> tuple[Array, Array]:
     """v_i at a K_obj, in its parts by the readings' noise (V) and by belief in K and K_v."""
     by_noise = (noise * (e.stiffness + x) / e.signal) ** 2
     c = m.f + x * m.s
@@ -82,7 +82,7 @@ def weights(m: Motion, e: Elements, known: Knowledge, x: Array, noise: float) ->
     return by_noise, np.maximum(by_belief, 0.0)
 
 
-def information(m: Motion, count: Array, v: Array) -> tuple[Array, Array]:
+def information(m: InGrasp, count: Array, v: Array) -> tuple[Array, Array]:
     """S, and the weight (s_i - s_mean)/v_i with which each element's f + x s moves x, times S."""
     w = count / v
     mean = (w * m.s).sum(axis=-1, keepdims=True) / w.sum(axis=-1, keepdims=True)
@@ -141,12 +141,12 @@ def bounds(
     return Bounds(ends[0], ends[1], error)
 
 
-def _shared(m: Motion, count: Array, pull: Array, S: Array, k: Array, v: Array) -> Array:
+def _shared(m: InGrasp, count: Array, pull: Array, S: Array, k: Array, v: Array) -> Array:
     """Shift of x by errors k of ln K and v of ln K_v that all elements have at once."""
     return -(count * pull * (m.f * k - m.c * v)).sum(axis=-1) / S
 
 
-def coupled_shift(m: Motion, count: Array, pull: Array, S: Array, share: Array) -> Array:
+def coupled_shift(m: InGrasp, count: Array, pull: Array, S: Array, share: Array) -> Array:
     """By how much K_obj is believed too large where pads are coupled by `share` (elements, elements; its
     diagonal is not used) and are taken to press on separate springs. To first order in the share."""
     off = share - np.diag(np.diag(share))
