@@ -24,6 +24,7 @@ from .parser import Parser
 
 COMMANDS = {
     "new": "write a design file to start from",
+    "design": "a sensor from a target: what is to be felt, to the design that feels it, and how surely",
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
     "build": "build a thousand arrays virtually from parts within their limits, and say what fails",

@@ -91,7 +91,14 @@ def information(m: Motion, count: Array, v: Array) -> tuple[Array, Array]:
 
 
 def bounds(
-    e: Elements, count: Array, known: Knowledge, x: Array, noise: float, force: float, loads: int
+    e: Elements,
+    count: Array,
+    known: Knowledge,
+    x: Array,
+    noise: float,
+    force: float,
+    loads: int,
+    used: Array | None = None,
 ) -> Bounds:
     """The interval of K_obj at `x`.
 
@@ -109,8 +116,11 @@ def bounds(
         Of one averaged reading, V.
     force, loads
         Largest force on the array, N, and how many even loads up to it are read.
+    used
+        As `count`, where only some of those that carry the load are evaluated.
     """
     m = motion(e, count, x, force, loads)
+    count = count if used is None else used
     by_noise, by_belief = weights(m, e, known, x, noise)
     S, pull = information(m, count, by_noise + by_belief)
     shared = sum(_shared(m, count, pull, S, k, v) ** 2 for k, v in known.common.values())

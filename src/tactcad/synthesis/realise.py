@@ -7,6 +7,7 @@ from math import ceil
 
 import numpy as np
 
+from tactcad.design.load import paths
 from tactcad.design.tree import Design, Hinge
 
 from .candidates import ARM, THICKNESS, Candidates
@@ -58,3 +59,30 @@ def realised(c: Candidates) -> Design:
         rating=replace(d.rating, force=rating),
         calibration=calibration,
     )
+
+
+def origins(base: Design, made: Design, limits: str) -> dict[str, str]:
+    """Where every value that differs from the base design's is from, by its path."""
+    before, after = paths(base), paths(made)
+    told = {path: f"synthesised from a target, on {base.name}; binding: {limits}" for path in SEARCHED}
+    told |= {
+        "design.name": "chosen: the target's",
+        "design.title": "chosen: the target's",
+        "design.revision": "chosen: first issue",
+        "array.pitch": "synthesised: at least the target's pitch, the sheet's and a spacer's thickness",
+        "array.spacer": "derived: pitch less sheet",
+        "rating.force": "synthesised: largest force on one element over the object's range",
+        "rating.overload_force": "chosen: the target's overload",
+        "calibration.travel": "synthesised: what every hinge bears",
+        "sheet.thickness": "chosen: of the target's stock",
+        "tolerance.hinge_thickness": "chosen: of the target's stock",
+        "tolerance.youngs_modulus": "chosen: the material's row",
+    }
+    told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}
+    changed = {path for path, value in after.items() if before.get(path) != value}
+    changed |= {path for path in after if path.startswith("element.override.")}
+    always = {"design.name", "design.title", "design.revision"}
+    return {p: told.get(p, told["element.hinge_thickness"]) for p in after if p in changed | always}
+
+
+SEARCHED = ("array.row_arms", "element.hinge_thickness", "element.hinge_length", "element.fillet_radius")

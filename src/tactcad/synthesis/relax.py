@@ -1,0 +1,155 @@
+"""What limits a synthesis: each field of the target eased alone, and the best that is found then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from .target import Target
+
+# Each field that can be eased: which way one step eases it. A step is 10 %, or one of what comes in ones, or
+# 0.01 mm of a hinge.
+STEP, HINGE_STEP = 0.10, 0.01
+FURTHEST = 8.0  # times, a field is eased at most before it is said that it alone does not help
+CLOSE = 0.02  # relative; the least change is found to within this
+
+
+@dataclass(frozen=True)
+class Eased:
+    """A field of the target with another value; `factor` is its size over the present one's where it has
+    one."""
+
+    field: str
+    value: Any
+    shown: str
+
+
+Ease = Callable[[Target, float], Target | None]
+
+
+def _scaled(path: str, up: bool) -> Ease:
+    def ease(target: Target, by: float) -> Target | None:
+        table, name = path.split(".")
+        value = getattr(getattr(target, table), name)
+        return target.with_(path, value * by if up else value / by) if value else None
+
+    return ease
+
+
+def _whole(path: str) -> Ease:
+    def ease(target: Target, by: float) -> Target | None:
+        table, name = path.split(".")
+        value = getattr(getattr(target, table), name)
+        return target.with_(path, max(value + 1, round(value * by))) if by > 1.0 else target
+
+    return ease
+
+
+def _end(path: str, end: int, up: bool, whole: bool = False) -> Ease:
+    """One end of a range."""
+
+    def ease(target: Target, by: float) -> Target | None:
+        table, name = path.split(".")
+        pair = list(getattr(getattr(target, table), name) or ())
+        if not pair:
+            return None
+        pair[end] = pair[end] * by if up else pair[end] / by
+        if whole:
+            pair[end] = max(round(pair[end]), getattr(getattr(target, table), name)[end] + (by > 1.0))
+        return target.with_(path, tuple(pair)) if pair[0] <= pair[1] else None
+
+    return ease
+
+
+def _tolerances(target: Target, by: float) -> Target:
+    finer = tuple(sorted({*target.stock.hinge_tolerances, min(target.stock.hinge_tolerances) / by}))
+    return target.with_("stock.hinge_tolerances", finer)
+
+
+EASES: dict[str, Ease] = {
+    "target.half_width": _scaled("target.half_width", True),
+    "object.stiffness[0]": _end("object.stiffness", 0, True),
+    "object.stiffness[1]": _end("object.stiffness", 1, False),
+    "object.modulus[0]": _end("object.modulus", 0, True),
+    "object.modulus[1]": _end("object.modulus", 1, False),
+    "grasp.force": _scaled("grasp.force", True),
+    "grasp.element_force": _scaled("grasp.element_force", True),
+    "grasp.overload": _scaled("grasp.overload", False),
+    "grasp.loads": _whole("grasp.loads"),
+    "room.elements[0]": _end("room.elements", 0, False, whole=True),
+    "room.elements[1]": _end("room.elements", 1, True, whole=True),
+    "room.pitch": _scaled("room.pitch", False),
+    "room.length": _scaled("room.length", True),
+    "room.width": _scaled("room.width", True),
+    "elements.arms[0]": _end("elements.arms", 0, False),
+    "elements.arms[1]": _end("elements.arms", 1, True),
+    "elements.hinges[0]": _end("elements.hinges", 0, False),
+    "elements.hinges[1]": _end("elements.hinges", 1, True),
+    "stock.hinge_tolerances": _tolerances,
+    "known.thickness": _scaled("known.thickness", False),
+    "known.gauge_factor": _scaled("known.gauge_factor", False),
+    "known.runs": _whole("known.runs"),
+    "known.run_scatter": _scaled("known.run_scatter", False),
+    "known.force_noise": _scaled("known.force_noise", False),
+    "known.displacement_noise": _scaled("known.displacement_noise", False),
+    "known.contact": _scaled("known.contact", False),
+}
+# Fields that matter to one kind of knowledge only.
+ONLY = {
+    "drawn": ("stock.hinge_tolerances", "known.gauge_factor"),
+    "inspected": ("known.thickness", "known.gauge_factor"),
+    "calibrated": ("known.runs", "known.run_scatter", "known.force_noise", "known.displacement_noise"),
+}
+
+
+def eased(target: Target, by: float = 1.0 + STEP) -> Iterator[tuple[str, Target]]:
+    """The target with each of its fields eased alone, by a factor."""
+    unused = {name for how, names in ONLY.items() if how != target.known.how for name in names}
+    unused -= set(ONLY[target.known.how])
+    for name, ease in EASES.items():
+        if name not in unused:
+            other = ease(target, by)
+            if other is not None and other != target:
+                yield name, other
+
+
+def value_of(target: Target, name: str) -> Any:
+    """The value of a field by the name that `eased` gives it."""
+    path, _, end = name.partition("[")
+    table, field = path.split(".")
+    value = getattr(getattr(target, table), field)
+    return value[int(end[:-1])] if end else value
+
+
+def least_change(target: Target, name: str, possible: Callable[[Target], bool]) -> tuple[Any, Target] | None:
+    """The value nearest to the present one with which a target is possible, found by halving.
+
+    Parameters
+    ----------
+    target
+        Impossible as it stands.
+    name
+        The field, of EASES.
+    possible
+        Whether a target is; called for each value tried.
+
+    Returns
+    -------
+    tuple or None
+        The value and the target with it, for which `possible` holds, while for one CLOSE nearer it does not;
+        None where FURTHEST times does not do.
+    """
+    low, high = 1.0, FURTHEST
+    furthest = EASES[name](target, high)
+    if furthest is None or furthest == target or not possible(furthest):
+        return None
+    best = furthest
+    while high / low > 1.0 + CLOSE:
+        middle = (low * high) ** 0.5
+        tried = EASES[name](target, middle)
+        if tried is not None and (tried == best or possible(tried)):
+            high, best = middle, tried
+        else:
+            low = middle
+    return value_of(best, name), best

@@ -1,0 +1,320 @@
+"""The report of a synthesis: as JSON, and as one page with its pictures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from tactcad.paper.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
+from tactcad.parts.layout import Layout
+
+from .interval import LEVEL
+from .shares import SLIGHT
+from .synthesise import CURVE, PAPERS_RATIO, Synthesis
+from .target import Target
+
+COUPLINGS = (0.0, SLIGHT, 1.0)
+LISTED = 8  # rows of limits and shares on the page
+STYLE = """
+body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0 1em;color:#1c2733}
+table{border-collapse:collapse;margin:.5em 0 1.2em}th,td{text-align:left;padding:.25em .8em .25em 0;border-bottom:1px solid #d8dee4}
+td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}
+.answer{font-size:1.25em;border-left:5px solid #31618f;padding-left:.8em}.no{border-color:#b3372b}small{color:#4a5866}
+"""
+
+
+def record(got: Synthesis) -> dict[str, Any]:
+    """Everything of a synthesis as plain data; lengths mm, forces N, stiffnesses N/mm, shares of 1."""
+    out: dict[str, Any] = {
+        "name": got.target.target.name,
+        "met": got.met,
+        "wanted_half_width": got.wanted,
+        "half_width": got.found.half_width,
+        "yield": got.made.share,
+        "yield_wanted": got.target.target.share,
+        "yield_interval": list(got.made.interval),
+        "yield_arrays": got.made.count,
+        "yield_distribution": got.made.distribution,
+        "yield_lacks": got.made.why,
+        "level": LEVEL,
+        "object_range": list(got.target.stiffness_range),
+        "evaluations": got.evaluations,
+        "changes": [asdict(c) for c in got.changes],
+        "left_out": list(got.left_out),
+        "beyond": _beyond(got),
+        "chosen": None,
+    }
+    if not got.found.accepted:
+        return out | {"object_interval": [], "binding": [], "shares": [], "front": []}
+    x = np.geomspace(*got.target.stiffness_range, CURVE)
+    whole = got.interval(x)
+    pairs = [
+        {
+            "measuring": m + 1,
+            "reference": r + 1,
+            "half_width": [float(v) for v in got.interval(x, [m, r]).half_width(x)],
+        }
+        for m, r in _pairs(got)
+    ]
+    return out | {
+        "object_interval": [
+            {"object": float(a), "low": float(b), "high": float(c)}
+            for a, b, c in zip(x, whole.low, whole.high)
+        ],
+        "pairs": pairs,
+        "binding": [asdict(limit) for limit in got.binding],
+        "shares": [asdict(s) for s in got.shares],
+        "front": [entry.record() for entry in got.front],
+        "coupling": [{"share": c, "shift": got.coupling(c)} for c in COUPLINGS],
+        "ratio": got.ratio,
+        "ratios": [{"ratio": q, "half_width": w} for q, w in got.ratios],
+        "papers_ratio": PAPERS_RATIO,
+        "elements": _elements(got),
+        "read_from": got.target.grasp.force / got.target.grasp.loads,
+    }
+
+
+def _beyond(got: Synthesis) -> dict[str, float]:
+    """By limit that the best candidate does not keep, how far beyond it is, relative."""
+    misses = {name: float(v[0]) for name, v in got.found.candidate.misses.items()}
+    width = got.found.half_width / got.wanted - 1.0 if got.wanted else 0.0
+    return {name: v for name, v in {**misses, "target.half_width": width}.items() if v > 1e-9}
+
+
+def _pairs(got: Synthesis) -> list[tuple[int, int]]:
+    """Indices of the first element of each two kinds, the softer first."""
+    K = got.sensor.drawn.stiffness
+    first = sorted({round(float(k), 9): i for i, k in reversed(list(enumerate(K)))}.items())
+    return [(a[1], b[1]) for i, a in enumerate(first) for b in first[i + 1 :]]
+
+
+def _elements(got: Synthesis) -> list[dict[str, Any]]:
+    s = got.sensor
+    forces = dict(zip(got.found.candidate.arm[0].round(6), got.found.candidate.largest_force[0]))
+    rows = []
+    for i, place in enumerate(Layout(got.found.design).elements):
+        rows.append(
+            {
+                "number": place.number,
+                "row": place.row,
+                "arm": place.arm,
+                "hinge_thickness": place.hinge.t,
+                "stiffness": float(s.drawn.stiffness[i]),
+                "stiffness_by_solid_elements": got.solid[i] if got.solid else None,
+                "signal_V_per_mm": float(s.drawn.signal[i]),
+                "largest_force": float(forces.get(round(place.arm, 6), np.nan)),
+            }
+        )
+    return rows
+
+
+def report_json(got: Synthesis) -> bytes:
+    """The record as JSON."""
+    return (json.dumps(record(got), indent=1) + "\n").encode()
+
+
+def report_page(got: Synthesis) -> bytes:
+    """The page (HTML, UTF-8), pictures inside."""
+    r = record(got)
+    title = f"{got.target.target.name}: a sensor from a target"
+    parts = [f"<h1>{escape(title)}</h1>", _answer(got, r)]
+    if got.found.accepted:
+        parts += [_interval_part(got, r), _yield_part(r), _limits_part(r), _ratio_part(r), _front_part(r)]
+        parts += [_elements_part(r)]
+    if r["left_out"]:
+        parts.append(f"<p>Left out for time: {escape(', '.join(r['left_out']))}.</p>")
+    body = "\n".join(parts)
+    return (
+        f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        f"<style>{STYLE}</style></head>\n<body>\n{body}\n</body></html>\n"
+    ).encode()
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.3g} %"
+
+
+def answer(target: Target, r: dict[str, Any]) -> str:
+    """What came out, in two sentences."""
+    low, high = r["object_range"]
+    if not r["met"]:
+        why = "; ".join(f"{name} by {_percent(v)}" for name, v in r["beyond"].items())
+        why = why or f"only {_percent(r['yield'])} of arrays made meet it"
+        return f"Impossible as asked: the best there is misses {why}."
+    e = r["elements"]
+    return (
+        f"{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {_percent(r['wanted_half_width'])} "
+        f"(half the 95 % interval; as drawn {_percent(r['half_width'])}). {_percent(r['yield'])} of arrays made within "
+        f"their tolerances keep that ({_percent(r['yield_interval'][0])} to {_percent(r['yield_interval'][1])})."
+    )
+
+
+def _answer(got: Synthesis, r: dict[str, Any]) -> str:
+    text = f'<p class="answer{"" if r["met"] else " no"}">{escape(answer(got.target, r))}</p>'
+    if not r["changes"]:
+        return text
+    rows = [(c["field"], _value(c["value"]), _value(c["needed"])) for c in r["changes"]]
+    return (
+        text
+        + "<p>Each of these changes alone makes it possible:</p>"
+        + _table(("field", "asked", "needed"), rows)
+    )
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, (list, tuple)):
+        return ", ".join(f"{v:.4g}" for v in value)
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    head = "".join(f"<th>{escape(h)}</th>" for h in heads)
+    body = "".join("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
+    x = np.array([p["object"] for p in r["object_interval"]])
+    low = np.array([p["low"] for p in r["object_interval"]])
+    high = np.array([p["high"] for p in r["object_interval"]])
+    with panels(1, 1, (9.0, 4.2)) as (figure, ax):
+        ax.fill_between(x, 100 * (low / x - 1), 100 * (high / x - 1), color=SKY, alpha=0.45, lw=0)
+        ax.plot(x, 100 * (high - low) / 2 / x, color=BLUE, lw=2, label="half-width, all elements")
+        for i, pair in enumerate(r["pairs"]):
+            ax.plot(
+                x,
+                100 * np.array(pair["half_width"]),
+                color=ORANGE,
+                ls=("--", ":", "-.")[i % 3],
+                label=f"one pair, elements {pair['measuring']} and {pair['reference']}",
+            )
+        ax.axhline(100 * r["wanted_half_width"], color=GREY, lw=1, label="held against")
+        ax.set(xscale="log", xlabel="object's stiffness, N/mm", ylabel="95 % interval, % of it")
+        log_ticks(ax.xaxis, _ticks(float(x[0]), float(x[-1])))
+        ax.legend()
+        picture = svg(figure, "interval")
+    lines = ", ".join(f"{_percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
+    return (
+        f"<h2>How surely it feels</h2>{picture}<p>Pads are taken to press on separate springs. Where the object couples "
+        f"them, K_obj is believed larger by so much of itself, at a share of a half-space's coupling of {lines}; "
+        "<code>tactcad stiffness</code> widens its interval for that unless <code>--coupling</code> says what is "
+        f"known. Read from {r['read_from']:.3g} N on, where all pads touch.</p>"
+    )
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    steps = [a * 10.0**n for n in range(-4, 5) for a in (1, 2, 5)]
+    return [v for v in steps if low <= v <= high] or [low, high]
+
+
+def _yield_part(r: dict[str, Any]) -> str:
+    rows = [(name, str(n)) for name, n in r["yield_lacks"].items()]
+    text = (
+        f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, one sheet and one "
+        f"machine's offset each) {_percent(r['yield'])} go together, stay within their hinges' strength, keep their stops open "
+        f"and give an interval within {_percent(r['wanted_half_width'])} everywhere on the range.</p>"
+    )
+    return text + (_table(("lacking", "arrays"), rows) if rows else "")
+
+
+def _limits_part(r: dict[str, Any]) -> str:
+    text = "<h2>What limits it</h2>"
+    if r["binding"]:
+        best = r["binding"][0]
+        rows = [
+            (
+                b["field"],
+                f"{_value(b['value'])} to {_value(b['eased'])}",
+                _percent(b["half_width"]),
+                f"-{_percent(b['gain'])}",
+            )
+            for b in r["binding"][:LISTED]
+        ]
+        text += (
+            f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field eased by one step, the rest "
+            "searched anew:</p>" + _table(("field", "eased", "half-width", "change"), rows)
+        )
+    if not r["shares"]:
+        return text
+    shown = [s for s in r["shares"] if s["total"] > 0][:LISTED]
+    with panels(1, 1, (9.0, 0.5 * len(shown) + 1.2)) as (figure, ax):
+        at = np.arange(len(shown))[::-1]
+        ax.barh(at + 0.2, [100 * s["total"] for s in shown], 0.38, color=SKY, label="with interactions")
+        ax.barh(at - 0.2, [100 * s["first"] for s in shown], 0.38, color=BLUE, label="alone")
+        ax.set_yticks(at, [s["cause"] for s in shown])
+        ax.set(xlabel="% of the variance of K_obj, at the middle of the range")
+        ax.legend(loc="lower right")
+        text += svg(figure, "shares")
+    none = [s["cause"] for s in r["shares"] if s["total"] <= 0]
+    return text + f"<p><small>Below 0.05 %: {escape('; '.join(none))}.</small></p>"
+
+
+def _ratio_part(r: dict[str, Any]) -> str:
+    if not r["ratios"]:
+        return ""
+    with panels(1, 1, (9.0, 3.6)) as (figure, ax):
+        q = [p["ratio"] for p in r["ratios"]]
+        ax.plot(q, [100 * p["half_width"] for p in r["ratios"]], color=BLUE, marker="o")
+        series(ax, 0, [r["ratio"]], [100 * r["half_width"]], label="chosen")
+        ax.axvline(r["papers_ratio"], color=GREY, lw=1, label="the paper's about 10")
+        ax.set(xscale="log", xlabel="K_r/K_m", ylabel="half-width, %", ylim=(0, None))
+        log_ticks(ax.xaxis, sorted({*q, round(r["ratio"])}))
+        ax.legend()
+        picture = svg(figure, "ratio")
+    at = {p["ratio"]: p["half_width"] for p in r["ratios"]}
+    paper = at.get(r["papers_ratio"])
+    than = f", against {_percent(paper)} at the paper's 10" if paper else ""
+    return (
+        f"<h2>Stiffness ratio</h2>{picture}<p>Best here: {r['ratio']:.3g}, half-width {_percent(r['half_width'])}{than}. The "
+        "paper looks at a pair's ratio alone: the larger K_r/K_m, the better conditioned, with diminishing returns from 10 "
+        "on. Here a stiffer reference is also read with less signal and calibrated less well behind the load cell, a softer "
+        "element is held back by its stop and its strength, and both sides are weighed over the whole range.</p>"
+    )
+
+
+def _front_part(r: dict[str, Any]) -> str:
+    front = r["front"]
+    if not front:
+        return ""
+    with panels(1, 2, (11.0, 3.8)) as (figure, (left, right)):
+        for ax, key, label in ((left, "elements", "elements"), (right, "carrier_area_mm2", "carrier, mm2")):
+            ax.plot([f[key] for f in front[1:]], [100 * f["half_width"] for f in front[1:]], "o", color=BLUE)
+            ax.plot([front[0][key]], [100 * front[0]["half_width"]], "s", color=BLACK, label="chosen")
+            ax.set(xlabel=label, ylabel="half-width, %", ylim=(0, None))
+            ax.legend()
+        picture = svg(figure, "front")
+    rows = [
+        (
+            f["name"],
+            _percent(f["half_width"]),
+            str(f["elements"]),
+            f"{f['carrier_area_mm2'] / 100:.1f}",
+            f"{f['hinge_tolerance_mm']:g}",
+            _value(f["stiffness_N_per_mm"]),
+        )
+        for f in front
+    ]
+    heads = ("design", "half-width", "elements", "carrier, cm2", "hinge +-, mm", "K of its kinds, N/mm")
+    return f"<h2>Alternatives</h2>{picture}{_table(heads, rows)}"
+
+
+def _elements_part(r: dict[str, Any]) -> str:
+    rows = [
+        (
+            f"E{e['number']}",
+            str(e["row"]),
+            f"{e['arm']:g}",
+            f"{e['hinge_thickness']:g}",
+            f"{e['stiffness']:.4g}",
+            f"{e['stiffness_by_solid_elements']:.4g}" if e["stiffness_by_solid_elements"] else "",
+            f"{e['largest_force']:.3g}",
+        )
+        for e in r["elements"]
+    ]
+    heads = ("element", "row", "arm, mm", "hinge, mm", "K, N/mm", "by solid elements", "largest force, N")
+    return "<h2>Elements</h2>" + _table(heads, rows)

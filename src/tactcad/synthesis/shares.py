@@ -1,0 +1,117 @@
+"""What spreads the estimate of K_obj: Sobol's first and total shares of its variance, by what errs.
+
+Arrays are made, known and read once each; y = ln of the estimate over the true K_obj. First and total
+effects are Saltelli's and Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259, table 2 b and f) with
+all numbers of one cause drawn anew together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.assembly.mechanic import Assembled
+from tactcad.assembly.virtual_shop import made
+from tactcad.lab.pads import INCOMPRESSIBLE, places
+from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.section import Array
+
+from .interval import coupled_shift, information, motion, weights
+from .knowledge import Knowledge, elements
+from .made_arrays import MadeSensor
+
+SEED = 20261124
+COUNT = 2048
+SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
+LEAST = 5e-4  # shares below are not listed
+OF_ELEMENTS = ("element: ", "sheet: ")
+READINGS, BELIEF, CELL, COUPLING, PADS = (
+    "noise of readings",
+    "calibration and contact place",
+    "load cell's limits",
+    f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's",
+    "pad heights",
+)
+
+
+@dataclass(frozen=True)
+class Share:
+    """Shares of the variance of ln K_obj that a cause has alone, and with all it interacts with."""
+
+    cause: str
+    first: float
+    total: float
+
+
+def half_space_shares(sensor: MadeSensor) -> Array:
+    """Displacement of each pad by the force on another over that by its own on an elastic half-space."""
+    d, (x, y) = sensor.design, places(sensor.layout)
+    return shares_between(x, y, d.element.pad_length, d.sheet.thickness, np.inf, INCOMPRESSIBLE)
+
+
+def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) -> list[Share]:
+    """Every cause that matters, largest first, at the middle of the object's range."""
+    rng = np.random.default_rng(seed)
+    variables = {k: v for k, v in sensor.parts.variables.items() if k.startswith(OF_ELEMENTS)}
+    others = sensor.parts.variables
+    n = len(sensor.drawn.stiffness)
+
+    def draw() -> dict[str, Array]:
+        parts = made(variables, count, "normal", rng)
+        causes = {name: rng.standard_normal((count, n, 2)) for name in (READINGS, BELIEF)}
+        alike = {name: rng.uniform(-1.0, 1.0, count) for name in (CELL, COUPLING)}
+        return {**parts, **causes, **alike}
+
+    middle = made(others, 1, "normal", rng, only=())
+    estimate = _estimator(sensor, {k: np.broadcast_to(v, (count, v.shape[1])) for k, v in middle.items()})
+    a, b = draw(), draw()
+    y_a, y_b = estimate(a), estimate(b)
+    variance = float(np.concatenate([y_a, y_b]).var())
+    out = [Share(PADS, 0.0, 0.0)]  # slopes do not see them once all pads touch, which every array is held to
+    for name in a:
+        y_c = estimate({**a, name: b[name]})
+        first = float((y_b * (y_c - y_a)).mean() / variance)
+        total = float(((y_a - y_c) ** 2).mean() / 2.0 / variance)
+        out.append(Share(name, max(first, 0.0) if total > LEAST else 0.0, total if total > LEAST else 0.0))
+    return sorted(out, key=lambda s: -s.total)
+
+
+def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str, Array]], Array]:
+    """ln of K_obj as estimated over the true one, for arrays with these deviations and errors."""
+    x = float(np.median(sensor.points))
+    grip, noise, coupled = sensor.target.grasp, sensor.noise, half_space_shares(sensor)
+    calibrated = sensor.target.known.how == "calibrated"
+    ones = np.ones(1)
+
+    def estimate(causes: dict[str, Array]) -> Array:
+        parts = {k: v for k, v in causes.items() if k.startswith(OF_ELEMENTS)}
+        true = elements(Assembled(sensor.layout, {**rest, **parts}).section, sensor.design)
+        known = sensor.known(true)
+        m = motion(true, ones, np.asarray(x), grip.force, grip.loads)
+        by_noise, by_belief = weights(m, true, known, np.asarray(x), noise)
+        S, pull = information(m, ones, by_noise + by_belief)
+        e_k, e_v = _errors(known, causes[BELIEF])
+        if not calibrated:
+            e_k = e_k + np.log(sensor.drawn.stiffness / true.stiffness)
+            e_v = e_v + np.log(sensor.drawn.signal / true.signal)
+        by_reading = causes[READINGS][..., 0] * np.sqrt(by_noise)
+        shift = -(pull * (m.f * e_k - m.c * e_v + by_reading)).sum(axis=1) / S
+        share = SLIGHT * (1.0 + causes[COUPLING]) / 2.0
+        shift = shift + share * coupled_shift(m, ones, pull, S, coupled)
+        at = np.maximum(x + shift, 1e-3 * x)
+        return -np.log(x / at + x * known.load_cell * causes[CELL])
+
+    return estimate
+
+
+def _errors(known: Knowledge, z: Array) -> tuple[Array, Array]:
+    """Errors of ln K and ln K_v from independent standard normal numbers, with their covariance."""
+    if (
+        known.dof > 1e6
+    ):  # the dimensions' own errors are drawn with the parts; what is left is gauge and contact
+        return np.zeros(z.shape[:-1]), np.zeros(z.shape[:-1])
+    k = np.sqrt(known.of_k)
+    along = known.cross / k
+    return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(known.of_v - along**2, 0.0)) * z[..., 1]

@@ -1,0 +1,392 @@
+"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and its neighbours."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from tactcad.design.tree import Design
+from tactcad.lab import array_estimate
+from tactcad.mechanics.section import Array
+
+from . import relax
+from .candidates import Candidates, Stand, stands
+from .interval import Bounds, bounds, coupled_shift, information, motion, weights
+from .made_arrays import MadeSensor, Yield
+from .realise import origins
+from .search import FAR, Found, Goal, search
+from .shares import SLIGHT, Share, half_space_shares, variance_shares
+from .target import Target
+
+ARRAYS = 2000  # made of each distribution
+MARGINS = (1.0, 1.1, 1.2, 1.35, 1.5, 1.75, 2.0)  # between wanted and nominal half-width, tried for the yield
+CURVE = 25  # points of the object's range in the report
+RATIOS = (2.0, 4.0, 6.0, 10.0, 16.0, 30.0)  # K_r/K_m; the paper proposes about 10
+PAPERS_RATIO = 10.0
+SAME_RATIO = 0.03  # relative, within which a ratio counts as the asked one
+NEAR = 0.01  # relative gain below which an eased field is not said to limit
+QUICK = 5e-3  # relative; searches beside the answer stop there
+
+Tell = Callable[[int, int, str], None]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One design of the front.
+
+    name, what   of the entry, and what was held beside the interval
+    found        its candidate
+    half_width   relative, nominal, largest over the range
+    """
+
+    name: str
+    what: str
+    found: Found
+
+    @property
+    def half_width(self) -> float:
+        return self.found.half_width
+
+    def record(self) -> dict[str, Any]:
+        c, stand = self.found.candidate, self.found.candidate.stand
+        return {
+            "name": self.name,
+            "what": self.what,
+            "half_width": self.half_width,
+            "elements": int(c.total[0]),
+            "different": int(c.different[0]),
+            "carrier_area_mm2": float(c.area[0]),
+            "cut_length_mm": float(c.cut[0]),
+            "hinge_tolerance_mm": stand.base.tolerance.hinge_thickness,
+            "sheet_mm": stand.base.sheet.thickness,
+            "alloy": stand.base.material.alloy,
+            "arms_mm": [round(float(a), 6) for a in c.arm[0]],
+            "hinges_mm": [round(float(t), 6) for t in c.thickness[0]],
+            "counts": [int(n) for n in c.count[0]],
+            "stiffness_N_per_mm": [float(k) for k in c.elements.stiffness[0]],
+        }
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A field of the target that limits: eased by one step alone, the half-width falls to `half_width`."""
+
+    field: str
+    value: Any
+    eased: Any
+    half_width: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class LeastChange:
+    """A field whose change alone makes the target possible, and the nearest value that does."""
+
+    field: str
+    value: Any
+    needed: Any
+
+
+@dataclass(frozen=True)
+class Synthesis:
+    """What `design` found.
+
+    target      as asked
+    found       the chosen candidate
+    wanted      half-width that arrays are held against, relative; without one asked, the least that
+                `target.share` of them keep
+    made        its yield
+    solid       K of every element by solid elements, N/mm
+    met         whether the target is
+    """
+
+    target: Target
+    found: Found
+    wanted: float
+    made: Yield
+    met: bool
+    binding: tuple[Limit, ...] = ()
+    shares: tuple[Share, ...] = ()
+    front: tuple[Choice, ...] = ()
+    ratios: tuple[tuple[float, float], ...] = ()
+    changes: tuple[LeastChange, ...] = ()
+    solid: tuple[float, ...] = ()
+    evaluations: int = 0
+    left_out: tuple[str, ...] = ()
+
+    @cached_property
+    def design(self) -> Design:
+        """The chosen design, every derived value with its origin."""
+        return self.as_design(self.found, self.target.target.name)
+
+    def as_design(self, found: Found, name: str) -> Design:
+        """A found candidate as a design of that name."""
+        d, wish = found.design, self.target.target
+        identity = replace(d.design, name=name, title=wish.title, revision="A")
+        limits = ", ".join(limit.field for limit in self.binding) or "nothing near"
+        return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, limits)})
+
+    @cached_property
+    def sensor(self) -> MadeSensor:
+        return MadeSensor(self.target, self.found.design)
+
+    @property
+    def ratio(self) -> float:
+        """K_r/K_m: the stiffest element's stiffness over the softest's."""
+        K = self.found.candidate.elements.stiffness
+        return float(K.max() / K.min())
+
+    def interval(self, x: Array, members: list[int] | None = None) -> Bounds:
+        """The interval at K_obj `x` (N/mm), of all elements or of those of these indices."""
+        s, grip = self.sensor, self.target.grasp
+        ones = np.ones(len(s.drawn.stiffness))
+        used = None if members is None else np.isin(np.arange(len(ones)), members) * ones
+        known = s.known(s.drawn)
+        return bounds(s.drawn, ones, known, x[:, np.newaxis], s.noise, grip.force, grip.loads, used)
+
+    def coupling(self, share: float) -> float:
+        """By how much, relative, K_obj is believed too large at the middle of the range where the pads are
+        coupled by a share of a half-space's and `--coupling 0` is said."""
+        s, grip = self.sensor, self.target.grasp
+        x, ones = np.asarray(np.median(s.points)), np.ones(len(s.drawn.stiffness))
+        m = motion(s.drawn, ones, x, grip.force, grip.loads)
+        known = s.known(s.drawn)
+        S, pull = information(m, ones, sum(weights(m, s.drawn, known, x, s.noise)))
+        return float(coupled_shift(m, ones, pull, S, share * half_space_shares(s)) / x)
+
+
+def goal_of(target: Target, margin: float = 1.0) -> Goal:
+    """What the search makes least: the half-width, or what the target names once the half-width is met."""
+    wanted, least = target.target.half_width, target.target.least
+
+    def goal(c: Candidates) -> Array:
+        width = c.half_width
+        if wanted is None or least in ("width", "tolerance"):
+            return width
+        beyond = np.maximum(width * margin / (wanted / 100.0) - 1.0, 0.0)
+        what = {"room": c.area / 1e4, "cut": c.cut / 1e4, "kinds": c.different}[least]
+        return np.where(beyond > 0.0, FAR * (1.0 + beyond), what + 1e-3 * width)
+
+    return goal
+
+
+def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synthesis:
+    """The best design of a target, its yield and whether that meets it; nothing else.
+
+    Parameters
+    ----------
+    target
+        What is asked for.
+    arrays
+        To be made of each distribution for the yield.
+    within
+        Relative, by how much more search might change the answer.
+    """
+    asked = target.target.half_width
+    looked, best = 0, None
+    for margin in (
+        MARGINS if asked is not None and target.target.least in ("room", "cut", "kinds") else (1.0,)
+    ):
+        found = []
+        for stand in _in_order(target):
+            one = search(stand, goal_of(target, margin), within=within)
+            looked += one.evaluations
+            found.append(one)
+            if (
+                target.target.least == "tolerance"
+                and asked
+                and one.accepted
+                and one.half_width <= asked / 100
+            ):
+                break
+        chosen = min(found, key=lambda f: (not f.accepted, f.goal))
+        if target.target.least == "tolerance" and asked and found[-1].half_width <= asked / 100:
+            chosen = found[-1]
+        made, wanted = _made(target, chosen, arrays)
+        met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
+        this = Synthesis(target, chosen, wanted, made, met)
+        if best is None or (met, made.share) > (best.met, best.made.share):
+            best = this
+        if met or not chosen.accepted:
+            break
+    assert best is not None
+    return replace(best, evaluations=looked)
+
+
+def _in_order(target: Target) -> list[Stand]:
+    """Stands, the loosest hinge tolerance first where that is to be found."""
+    order = stands(target)
+    if target.target.least == "tolerance":
+        order.sort(key=lambda s: -s.base.tolerance.hinge_thickness)
+    return order
+
+
+def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
+    asked = target.target.half_width
+    if not found.accepted:
+        return Yield(0, 0.0, (0.0, 1.0), "normal", {}, np.zeros(0)), (asked or 0.0) / 100.0
+    sensor = MadeSensor(target, found.design)
+    if asked is not None:
+        return sensor.built(arrays, asked / 100.0), asked / 100.0
+    # the least that enough of them keep; a little above, so that the share asked for is kept for sure
+    widths = sensor.built(arrays, np.inf).half_widths
+    wanted = float(np.quantile(widths, 1.0 - (1.0 - target.target.share) / 2.0))
+    wanted = float(f"{wanted * 1.005:.3g}")
+    return sensor.built(arrays, wanted), wanted
+
+
+def design(
+    target: Target,
+    *,
+    within: float = 1e-3,
+    seconds: float | None = None,
+    tell: Tell = lambda done, total, what: None,
+) -> Synthesis:
+    """A sensor from a target.
+
+    Parameters
+    ----------
+    target
+        As `target.read_target` gives it.
+    within
+        Relative; the search stops where more of it would not change the half-width by more.
+    seconds
+        Time to take; what it does not reach of the report (limits, variance shares, front, ratios) is left
+        out and named.
+    tell
+        Called with (done, total, what comes next).
+
+    Returns
+    -------
+    Synthesis
+        `met` says whether the target is; where it is not, `changes` has the least change of each field that
+        alone would make it possible.
+    """
+    started = time.perf_counter()
+    steps: list[tuple[str, Callable[[Synthesis], Synthesis]]] = [
+        ("variance shares", _with_shares),
+        ("solid elements", _with_solids),
+        ("what limits it", _with_limits),
+        ("alternatives", _with_front),
+        ("stiffness ratios", _with_ratios),
+    ]
+    tell(0, len(steps) + 1, "searching")
+    got = attempt(target, within=within)
+    if not got.met:
+        return _with_changes(got, within, tell, started, seconds)
+    left_out = []
+    for i, (what, step) in enumerate(steps, start=1):
+        if seconds is not None and time.perf_counter() - started > seconds:
+            left_out.append(what)
+            continue
+        tell(i, len(steps) + 1, what)
+        got = step(got)
+    return replace(got, left_out=tuple(left_out))
+
+
+def _with_shares(got: Synthesis) -> Synthesis:
+    return replace(got, shares=tuple(variance_shares(got.sensor)))
+
+
+def _with_solids(got: Synthesis) -> Synthesis:
+    """K of every element by solid elements."""
+    rows = array_estimate.estimate(got.sensor.layout, "fem-solid")
+    return replace(got, solid=tuple(row.stiffness for row in rows))
+
+
+def _search_near(target: Target, found: Found, goal: Goal | None = None) -> Found:
+    """The search on the found one's stand for another target, started from it."""
+    here = found.candidate.stand
+    same = [s for s in stands(target) if _same_stand(s, here)] or stands(target)
+    near = [search(s, goal or goal_of(target), start=found.row, within=QUICK) for s in same]
+    return min(near, key=lambda f: (not f.accepted, f.goal))
+
+
+def _same_stand(one: Stand, other: Stand) -> bool:
+    return (one.kinds, one.base.sheet, one.base.material.alloy) == (
+        other.kinds,
+        other.base.sheet,
+        other.base.material.alloy,
+    )
+
+
+def _with_limits(got: Synthesis) -> Synthesis:
+    """Fields whose easing by a step narrows the interval, the most helpful first."""
+    width, narrowest = got.found.half_width, _narrowest
+    limits = []
+    for name, other in relax.eased(got.target):
+        if name == "target.half_width":
+            continue
+        found = _search_near(other, got.found, narrowest)
+        if found.accepted and found.half_width < width * (1.0 - NEAR):
+            gain = 1.0 - found.half_width / width
+            values = relax.value_of(got.target, name), relax.value_of(other, name)
+            limits.append(Limit(name, *values, found.half_width, gain))
+    return replace(got, binding=tuple(sorted(limits, key=lambda limit: -limit.gain)))
+
+
+def _narrowest(c: Candidates) -> Array:
+    return c.half_width
+
+
+def _with_front(got: Synthesis) -> Synthesis:
+    """Designs with fewer elements, in less room, with looser tolerances, each as accurate as can be."""
+    target, c = got.target, got.found.candidate
+    wish = target.with_("target.half_width", None)
+    entries = [Choice("chosen", "the design chosen", got.found)]
+    most = int(target.room.elements[1])
+    for n in sorted({2, 4, 6, 8, most // 2, most, 2 * most}):
+        if max(2, 2 * target.elements.of_a_kind) <= n != int(c.total[0]):
+            low = min(int(target.room.elements[0]), n)
+            found = _search_near(wish.with_("room.elements", (low, n)), got.found, _narrowest)
+            if found.accepted and int(found.candidate.total[0]) == n:
+                entries.append(Choice(f"elements-{n}", f"at most {n} elements", found))
+    longest = 2.0 * float(c.arm.max() + c.slot[0] / 2 + c.stand.beyond_slot)
+    for less in (1.0, 2.0, 3.0):
+        found = _search_near(wish.with_("room.length", round(longest - less, 3)), got.found, _narrowest)
+        if found.accepted:
+            entries.append(Choice(f"shorter-{less:g}", f"{less:g} mm shorter", found))
+    for times in (0.5, 2.0) if target.known.how == "drawn" else ():
+        finest = round(min(target.stock.hinge_tolerances) * times, 6)
+        found = _search_near(wish.with_("stock.hinge_tolerances", (finest,)), got.found, _narrowest)
+        if found.accepted:
+            entries.append(Choice(f"tolerance-{finest:g}", f"hinges within {finest:g} mm", found))
+    return replace(got, front=tuple(entries))
+
+
+def _with_ratios(got: Synthesis) -> Synthesis:
+    """Half-width by K_r/K_m, everything else at its best."""
+    out = []
+    for ratio in RATIOS:
+
+        def goal(c: Candidates, ratio: float = ratio) -> Array:
+            K = c.elements.stiffness
+            off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
+            return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
+
+        found = _search_near(got.target, got.found, goal)
+        if found.accepted:
+            out.append((ratio, found.half_width))
+    return replace(got, ratios=tuple(out))
+
+
+def _with_changes(
+    got: Synthesis, within: float, tell: Tell, started: float, seconds: float | None
+) -> Synthesis:
+    """What of the target, changed alone by the least, would make it possible; each shown by a run."""
+    names = [name for name, _ in relax.eased(got.target)]
+    changes, left_out = [], []
+    for i, name in enumerate(names):
+        if seconds is not None and time.perf_counter() - started > seconds:
+            left_out.append(f"least change of {name}")
+            continue
+        tell(i, len(names), f"impossible as asked; the least change of {name}")
+        change = relax.least_change(got.target, name, lambda t: attempt(t, within=within).met)
+        if change:
+            changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
+    return replace(got, changes=tuple(changes), left_out=tuple(left_out))
