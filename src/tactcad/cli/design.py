@@ -11,10 +11,10 @@ from tactcad.design.messages import InputError
 from .parser import add_json
 
 EXAMPLES = """\
-  tactcad design hardware/targets/better-array.toml --out better    a design that feels what the target says
-  tactcad design mine.toml --out mine --in 30                       the search whole, of the report what 30 s allow
-  tactcad design mine.toml --out mine --best                        the best there is, even if the target is not met
-  tactcad schema --target                                           every field of a target file
+  tactcad design hardware/targets/better-array.toml --out better
+  tactcad design mine.toml --out mine --in 30   the search whole, of the report what 30 s allow
+  tactcad design mine.toml --out mine --best    the best there is, even where the target is not met
+  tactcad schema --target                       every field of a target file
 
 DIR gets design.toml, which every rule accepts, report.html and report.json, and a design file for each
 alternative. Exit status 1 where the target cannot be met: what it misses, and the least change of each single

@@ -1,4 +1,4 @@
-"""tactcad schema [--json]"""
+"""tactcad schema [--target] [--json]"""
 
 from __future__ import annotations
 
@@ -7,15 +7,24 @@ import json
 
 EXAMPLES = """\
   tactcad schema              every field of a design file, table by table
+  tactcad schema --target     every field of a target file
   tactcad schema --json       the same as JSON Schema, for editors that check TOML"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--target", action="store_true", help="of a target file, which `tactcad design` takes"
+    )
     parser.add_argument("--json", action="store_true", help="print JSON Schema")
 
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.schema import json_schema, text_schema
 
+    if args.target:
+        from tactcad.synthesis.target import target_schema, target_text
+
+        print(json.dumps(target_schema(), indent=1) if args.json else target_text())
+        return 0
     print(json.dumps(json_schema(), indent=1) if args.json else text_schema())
     return 0

@@ -49,6 +49,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "1; 0: each "
         "pad on an object of its own); the intervals hold for all up to it",
     )
+    parser.add_argument(
+        "--thickness",
+        type=float,
+        metavar="MM",
+        help="of the object, an incompressible layer on a rigid base (inf: a half-space): its Young's "
+        "modulus is printed too",
+    )
     parser.add_argument("--json", action="store_true", help="print as JSON")
 
 
@@ -62,7 +69,10 @@ def run(args: argparse.Namespace) -> int:
     known = calibration_text.read(args.calibration)
     results: list[grasp.Grasp] = []
     source = args.design or DEFAULT_DESIGN
-    overload_force = load(source).rating.overload_force
+    design = load(source)
+    unit = None
+    if args.thickness is not None:
+        unit = pads.stiffness_per_modulus(design, args.thickness, "--thickness")
     with slow_work(sys.stderr) as tell:
         tell(0, 1, f"reading {args.file}")
         samples = readings.grasps(args.file)
@@ -75,10 +85,8 @@ def run(args: argparse.Namespace) -> int:
                     reference=args.reference,
                     level=args.level,
                     coupling=pads.coupling(source, g, args.coupling),
-                    overload_force=overload_force,
+                    overload_force=design.rating.overload_force,
                 )
             )
-    sys.stdout.write(
-        grasp_text.to_json(results, args.level) if args.json else grasp_text.to_text(results, args.level)
-    )
+    sys.stdout.write((grasp_text.to_json if args.json else grasp_text.to_text)(results, args.level, unit))
     return 0

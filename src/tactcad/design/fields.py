@@ -156,7 +156,8 @@ class Numbers:
 
     @property
     def legal(self) -> str:
-        return f"a list of {self.least} to {self.most} numbers, each {self.item.legal}"
+        count = self.least if self.least == self.most else f"{self.least} to {self.most}"
+        return f"a list of {count} numbers, each {self.item.legal}"
 
     def read(self, value: Any, where: str) -> tuple[float, ...]:
         if not isinstance(value, list):

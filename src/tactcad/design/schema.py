@@ -44,13 +44,14 @@ def text_schema() -> str:
     for name, kind in SECTION_TYPES.items():
         if name == "origin":
             continue
-        lines += _table(name, kind, optional=name in optional)
+        lines += table_text(name, kind, optional=name in optional)
         if kind is Element:
-            lines += _table("element.override.N", Hinge, optional=True)
+            lines += table_text("element.override.N", Hinge, optional=True)
     return "\n".join([*lines, *textwrap.wrap(_TEXT_ORIGIN, 100)])
 
 
-def _table(name: str, kind: type, optional: bool) -> list[str]:
+def table_text(name: str, kind: type, optional: bool) -> list[str]:
+    """One table of a file with its fields."""
     lines = [f"[{name}]" + (" (may be left out)" if optional else "")]
     for field, spec, default in _rows(kind):
         lines.append(f"  {field:24} {spec.meaning}")
@@ -76,10 +77,10 @@ def markdown_schema() -> str:
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of the design file."""
-    tables = {name: _object(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}
+    tables = {name: table_schema(kind) for name, kind in SECTION_TYPES.items() if name != "origin"}
     override = {
         "type": "object",
-        "patternProperties": {"^[1-9][0-9]{0,3}$": _object(Hinge)},
+        "patternProperties": {"^[1-9][0-9]{0,3}$": table_schema(Hinge)},
         "additionalProperties": False,
     }
     tables["element"]["properties"]["override"] = override
@@ -101,7 +102,8 @@ def json_schema() -> dict[str, Any]:
     }
 
 
-def _object(kind: type) -> dict[str, Any]:
+def table_schema(kind: type) -> dict[str, Any]:
+    """JSON Schema of one table."""
     properties, required = {}, []
     for f in dataclasses.fields(kind):
         if "spec" not in f.metadata:

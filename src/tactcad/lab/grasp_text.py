@@ -13,9 +13,9 @@ from tactcad.lab.plain import plain
 SCHEMA = "tactcad-stiffness-1"
 
 
-def to_text(samples: list[Grasp], level: float) -> str:
+def to_text(samples: list[Grasp], level: float, per_modulus: float | None = None) -> str:
     """For each sample K_obj of all elements, a table of its pairs, then limits and notes; `level` is that of
-    the intervals."""
+    the intervals, `per_modulus` K_obj for each MPa of the object's modulus."""
     lines = []
     for g in samples:
         c = g.combined
@@ -60,15 +60,22 @@ def to_text(samples: list[Grasp], level: float) -> str:
             f"K_obj of all elements by noise and calibration alone: {_interval(g.combined_by_noise)} N/mm",
             *(f"  {name}: {_interval(i)} N/mm" for name, i in g.combined_by_limits),
         ]
+        if per_modulus:
+            scaled = Interval(c.estimate / per_modulus, c.low / per_modulus, c.high / per_modulus, c.empty)
+            lines.append(f"Young's modulus {_number(scaled.estimate)} MPa, interval {_interval(scaled)} MPa")
         lines += [*g.notes, ""]
     return "\n".join(lines)
 
 
-def to_json(samples: list[Grasp], level: float) -> str:
+def to_json(samples: list[Grasp], level: float, per_modulus: float | None = None) -> str:
     """All fields of every sample as JSON; an end that is not bounded is 'inf'."""
     records: list[Any] = [plain(g) for g in samples]
     for record, g in zip(records, samples):
-        record["combined"]["verdict"] = g.combined.verdict
+        c = g.combined
+        record["combined"]["verdict"] = c.verdict
+        if per_modulus:
+            values = {"estimate": c.estimate, "low": c.low, "high": c.high}
+            record["modulus_MPa"] = plain({name: v / per_modulus for name, v in values.items()})
         for pair, p in zip(record["pairs"], g.pairs):
             pair["object"]["verdict"] = p.object.verdict
     data = {"schema": SCHEMA, "level": level, "units": "mm, N, V", "samples": records}

@@ -8,12 +8,16 @@ from math import inf
 import numpy as np
 
 from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
 from tactcad.lab.readings import GraspReadings
-from tactcad.mechanics.sample_coupling import shares_between
+from tactcad.mechanics.sample_coupling import pad_stiffness, shares_between
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 
 INCOMPRESSIBLE = 0.5  # Poisson's ratio of soft tissue and rubber; a half-space's shares do not depend on it
+# Layers thinner than this share of a pad's side cannot give way sideways, so that the even pressure which the
+# relation between modulus and stiffness takes is no longer near what a rigid pad gives; chosen.
+LEAST_LAYER = 0.5
 
 
 def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
@@ -21,6 +25,35 @@ def places(layout: Layout) -> tuple[np.ndarray, np.ndarray]:
     side = np.array([1.0 if p.row == 1 else -1.0 for p in layout.elements])
     y = np.array([p.y for p in layout.elements])
     return side * layout.design.array.row_pitch / 2, side * y
+
+
+def stiffness_per_modulus(design: Design, thickness: float, where: str) -> float:
+    """K_obj under one pad over the Young's modulus of an incompressible layer, N/mm for each MPa.
+
+    Parameters
+    ----------
+    design
+        Whose pads press.
+    thickness
+        Of the layer, bonded to a rigid base, mm; inf for a half-space.
+    where
+        What gave the thickness, for the message.
+
+    Raises
+    ------
+    InputError
+        The layer is thinner than LEAST_LAYER of a pad's side.
+    """
+    length, width = design.element.pad_length, design.sheet.thickness
+    least = LEAST_LAYER * (length * width) ** 0.5
+    if not thickness >= least:
+        raise InputError(
+            where,
+            "too thin for the relation between modulus and stiffness",
+            value=thickness,
+            legal=f"at least {least:.3g} mm, {LEAST_LAYER:g} of a pad's side; inf for a half-space",
+        )
+    return pad_stiffness(1.0, length, width, thickness, INCOMPRESSIBLE)
 
 
 def coupling(source: str, readings: GraspReadings, share: float) -> np.ndarray | None:

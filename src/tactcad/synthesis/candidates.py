@@ -18,6 +18,7 @@ from tactcad.design.tree import Design, SheetMaterial
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.stop import tip_compliance
+from tactcad.parts.finding import SAME
 from tactcad.parts.hinge_section import design_alloy, design_readout, shared_parameters
 from tactcad.parts.layout import Layout
 from tactcad.parts.stop_gap import STEP_MM, land_room, seat
@@ -28,8 +29,10 @@ from .target import Target
 
 ARM, THICKNESS, SLOT, RADIUS = 0.1, 0.005, 0.02, 0.01  # mm, steps
 LEAST_STEPS = 4  # of a calibration: one more than a line needs
+PLAIN = 6.0  # mm, an arm that stands for any where arms do not matter
 POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
-AIR = 0.02  # mm; a stop stays open by as much at the largest force, beyond its tolerances; chosen: two steps of a gauge
+# A stop stays open by so much at the largest force, beyond its tolerances, mm; chosen: four steps of its gap.
+AIR = 0.02
 LONGEST_SLOT = (
     4.0  # over the thickest hinge; closed forms hold further, but the slot then costs arm for nothing
 )
@@ -64,10 +67,21 @@ class Stand:
         return np.geomspace(*self.target.stiffness_range, POINTS)[:, np.newaxis, np.newaxis]
 
     @cached_property
+    def widths(self) -> Array:
+        """Width of the carrier along the rows, mm, by the elements of the longer row, from none on."""
+        most = int(self.target.room.elements[1]) // self.target.room.rows + 1
+        return np.array([0.0, *(_with_rows(self.base, n).carrier_size[1] for n in range(1, most + 1))])
+
+    @cached_property
     def most(self) -> int:
         """Elements that the room takes."""
-        rows, wide = self.target.room.rows, self.target.room.width
-        return int(min(self.target.room.elements[1], rows * max(_that_fit(self.layout, wide), 0)))
+        room = self.target.room
+        return min(int(room.elements[1]), room.rows * (int((self.widths <= room.width + SAME).sum()) - 1))
+
+    @cached_property
+    def height(self) -> float:
+        """From the pads to the carrier's top, mm."""
+        return self.base.element.pad_height + self.layout.carrier_bottom + self.base.clamp.carrier_thickness
 
     @cached_property
     def beyond_slot(self) -> float:
@@ -106,11 +120,8 @@ class Stand:
         )
 
 
-def _that_fit(layout: Layout, width: float) -> int:
-    """Elements of a row whose carrier is no wider than `width`."""
-    d = layout.design
-    beside = layout.carrier_size[1] - layout.positions * d.array.pitch
-    return int((width - beside) / d.array.pitch + 1e-9) if width < layout.carrier_size[1] or beside > 0 else 0
+def _with_rows(d: Design, elements: int) -> Layout:
+    return Layout(replace(d, array=replace(d.array, row_arms=((PLAIN,) * elements,))))
 
 
 def stands(target: Target) -> list[Stand]:
@@ -130,7 +141,7 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
     pitch = max(target.room.pitch, round(sheet + spacer, 6))
     own = d.material if alloy == d.material.alloy else SheetMaterial(alloy, *_values(alloy))
     spread = d.tolerance.youngs_modulus if own is d.material else ALLOYS[alloy].spread["youngs_modulus"]
-    rows = tuple((6.0,) * 2 for _ in range(target.room.rows))
+    rows = tuple((PLAIN,) for _ in range(target.room.rows))
     return replace(
         d,
         material=own,
@@ -233,7 +244,7 @@ class Candidates:
             self.yield_force / d.rating.deflection_factor * tip, land_room(s.layout, s.layout.common_hinge)
         )
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
-        # a hinge at its lower limit bears less: its yield force goes with t^2, a little more by its shorter slot
+        # a hinge at its lower limit bears less: its yield force goes with t^2, and a little more
         strong = d.rating.yield_factor * (1.0 + 2.5 * d.tolerance.hinge_thickness / self.thickness)
         volts = e.signal * self.largest_force / e.stiffness
         readout = design_readout(d)
@@ -243,8 +254,9 @@ class Candidates:
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
             "stop": (self.largest_force * tip / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
-            "room.elements": np.maximum(self.total / s.most, room.elements[0] / self.total) - 1.0,
+            "room.elements": np.maximum(self.total / max(s.most, 0.1), room.elements[0] / self.total) - 1.0,
             "room.length": length / room.length - 1.0,
+            "room.height": np.full(len(length), s.height / room.height - 1.0),
             "calibration": np.where(
                 s.target.known.how == "calibrated",
                 LEAST_STEPS / np.maximum(self.steps[:, 0], 0.1) - 1.0,
@@ -264,9 +276,8 @@ class Candidates:
         """Of the carrier, mm2."""
         s = self.stand
         length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
-        a_row = np.ceil(self.total / s.target.room.rows)
-        beside = s.layout.carrier_size[1] - s.layout.positions * s.base.array.pitch
-        return length * (a_row * s.base.array.pitch + beside)
+        a_row = np.ceil(self.total / s.target.room.rows).astype(int)
+        return length * s.widths[np.minimum(a_row, len(s.widths) - 1)]
 
     @cached_property
     def cut(self) -> Array:

@@ -135,8 +135,7 @@ def bounds(
     for sign in (-1.0, 1.0):
         at = np.maximum(point + sign * t * error, 0.1 * point)
         for _ in range(ROUNDS):
-            v_at = sum(weights(m, e, known, at[..., np.newaxis], noise))
-            S_at, _ = information(m, count, v_at)
+            S_at, _ = information(m, count, np.add(*weights(m, e, known, at[..., np.newaxis], noise)))
             at = np.maximum(point + sign * t * np.sqrt(1.0 / S_at + shared), 0.01 * point)
         ends.append(1.0 / np.maximum(1.0 / at - sign * known.load_cell, 1e-12))
     return Bounds(ends[0], ends[1], error)

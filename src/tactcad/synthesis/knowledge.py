@@ -1,4 +1,4 @@
-"""What is known of an array's elements when it is used: errors of K and K_v, relative, one standard deviation.
+"""What is known of an array's elements when it is used: relative errors of K and K_v, standard deviations.
 
 drawn       all dimensions lie within their tolerances
 inspected   the hinge's thickness is measured, the rest lies within tolerances

@@ -2,8 +2,9 @@
 
 Arrays are built virtually (room `assembly`), with its correlations: one sheet, one machine's offset. Each is
 calibrated once, with as many degrees of freedom as its runs leave, and pressed on objects over the range. It
-meets the target where it goes together, no stop closes and no hinge is overloaded under the largest force,
-and the interval that its own readings give is no wider than wanted at every object.
+meets the target where it goes together, all pads touch from the first load on, no stop closes and no hinge
+is overloaded under the largest force, and the interval that its own readings give is no wider than wanted at
+every object.
 """
 
 from __future__ import annotations
@@ -110,7 +111,7 @@ class MadeSensor:
         self, distribution: Distribution, count: int, wanted: float, rng: np.random.Generator
     ) -> tuple[dict[str, Array], Array]:
         arrays = Assembled(self.layout, made(self.parts.variables, count, distribution, rng))
-        lacks = {
+        lacks: dict[str, np.ndarray] = {
             f"assembly: {name}": bad for name, bad in self.parts.missed(arrays, count).items() if bad.any()
         }
         e = elements(arrays.section, self.design)
@@ -118,6 +119,9 @@ class MadeSensor:
         forces = np.max(
             [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points], axis=0
         )
+        rate = e.stiffness * self.points[-1] / (e.stiffness + self.points[-1])
+        last = (rate * (arrays.pads.max(axis=1, keepdims=True) - arrays.pads)).sum(axis=1)
+        lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
         lacks["stop closes under the largest force"] = (forces > arrays.closing_force).any(axis=1)
         yields = strength.yield_force_where_known(e.section, alloy) / self.design.rating.yield_factor
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)

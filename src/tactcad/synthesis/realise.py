@@ -80,9 +80,9 @@ def origins(base: Design, made: Design, limits: str) -> dict[str, str]:
     }
     told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}
     changed = {path for path, value in after.items() if before.get(path) != value}
-    changed |= {path for path in after if path.startswith("element.override.")}
     always = {"design.name", "design.title", "design.revision"}
-    return {p: told.get(p, told["element.hinge_thickness"]) for p in after if p in changed | always}
+    by_element = "synthesised: the other kind of element, as element.hinge_thickness"
+    return {p: told.get(p, by_element) for p, v in after.items() if v is not None and p in changed | always}
 
 
 SEARCHED = ("array.row_arms", "element.hinge_thickness", "element.hinge_length", "element.fillet_radius")

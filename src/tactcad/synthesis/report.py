@@ -22,9 +22,11 @@ COUPLINGS = (0.0, SLIGHT, 1.0)
 LISTED = 8  # rows of limits and shares on the page
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0 1em;color:#1c2733}
-table{border-collapse:collapse;margin:.5em 0 1.2em}th,td{text-align:left;padding:.25em .8em .25em 0;border-bottom:1px solid #d8dee4}
+table{border-collapse:collapse;margin:.5em 0 1.2em}
+th,td{text-align:left;padding:.25em .8em .25em 0;border-bottom:1px solid #d8dee4}
 td.n,th.n{text-align:right;font-variant-numeric:tabular-nums}svg{max-width:100%;height:auto}
-.answer{font-size:1.25em;border-left:5px solid #31618f;padding-left:.8em}.no{border-color:#b3372b}small{color:#4a5866}
+.answer{font-size:1.25em;border-left:5px solid #31618f;padding-left:.8em}
+.no{border-color:#b3372b}small{color:#4a5866}
 """
 
 
@@ -34,7 +36,8 @@ def record(got: Synthesis) -> dict[str, Any]:
         "name": got.target.target.name,
         "met": got.met,
         "wanted_half_width": got.wanted,
-        "half_width": got.found.half_width,
+        "half_width": got.found.half_width if got.found.accepted else None,
+        "base": {"name": got.target.base.name, "half_width": got.base_half_width},
         "yield": got.made.share,
         "yield_wanted": got.target.target.share,
         "yield_interval": list(got.made.interval),
@@ -47,7 +50,6 @@ def record(got: Synthesis) -> dict[str, Any]:
         "changes": [asdict(c) for c in got.changes],
         "left_out": list(got.left_out),
         "beyond": _beyond(got),
-        "chosen": None,
     }
     if not got.found.accepted:
         return out | {"object_interval": [], "binding": [], "shares": [], "front": []}
@@ -83,7 +85,8 @@ def _beyond(got: Synthesis) -> dict[str, float]:
     """By limit that the best candidate does not keep, how far beyond it is, relative."""
     misses = {name: float(v[0]) for name, v in got.found.candidate.misses.items()}
     width = got.found.half_width / got.wanted - 1.0 if got.wanted else 0.0
-    return {name: v for name, v in {**misses, "target.half_width": width}.items() if v > 1e-9}
+    beyond = {**misses, "target.half_width": width}
+    return {name: v for name, v in beyond.items() if v > 1e-9 and np.isfinite(v)}
 
 
 def _pairs(got: Synthesis) -> list[tuple[int, int]]:
@@ -146,11 +149,14 @@ def answer(target: Target, r: dict[str, Any]) -> str:
         why = "; ".join(f"{name} by {_percent(v)}" for name, v in r["beyond"].items())
         why = why or f"only {_percent(r['yield'])} of arrays made meet it"
         return f"Impossible as asked: the best there is misses {why}."
-    e = r["elements"]
+    e, base = r["elements"], r["base"]
+    than = f"; {base['name']} as it is: {_percent(base['half_width'])}" if base["half_width"] else ""
     return (
         f"{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {_percent(r['wanted_half_width'])} "
-        f"(half the 95 % interval; as drawn {_percent(r['half_width'])}). {_percent(r['yield'])} of arrays made within "
-        f"their tolerances keep that ({_percent(r['yield_interval'][0])} to {_percent(r['yield_interval'][1])})."
+        f"(half the 95 % interval; as drawn {_percent(r['half_width'])}{than}). "
+        f"{_percent(r['yield'])} of arrays made within "
+        f"their tolerances keep that ({_percent(r['yield_interval'][0])} to "
+        f"{_percent(r['yield_interval'][1])})."
     )
 
 
@@ -200,23 +206,28 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
         picture = svg(figure, "interval")
     lines = ", ".join(f"{_percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
     return (
-        f"<h2>How surely it feels</h2>{picture}<p>Pads are taken to press on separate springs. Where the object couples "
-        f"them, K_obj is believed larger by so much of itself, at a share of a half-space's coupling of {lines}; "
-        "<code>tactcad stiffness</code> widens its interval for that unless <code>--coupling</code> says what is "
+        f"<h2>How surely it feels</h2>{picture}<p>Pads are taken to press on separate springs. "
+        f"Where the object couples "
+        f"them, K_obj is believed larger by so much of itself, at a share of a half-space's "
+        f"coupling of {lines}; "
+        "<code>tactcad stiffness</code> widens its interval for that unless "
+        "<code>--coupling</code> says what is "
         f"known. Read from {r['read_from']:.3g} N on, where all pads touch.</p>"
     )
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    steps = [a * 10.0**n for n in range(-4, 5) for a in (1, 2, 5)]
+    steps = [a * 10.0**n for n in range(-4, 5) for a in (1, 1.5, 2, 3, 5, 7)]
     return [v for v in steps if low <= v <= high] or [low, high]
 
 
 def _yield_part(r: dict[str, Any]) -> str:
     rows = [(name, str(n)) for name, n in r["yield_lacks"].items()]
     text = (
-        f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, one sheet and one "
-        f"machine's offset each) {_percent(r['yield'])} go together, stay within their hinges' strength, keep their stops open "
+        f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, "
+        f"one sheet and one "
+        f"machine's offset each) {_percent(r['yield'])} go together, stay within their hinges' "
+        f"strength, keep their stops open "
         f"and give an interval within {_percent(r['wanted_half_width'])} everywhere on the range.</p>"
     )
     return text + (_table(("lacking", "arrays"), rows) if rows else "")
@@ -236,7 +247,8 @@ def _limits_part(r: dict[str, Any]) -> str:
             for b in r["binding"][:LISTED]
         ]
         text += (
-            f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field eased by one step, the rest "
+            f"<p>The one change that helps most: <code>{escape(best['field'])}</code>. Each field "
+            f"eased by one step, the rest "
             "searched anew:</p>" + _table(("field", "eased", "half-width", "change"), rows)
         )
     if not r["shares"]:
@@ -270,10 +282,14 @@ def _ratio_part(r: dict[str, Any]) -> str:
     paper = at.get(r["papers_ratio"])
     than = f", against {_percent(paper)} at the paper's 10" if paper else ""
     return (
-        f"<h2>Stiffness ratio</h2>{picture}<p>Best here: {r['ratio']:.3g}, half-width {_percent(r['half_width'])}{than}. The "
-        "paper looks at a pair's ratio alone: the larger K_r/K_m, the better conditioned, with diminishing returns from 10 "
-        "on. Here a stiffer reference is also read with less signal and calibrated less well behind the load cell, a softer "
-        "element is held back by its stop and its strength, and both sides are weighed over the whole range.</p>"
+        f"<h2>Stiffness ratio</h2>{picture}<p>Best here: {r['ratio']:.3g}, half-width "
+        f"{_percent(r['half_width'])}{than}. The "
+        "paper looks at a pair's ratio alone: the larger K_r/K_m, the better conditioned, with "
+        "diminishing returns from 10 "
+        "on. Here a stiffer reference is also read with less signal and calibrated less well "
+        "behind the load cell, a softer "
+        "element is held back by its stop and its strength, and both sides are weighed over the "
+        "whole range.</p>"
     )
 
 

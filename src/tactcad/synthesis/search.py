@@ -1,4 +1,4 @@
-"""The search: scipy's differential evolution over whole numbers, the closed forms for many candidates at a time.
+"""The search: scipy's differential evolution over whole numbers, closed forms for many candidates at a time.
 
 What is better: less violation of limits first, then the goal. Only a candidate that would be the best yet is
 made a design and held against every rule; one that a rule refuses is as good as none.

@@ -1,8 +1,8 @@
 """What spreads the estimate of K_obj: Sobol's first and total shares of its variance, by what errs.
 
 Arrays are made, known and read once each; y = ln of the estimate over the true K_obj. First and total
-effects are Saltelli's and Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259, table 2 b and f) with
-all numbers of one cause drawn anew together.
+effects are Saltelli's and Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181,
+259, table 2 b and f) with all numbers of one cause drawn anew together.
 """
 
 from __future__ import annotations

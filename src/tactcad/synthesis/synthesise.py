@@ -1,4 +1,4 @@
-"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and its neighbours."""
+"""From a target to a synthesis: the chosen design, how surely it feels, what limits it, and alternatives."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .interval import Bounds, bounds, coupled_shift, information, motion, weight
 from .made_arrays import MadeSensor, Yield
 from .realise import origins
 from .search import FAR, Found, Goal, search
-from .shares import SLIGHT, Share, half_space_shares, variance_shares
+from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
 ARRAYS = 2000  # made of each distribution
@@ -135,6 +135,15 @@ class Synthesis:
     def sensor(self) -> MadeSensor:
         return MadeSensor(self.target, self.found.design)
 
+    @cached_property
+    def base_half_width(self) -> float | None:
+        """Of the base design as it is, under the same forces and knowledge; None beyond the estimator."""
+        s, x = MadeSensor(self.target, self.target.base), np.geomspace(*self.target.stiffness_range, CURVE)
+        ones, grip = np.ones(len(s.drawn.stiffness)), self.target.grasp
+        known = s.known(s.drawn)
+        got = bounds(s.drawn, ones, known, x[:, np.newaxis], s.noise, grip.force, grip.loads).half_width(x)
+        return float(got.max()) if np.isfinite(got).all() else None
+
     @property
     def ratio(self) -> float:
         """K_r/K_m: the stiffest element's stiffness over the softest's."""
@@ -156,7 +165,7 @@ class Synthesis:
         x, ones = np.asarray(np.median(s.points)), np.ones(len(s.drawn.stiffness))
         m = motion(s.drawn, ones, x, grip.force, grip.loads)
         known = s.known(s.drawn)
-        S, pull = information(m, ones, sum(weights(m, s.drawn, known, x, s.noise)))
+        S, pull = information(m, ones, np.add(*weights(m, s.drawn, known, x, s.noise)))
         return float(coupled_shift(m, ones, pull, S, share * half_space_shares(s)) / x)
 
 

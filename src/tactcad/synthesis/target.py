@@ -16,18 +16,18 @@ from tactcad.design.files import read_text
 from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, read, read_table, unknown_field
 from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import InputError
+from tactcad.design.schema import table_schema, table_text
 from tactcad.design.toml_text import parse_toml
 from tactcad.design.tree import Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
-from tactcad.lab.pads import INCOMPRESSIBLE
+from tactcad.lab.pads import stiffness_per_modulus
 from tactcad.lab.simulate import Noise
-from tactcad.mechanics.sample_coupling import pad_stiffness
 
 LEAST = ("width", "kinds", "room", "cut", "tolerance")
 KNOWN = ("drawn", "inspected", "calibrated")
 
 
-def _spec(kind: type, name: str) -> Any:
+def _spec(kind: Any, name: str) -> Any:
     return kind.__dataclass_fields__[name].metadata["spec"]
 
 
@@ -173,9 +173,8 @@ class Target:
         """Least and largest K_obj, N/mm."""
         if self.object.stiffness:
             return self.object.stiffness[0], self.object.stiffness[1]
-        e = self.base.element.pad_length
         low, high = self.object.modulus or (0.0, 0.0)
-        unit = pad_stiffness(1.0, e, self.base.sheet.thickness, self.object.thickness or inf, INCOMPRESSIBLE)
+        unit = stiffness_per_modulus(self.base, self.object.thickness or inf, "object.thickness")
         return low * unit, high * unit
 
     def with_(self, path: str, value: Any) -> Target:
@@ -195,6 +194,25 @@ TABLES: dict[str, type] = {
     "known": Known,
 }
 REQUIRED = ("target", "object", "grasp")
+
+
+def target_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of the target file."""
+    tables = {name: table_schema(kind) for name, kind in TABLES.items()} | {"origin": {"type": "object"}}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "tactcad target file",
+        "type": "object",
+        "properties": tables,
+        "required": list(REQUIRED),
+        "additionalProperties": False,
+    }
+
+
+def target_text() -> str:
+    """Every table of a target file with its fields: name, default, legal values, meaning."""
+    lines = [line for name, kind in TABLES.items() for line in table_text(name, kind, name not in REQUIRED)]
+    return "\n".join([*lines, '[origin] holds the source of any value, as "grasp.force" = "measured: ..."'])
 
 
 def read_target(path: str | Path) -> Target:
@@ -270,17 +288,4 @@ def _refuse_contradictions(target: Target) -> None:
             value=target.known.how,
             legal="drawn or inspected, or another target.base",
         )
-    if o.modulus:
-        pad = (target.base.element.pad_length * target.base.sheet.thickness) ** 0.5
-        if o.thickness and o.thickness < LEAST_LAYER * pad:
-            raise InputError(
-                "object.thickness",
-                "is too thin for the relation between modulus and stiffness",
-                value=o.thickness,
-                legal=f"at least {LEAST_LAYER * pad:.3g} mm, a pad's side times {LEAST_LAYER:g}",
-            )
-
-
-# Layers thinner than this share of a pad's side press out sideways so little that the even pressure, which
-# the relation takes, is no longer near what a rigid pad gives.
-LEAST_LAYER = 0.5
+    _ = target.stiffness_range  # refuses an object that is too thin
