@@ -158,9 +158,7 @@ def calibrated(
 def exactly(K: np.ndarray, K_v: np.ndarray) -> Sensitivity:
     """A calibration without error."""
     none = np.zeros(len(K))
-    return Sensitivity(
-        np.arange(1, len(K) + 1), K, none, K_v, none, none, none + KNOWN, none + KNOWN, none
-    )
+    return Sensitivity(np.arange(1, len(K) + 1), K, none, K_v, none, none, none + KNOWN, none + KNOWN, none)
 
 
 def reading_error(design: Design) -> float:
@@ -215,7 +213,9 @@ def overloaded(
     the largest force on any of the objects."""
     most = np.array([target.grasp.force])
     forces = np.array([[k * approach(most, k, x)[1][:, 0] for x in objects] for k in K]).max(axis=1)
-    rated = strength.yield_force_where_known(arrays.section, design_alloy(design)) / design.rating.yield_factor
+    rated = (
+        strength.yield_force_where_known(arrays.section, design_alloy(design)) / design.rating.yield_factor
+    )
     return {
         "stop": (forces > arrays.closing_force).any(axis=1),
         "rated": (forces > rated).any(axis=1),

@@ -1,4 +1,4 @@
-"""What `tactcad stiffness` says of the readings of many arrays at once: lab/combine.py's rules, array by array.
+"""What `tactcad stiffness` says of the readings of many arrays at once: the rules of lab/combine.py.
 
 Weights from covariances that are averaged with the elements' common one, the interval by the elements' own,
 Welch and Satterthwaite's degrees of freedom, and the widening where elements disagree: all as there, over
@@ -17,7 +17,7 @@ from tactcad.mechanics.section import Array
 
 LEVEL = 0.95
 REWEIGHTED = 6  # fits, each weighted at the K_obj of the one before; each shrinks the change by the interval
-PARABOLAS = 3  # through the misfit about its least; their steps shrink tenfold
+PARABOLAS = 10  # through the misfit about its least
 HALVINGS = 20  # of the way from the best K_obj to FARTHEST times it: to 1e-6 of it
 FARTHEST = 30.0  # an interval that reaches so many times K_obj is no interval
 
@@ -103,9 +103,7 @@ class Evaluation:
 
     def evaluated(self, near: float) -> Evaluated:
         """Estimate and interval of each array, K_obj being near `near` (N/mm)."""
-        n = self.s.shape[1]
-        weights = self.belief.moderated(self.dof[0], np.ones(1))
-        best = self._best(near, weights)
+        n, weights, best = self.s.shape[1], self.weights, self.best(near)
         _, least, pull = self.fit(best, weights)
         own = pull**2 * self.belief.along(self.f, self.s, best)
         signal = (pull**2 * self.signal(best)).sum(axis=1, keepdims=True)
@@ -124,7 +122,14 @@ class Evaluation:
         limit = least + t**2 * inflation
         return Evaluated(best[:, 0], *(self._end(sign, best, limit, weights) for sign in (-1.0, 1.0)))
 
-    def _best(self, near: float, weights: Covariance) -> Array:
+    @property
+    def weights(self) -> Covariance:
+        """From which the elements' weights are made."""
+        return self.belief.moderated(self.dof[0], np.ones(1))
+
+    def best(self, near: float) -> Array:
+        """K_obj, (arrays, 1), for which f + x s is most equal."""
+        weights = self.weights
         x = np.full((len(self.s), 1), near)
         for _ in range(REWEIGHTED):
             x = np.clip(self.fit(x, weights)[0], near / FARTHEST, near * FARTHEST)

@@ -159,7 +159,12 @@ class MadeSensor:
             of_s, of_f = 1.0 / signal, K / signal
             shared = tuple((k - v, -v) for k, v in known.common.values())
             readings = Evaluation(
-                volts * of_s, volts * of_f, (noise * of_s, noise * of_f), errors, (known.dof, signal_dof), shared
+                volts * of_s,
+                volts * of_f,
+                (noise * of_s, noise * of_f),
+                errors,
+                (known.dof, signal_dof),
+                shared,
             )
             out.append(readings.evaluated(x).with_load_cell(known.load_cell))
         return out
@@ -196,7 +201,9 @@ class MadeSensor:
         err = np.stack([first * z[0], along * z[0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[1]])
         mean = err.mean(axis=1)
         off = (err - mean[:, np.newaxis]) / np.sqrt(runs * (runs - 1.0))
-        stated = Covariance.of((off[0] ** 2).sum(axis=0), (off[1] ** 2).sum(axis=0), (off[0] * off[1]).sum(axis=0))
+        stated = Covariance.of(
+            (off[0] ** 2).sum(axis=0), (off[1] ** 2).sum(axis=0), (off[0] * off[1]).sum(axis=0)
+        )
         return e.stiffness * (1.0 + mean[0]), e.signal * (1.0 + mean[1]), stated
 
 
