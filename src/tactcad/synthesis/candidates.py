@@ -15,7 +15,7 @@ import numpy as np
 
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, SheetMaterial
-from tactcad.mechanics import strength
+from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.stop import tip_compliance
 from tactcad.parts.finding import SAME
@@ -269,7 +269,20 @@ class Candidates:
         """Sum of what is beyond limits; inf where the estimator does not reach."""
         total = sum(np.maximum(v, 0.0) for v in self.misses.values())
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
-        return np.where(known & np.isfinite(total), total, np.inf)
+        return np.where(known & np.isfinite(total) & self.known_as_made, total, np.inf)
+
+    @cached_property
+    def known_as_made(self) -> Array:
+        """Whether the estimator reaches elements at either end of their tolerances too. What bounds it are
+        ratios to the hinge's thickness, so the ends are where thickness and all else part most."""
+        s, t = self.section, self.stand.base.tolerance
+        inside = np.ones(len(self.arm), bool)
+        for sign in (-1.0, 1.0):
+            off = {p: getattr(s, p) - sign * getattr(t, name) for name, p in as_built.DIMENSIONS.items()}
+            off["hinge_thickness"] = s.hinge_thickness + sign * t.hinge_thickness
+            off["fillet_radius"] = np.minimum(off["fillet_radius"], off["hinge_length"] / 2.0)
+            inside &= (validity.reasons(s.with_(**off), ladder.DEFAULT_RUNG) == "").all(axis=1)
+        return inside
 
     @cached_property
     def area(self) -> Array:

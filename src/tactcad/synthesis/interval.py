@@ -6,12 +6,15 @@ each, and K and K_v known with errors, leave f_i + x s_i with the variance
 
   v_i = sigma^2 (K_i + x)^2/K_v,i^2 + f_i^2 var K + c^2 var K_v - 2 f_i c cov(K, K_v)
 
-(relative variances of K and K_v), and the generalised least squares of lab/combine.py has the variance of x
+(relative variances of K and K_v). The generalised least squares of lab/combine.py weighs with w_i, inverse to
+v_i with variances averaged over elements where they are estimated; then x has the variance
 
-  1/S,  S = sum_i (s_i - s_mean)^2/v_i,  mean by weights 1/v_i.
+  sum_i w_i^2 (s_i - s_mean)^2 v_i/S^2,  S = sum_i w_i (s_i - s_mean)^2,  mean by weights w_i,
 
+1/S where w_i = 1/v_i.
 An error that all elements share enters linearly; the load cell's compliance is in series with the object, so
-its limits shift 1/x. The interval's ends are where |x' - x| sqrt(S(x')) = t, as in combine's misfit.
+its limits shift 1/x. The interval's ends are where |x' - x| sqrt(S(x')/S(x)) is t standard errors, as in
+combine's misfit.
 """
 
 from __future__ import annotations
@@ -23,9 +26,9 @@ from scipy.special import stdtrit
 
 from tactcad.mechanics.section import Array
 
+from .evaluation import LEVEL, Covariance, Evaluation
 from .knowledge import Elements, Knowledge
 
-LEVEL = 0.95
 ROUNDS = 6  # of the fixed point for each end; each shrinks its error by about the relative half-width
 
 
@@ -74,12 +77,15 @@ def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InG
     return InGrasp(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
 
 
-def weights(m: InGrasp, e: Elements, known: Knowledge, x: Array, noise: float) -> tuple[Array, Array]:
-    """v_i at a K_obj, in its parts by the readings' noise (V) and by belief in K and K_v."""
+def weights(
+    m: InGrasp, e: Elements, known: Knowledge, count: Array, x: Array, noise: float
+) -> tuple[Array, Array, Array]:
+    """v_i at a K_obj, in its parts by the readings' noise (V) and by belief in K and K_v; and what stands for
+    v_i in the lab's weights."""
     by_noise = (noise * (e.stiffness + x) / e.signal) ** 2
-    c = m.f + x * m.s
-    by_belief = m.f**2 * known.of_k + c**2 * known.of_v - 2.0 * m.f * c * known.cross
-    return by_noise, np.maximum(by_belief, 0.0)
+    belief = Covariance.of(known.of_k, known.of_v, known.cross)
+    weighed = belief.moderated(known.dof, count).along(m.f, m.s, x)
+    return by_noise, belief.along(m.f, m.s, x), by_noise + weighed
 
 
 def information(m: InGrasp, count: Array, v: Array) -> tuple[Array, Array]:
@@ -121,22 +127,24 @@ def bounds(
     """
     m = motion(e, count, x, force, loads)
     count = count if used is None else used
-    by_noise, by_belief = weights(m, e, known, x, noise)
-    S, pull = information(m, count, by_noise + by_belief)
+    by_noise, by_belief, weighed = weights(m, e, known, count, x, noise)
+    S, pull = information(m, count, weighed)
     shared = sum(_shared(m, count, pull, S, k, v) ** 2 for k, v in known.common.values())
-    error = np.sqrt(1.0 / S + shared)
+    total = (count * pull**2 * (by_noise + by_belief)).sum(axis=-1)
+    error = np.sqrt(total / S**2 + shared)
     signal = (count * pull**2 * by_noise).sum(axis=-1)
     belief = (count * (pull**2 * by_belief) ** 2).sum(axis=-1)
     several = np.broadcast_to(count, pull.shape).sum(axis=-1)
-    dof = S**2 / (signal**2 / np.maximum((several - 1.0) * (loads - 2.0), 1.0) + belief / known.dof)
+    dof = total**2 / (signal**2 / np.maximum((several - 1.0) * (loads - 2.0), 1.0) + belief / known.dof)
     t = stdtrit(dof, 0.5 + LEVEL / 2.0)
     point = np.broadcast_to(x, pull.shape)[..., 0]
     ends = []
     for sign in (-1.0, 1.0):
         at = np.maximum(point + sign * t * error, 0.1 * point)
         for _ in range(ROUNDS):
-            S_at, _ = information(m, count, np.add(*weights(m, e, known, at[..., np.newaxis], noise)))
-            at = np.maximum(point + sign * t * np.sqrt(1.0 / S_at + shared), 0.01 * point)
+            *_, v_at = weights(m, e, known, count, at[..., np.newaxis], noise)
+            S_at, _ = information(m, count, v_at)
+            at = np.maximum(point + sign * t * np.sqrt(total / S / S_at + shared), 0.01 * point)
         ends.append(1.0 / np.maximum(1.0 / at - sign * known.load_cell, 1e-12))
     return Bounds(ends[0], ends[1], error)
 
@@ -146,8 +154,17 @@ def _shared(m: InGrasp, count: Array, pull: Array, S: Array, k: Array, v: Array)
     return -(count * pull * (m.f * k - m.c * v)).sum(axis=-1) / S
 
 
-def coupled_shift(m: InGrasp, count: Array, pull: Array, S: Array, share: Array) -> Array:
-    """By how much K_obj is believed too large where pads are coupled by `share` (elements, elements; its
-    diagonal is not used) and are taken to press on separate springs. To first order in the share."""
-    off = share - np.diag(np.diag(share))
-    return (count * pull * (m.f @ off.T)).sum(axis=-1) / S
+def coupled_estimate(
+    e: Elements, known: Knowledge, x: float, noise: float, force: float, loads: int, share: Array
+) -> Array:
+    """K_obj as believed, N/mm, (arrays,), where pads sink under each other's force by `share` (..., elements,
+    elements; 1 on the diagonal) of what the same force on themselves does, and are taken to press on separate
+    springs."""
+    compliance = share / x + np.eye(e.stiffness.shape[-1]) / e.stiffness[..., np.newaxis, :]
+    f = np.linalg.solve(compliance, np.ones((*compliance.shape[:-1], 1)))[..., 0]
+    load = force * (np.arange(loads) + 1.0) / loads
+    f = np.atleast_2d(f * np.sqrt(((load - load.mean()) ** 2).sum()) / f.sum(axis=-1, keepdims=True))
+    of_s, of_f = noise / e.signal, noise * e.stiffness / e.signal
+    belief = Covariance.of(known.of_k, known.of_v, known.cross)
+    dof = (known.dof, (f.shape[1] - 1.0) * (loads - 2.0))
+    return Evaluation(f / e.stiffness, f, (of_s, of_f), belief, dof).best(x)[:, 0]

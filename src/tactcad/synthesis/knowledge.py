@@ -32,6 +32,8 @@ class Knowledge:
 
     of_k, of_v   variances of K and K_v, each element's own
     cross        their covariance
+    place        of them (K, K_v) for one standard deviation of the contact's place along the arm, in use
+                 against as known: no calibration shows it
     common       by name, (K, K_v) for one standard deviation of what all elements share
     load_cell    half-width of the limits of the load cell's compliance, mm/N: K_obj's 1/K_obj shifts by it
     dof          degrees of freedom of each element's own variances
@@ -40,6 +42,7 @@ class Knowledge:
     of_k: Array
     of_v: Array
     cross: Array
+    place: tuple[Array, Array]
     common: dict[str, tuple[Array, Array]] = field(default_factory=dict)
     load_cell: float = 0.0
     dof: float = KNOWN
@@ -93,15 +96,14 @@ def knowledge(target: Target, design: Design, e: Elements, steps: Array | None =
         calibrated: displacements of the calibration after 0, of a shape that broadcasts with the elements.
     """
     sensitivity = _log_derivative(e, design, "load_arm") / e.section.load_arm
-    place = (target.known.contact / SIGMAS * sensitivity) ** 2
-    of_k, of_v = place[0], place[1]
-    cross = np.sign(sensitivity[0] * sensitivity[1]) * np.sqrt(of_k * of_v)
+    place = target.known.contact / SIGMAS * sensitivity
+    of_k, of_v, cross = place[0] ** 2, place[1] ** 2, place[0] * place[1]
     if target.known.how == "calibrated":
         own = _calibrated(target, design, e, np.asarray(steps, dtype=float))
         cell = design.calibration
         assert cell is not None
         limits = cell.load_cell_accuracy / cell.load_cell_stiffness
-        known = (of_k + own[0], of_v + own[1], cross + own[2])
+        known = (of_k + own[0], of_v + own[1], cross + own[2], (place[0], place[1]))
         return Knowledge(*known, load_cell=limits, dof=target.known.runs - 1.0)
     of_v = of_v + (target.known.gauge_factor / SIGMAS) ** 2
     common = {}
@@ -111,7 +113,7 @@ def knowledge(target: Target, design: Design, e: Elements, steps: Array | None =
             common[name] = (shared**0.5 * k, shared**0.5 * v)
         own_share = 1.0 - shared
         of_k, of_v, cross = of_k + own_share * k * k, of_v + own_share * v * v, cross + own_share * k * v
-    return Knowledge(of_k, of_v, cross, common)
+    return Knowledge(of_k, of_v, cross, (place[0], place[1]), common)
 
 
 def _dimensions(target: Target, design: Design, e: Elements) -> list[tuple[str, float, Array, float]]:

@@ -9,17 +9,16 @@ every object.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import betaincinv, fdtri, stdtrit
+from scipy.special import betaincinv
 
 from tactcad.assembly.mechanic import Assembled
 from tactcad.assembly.virtual_build import DECIDING, Sensor, sensor
-from tactcad.assembly.virtual_shop import Distribution, made
+from tactcad.assembly.virtual_shop import SIGMAS, Distribution, made
 from tactcad.design.tree import Design
-from tactcad.lab.combine import DISAGREE
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
 from tactcad.parts.hinge_section import design_alloy, hinge_section
@@ -27,7 +26,8 @@ from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene
 
 from .candidates import POINTS
-from .interval import LEVEL, information, motion, weights
+from .evaluation import Covariance, Evaluated, Evaluation
+from .interval import motion
 from .knowledge import Elements, Knowledge, elements, knowledge, reading_noise
 from .target import Target
 
@@ -130,49 +130,81 @@ class MadeSensor:
         lacks["interval too wide"] = ~(width <= wanted)
         return lacks, width
 
+    @property
+    def calibrated(self) -> bool:
+        return self.target.known.how == "calibrated"
+
     def known(self, e: Elements) -> Knowledge:
         """What is known of elements as made; uncalibrated it is what the drawing says, the same for all."""
-        if self.target.known.how == "calibrated":
+        if self.calibrated:
             return knowledge(self.target, self.design, e, self.steps)
         return knowledge(self.target, self.design, self.drawn)
 
     def _half_widths(self, e: Elements, rng: np.random.Generator) -> Array:
-        """Of each array's interval from its own readings, largest over the range, relative.
+        """Of each array's interval from its own readings, largest over the range, relative."""
+        read = self.read(e, rng)
+        return np.max([(at.high - at.low) / 2.0 / x for x, at in zip(self.points, read)], axis=0)
 
-        Variances are estimated by those readings: each element's is chi-squared about the true one. Where
-        elements disagree by chance beyond DISAGREE, the interval is widened as the lab's is.
-        """
-        known, grip, count = self.known(e), self.target.grasp, len(e.stiffness)
+    def read(self, e: Elements, rng: np.random.Generator) -> list[Evaluated]:
+        """What is said of arrays as made at each of `points`: known once, then read on every object."""
+        known, grip, ones = self.known(e), self.target.grasp, np.ones(1)
+        used, (K, signal, errors) = self._used(e, known, rng), self._believed(e, known, rng)
         n = e.stiffness.shape[1]
-        ones, worst = np.ones(1), np.zeros(count)
         signal_dof = (n - 1.0) * (grip.loads - 2.0)
-        of_belief = rng.chisquare(min(known.dof, 1e6), (count, n)) / min(known.dof, 1e6)
-        of_noise = rng.chisquare(signal_dof, (count, 1)) / signal_dof
-        chance = rng.random(count)
+        out = []
         for x in self.points:
-            m = motion(e, ones, x, grip.force, grip.loads)
-            by_noise, by_belief = weights(m, e, known, x, self.noise)
-            S, pull = information(m, ones, by_noise + by_belief)
-            signal = (pull**2 * by_noise * of_noise).sum(axis=1)
-            belief = pull**2 * by_belief * of_belief
-            variance = (signal + belief.sum(axis=1)) / S**2
-            dof = (signal + belief.sum(axis=1)) ** 2 / (
-                signal**2 / signal_dof + (belief**2).sum(axis=1) / known.dof
+            m = motion(used, ones, x, grip.force, grip.loads)
+            noise = self.noise * np.sqrt(rng.chisquare(signal_dof, (len(m.s), 1)) / signal_dof)
+            volts = used.signal * m.s + self.noise * rng.standard_normal(m.s.shape)
+            of_s, of_f = 1.0 / signal, K / signal
+            shared = tuple((k - v, -v) for k, v in known.common.values())
+            readings = Evaluation(
+                volts * of_s,
+                volts * of_f,
+                (noise * of_s, noise * of_f),
+                errors,
+                (known.dof, signal_dof),
+                shared,
             )
-            t = stdtrit(dof, 0.5 + LEVEL / 2.0)
-            if n > 2 and known.dof < 1e6:
-                widened = chance < DISAGREE
-                factor = np.sqrt(np.maximum(fdtri(n - 2.0, dof, 1.0 - chance), 1.0))
-                t = np.where(widened, factor * stdtrit(n - 2.0, 0.5 + LEVEL / 2.0), t)
-            shared = sum(
-                ((pull * (m.f * k - m.c * v)).sum(axis=1) / S) ** 2 for k, v in known.common.values()
-            )
-            half = t * np.sqrt(variance + shared) / x
-            near, far = 1.0 - half, 1.0 + half
-            low = 1.0 / (1.0 / near + x * known.load_cell)
-            high = 1.0 / np.maximum(1.0 / far - x * known.load_cell, 1e-9)
-            worst = np.maximum(worst, (high - low) / 2.0)
-        return worst
+            out.append(readings.evaluated(x).with_load_cell(known.load_cell))
+        return out
+
+    def _used(self, e: Elements, known: Knowledge, rng: np.random.Generator) -> Elements:
+        """Elements as they are in use: touched elsewhere, and uncalibrated with gauges of their own."""
+        z = rng.standard_normal(e.stiffness.shape)
+        gauge = 0.0 if self.calibrated else self.target.known.gauge_factor / SIGMAS
+        own = 1.0 + gauge * rng.standard_normal(e.stiffness.shape)
+        stiffness = e.stiffness * np.exp(known.place[0] * z)
+        return replace(e, stiffness=stiffness, signal=e.signal * np.exp(known.place[1] * z) * own)
+
+    def _believed(
+        self, e: Elements, known: Knowledge, rng: np.random.Generator
+    ) -> tuple[Array, Array, Covariance]:
+        """K and K_v as believed, and the covariance of the errors as stated.
+
+        Calibrated, every run errs; their scatter is all that the lab knows of it. Otherwise elements are as
+        drawn, or as drawn with the thickness that was measured, and the stated variances are the true ones.
+        """
+        if not self.calibrated:
+            drawn = self.drawn
+            if self.target.known.how == "inspected":
+                t = e.section.hinge_thickness
+                t = t + self.target.known.thickness / SIGMAS * rng.standard_normal(t.shape)
+                drawn = elements(drawn.section.with_(hinge_thickness=t), self.design)
+            return drawn.stiffness, drawn.signal, Covariance.of(known.of_k, known.of_v, known.cross)
+        k, v = known.place
+        runs = self.target.known.runs
+        of_k, of_v = known.of_k - k * k, known.of_v - v * v
+        first = np.sqrt(of_k)
+        along = (known.cross - k * v) / first
+        z = np.sqrt(runs) * rng.standard_normal((2, runs, *e.stiffness.shape))
+        err = np.stack([first * z[0], along * z[0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[1]])
+        mean = err.mean(axis=1)
+        off = (err - mean[:, np.newaxis]) / np.sqrt(runs * (runs - 1.0))
+        stated = Covariance.of(
+            (off[0] ** 2).sum(axis=0), (off[1] ** 2).sum(axis=0), (off[0] * off[1]).sum(axis=0)
+        )
+        return e.stiffness * (1.0 + mean[0]), e.signal * (1.0 + mean[1]), stated
 
 
 def of_share(successes: int, count: int, level: float = 0.95) -> tuple[float, float]:

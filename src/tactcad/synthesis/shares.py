@@ -18,7 +18,7 @@ from tactcad.lab.pads import INCOMPRESSIBLE, places
 from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.section import Array
 
-from .interval import coupled_shift, information, motion, weights
+from .interval import coupled_estimate, information, motion, weights
 from .knowledge import Knowledge, elements
 from .made_arrays import MadeSensor
 
@@ -81,7 +81,8 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
 def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str, Array]], Array]:
     """ln of K_obj as estimated over the true one, for arrays with these deviations and errors."""
     x = float(np.median(sensor.points))
-    grip, noise, coupled = sensor.target.grasp, sensor.noise, half_space_shares(sensor)
+    grip, noise, alone = sensor.target.grasp, sensor.noise, np.eye(len(sensor.layout.elements))
+    coupled = half_space_shares(sensor) * (1.0 - alone)
     calibrated = sensor.target.known.how == "calibrated"
     ones = np.ones(1)
 
@@ -90,17 +91,17 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
         true = elements(Assembled(sensor.layout, {**rest, **parts}).section, sensor.design)
         known = sensor.known(true)
         m = motion(true, ones, np.asarray(x), grip.force, grip.loads)
-        by_noise, by_belief = weights(m, true, known, np.asarray(x), noise)
-        S, pull = information(m, ones, by_noise + by_belief)
+        by_noise, _, weighed = weights(m, true, known, ones, np.asarray(x), noise)
+        S, pull = information(m, ones, weighed)
         e_k, e_v = _errors(known, causes[BELIEF])
         if not calibrated:
             e_k = e_k + np.log(sensor.drawn.stiffness / true.stiffness)
             e_v = e_v + np.log(sensor.drawn.signal / true.signal)
         by_reading = causes[READINGS][..., 0] * np.sqrt(by_noise)
         shift = -(pull * (m.f * e_k - m.c * e_v + by_reading)).sum(axis=1) / S
-        share = SLIGHT * (1.0 + causes[COUPLING]) / 2.0
-        shift = shift + share * coupled_shift(m, ones, pull, S, coupled)
-        at = np.maximum(x + shift, 1e-3 * x)
+        share = (SLIGHT * (1.0 + causes[COUPLING]) / 2.0)[:, np.newaxis, np.newaxis]
+        felt = coupled_estimate(true, known, x, noise, grip.force, grip.loads, share * coupled + alone)
+        at = np.maximum(felt + shift, 1e-3 * x)
         return -np.log(x / at + x * known.load_cell * causes[CELL])
 
     return estimate

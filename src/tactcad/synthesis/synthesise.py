@@ -16,7 +16,7 @@ from tactcad.mechanics.section import Array
 
 from . import relax
 from .candidates import Candidates, Stand, stands
-from .interval import Bounds, bounds, coupled_shift, information, motion, weights
+from .interval import Bounds, bounds, coupled_estimate
 from .made_arrays import MadeSensor, Yield
 from .realise import origins
 from .search import FAR, Found, Goal, search
@@ -161,12 +161,10 @@ class Synthesis:
     def coupling(self, share: float) -> float:
         """By how much, relative, K_obj is believed too large at the middle of the range where the pads are
         coupled by a share of a half-space's and `--coupling 0` is said."""
-        s, grip = self.sensor, self.target.grasp
-        x, ones = np.asarray(np.median(s.points)), np.ones(len(s.drawn.stiffness))
-        m = motion(s.drawn, ones, x, grip.force, grip.loads)
-        known = s.known(s.drawn)
-        S, pull = information(m, ones, np.add(*weights(m, s.drawn, known, x, s.noise)))
-        return float(coupled_shift(m, ones, pull, S, share * half_space_shares(s)) / x)
+        s, grip, alone = self.sensor, self.target.grasp, np.eye(len(self.sensor.drawn.stiffness))
+        x, shares = float(np.median(s.points)), share * half_space_shares(s) * (1.0 - alone) + alone
+        felt = coupled_estimate(s.drawn, s.known(s.drawn), x, s.noise, grip.force, grip.loads, shares)
+        return float(felt[0] / x - 1.0)
 
 
 def goal_of(target: Target, margin: float = 1.0) -> Goal:

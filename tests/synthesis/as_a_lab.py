@@ -1,0 +1,223 @@
+"""A lab's way from arrays as made to K_obj, simulated: readings, `tactcad calibrate`, `tactcad stiffness`.
+
+Nothing here uses the room's own interval, knowledge or yield. The virtual shop and mechanic make the arrays;
+what is said of them comes from simulated readings through the lab's own evaluation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.assembly.mechanic import Assembled
+from tactcad.assembly.virtual_build import ROUNDING, sensor
+from tactcad.assembly.virtual_shop import Distribution, made
+from tactcad.design.tree import Design
+from tactcad.lab.calibration import calibrate
+from tactcad.lab.combine import Interval, combine, hull
+from tactcad.lab.grasp import common_slopes
+from tactcad.lab.load_cell import LoadCell
+from tactcad.lab.readings import CalibrationReadings, GraspReadings
+from tactcad.lab.sensitivity import Sensitivity
+from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows
+from tactcad.mechanics import gauge_signal, ladder, strength
+from tactcad.mechanics.readout import volts_per_strain
+from tactcad.mechanics.section import HingeSection
+from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout
+from tactcad.scenes import make_scene
+from tactcad.synthesis.target import Target
+
+LEVEL = 0.95
+LIMIT = 2.0  # standard deviations at which a half-width stands
+KNOWN = 1e9  # degrees of freedom of what counts as known
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a lab finds with arrays as made; arrays (arrays, points) but `lacks`, (arrays,) by name.
+
+    low, high, estimate   of K_obj over the true one
+    oracle                half-width over K_obj by somebody who knows K and K_v: noise alone
+    lacks                 which arrays miss what, whatever their interval is
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    estimate: np.ndarray
+    oracle: np.ndarray
+    lacks: dict[str, np.ndarray]
+
+    @property
+    def half_width(self) -> np.ndarray:
+        return (self.high - self.low) / 2.0
+
+    @property
+    def inside(self) -> np.ndarray:
+        return (self.low <= 1.0) & (self.high >= 1.0)
+
+    def met(self, wanted: float) -> np.ndarray:
+        """Which arrays meet the target with a half-width, relative."""
+        lacks = np.logical_or.reduce([*self.lacks.values()])
+        return ~lacks & (self.half_width <= wanted).all(axis=1)
+
+
+def spring_and_signal(section: HingeSection, design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """K (N/mm) and K_v (V/mm) of hinges as made, each (arrays, elements)."""
+    shape = section.shape
+    flat = section.rows(np.arange(int(np.prod(shape))))
+    gauge = design_gauge(design)
+    volts = volts_per_strain(gauge.factor, design_readout(design))
+    signal = volts * gauge_signal.foil_strain_per_deflection(flat, gauge)
+    return ladder.stiffness(flat).reshape(shape), signal.reshape(shape)
+
+
+def used_elsewhere(section: HingeSection, contact: float, rng: np.random.Generator) -> HingeSection:
+    """The same hinges, pressed off the place where they were calibrated."""
+    off = contact / LIMIT * rng.standard_normal(section.shape)
+    return section.with_(load_arm=section.load_arm + off)
+
+
+def outcome(
+    target: Target,
+    design: Design,
+    count: int,
+    distribution: Distribution,
+    seed: int,
+    *,
+    contact: bool = True,
+    points: int = 3,
+) -> Outcome:
+    """`count` arrays, each calibrated once and pressed on objects over the range.
+
+    Parameters
+    ----------
+    contact
+        Whether pads touch elsewhere in use than in the calibration.
+    points
+        Objects, evenly by logarithm from the softest to the stiffest.
+    """
+    rng = np.random.default_rng(seed)
+    parts = sensor(design, [make_scene(design, "array")])
+    arrays = Assembled(parts.layout, made(parts.variables, count, distribution, rng))
+    objects = np.geomspace(*target.stiffness_range, points)
+    K, K_v = spring_and_signal(arrays.section, design)
+    used = used_elsewhere(arrays.section, target.known.contact if contact else 0.0, rng)
+    in_use = spring_and_signal(used, design)
+    found = np.array(
+        [
+            [_felt(target, design, table, k, v, x, rng) for x in objects]
+            for table, k, v in zip(
+                (calibrated(target, design, k, v, rng) for k, v in zip(K, K_v)), in_use[0], in_use[1]
+            )
+        ]
+    )
+    bad = {r.name: (r.margin(r.value(arrays)) < -ROUNDING).any(axis=1) for r in parts.requirements}
+    lacks = {name: np.broadcast_to(which, (count,)) for name, which in bad.items()}
+    lacks |= overloaded(target, design, arrays, K, objects)
+    return Outcome(*np.moveaxis(found, -1, 0), lacks)
+
+
+def calibrated(
+    target: Target, design: Design, K: np.ndarray, K_v: np.ndarray, rng: np.random.Generator
+) -> Sensitivity:
+    """One array's calibration, as `tactcad stiffness` reads it."""
+    rig, known = design.calibration, target.known
+    assert rig is not None
+    cell = LoadCell(rig.load_cell_stiffness, rig.load_cell_accuracy * rig.load_cell_stiffness)
+    number = np.arange(1, len(K) + 1)
+    rows = calibration_rows(
+        Truth(number, K, K_v, np.zeros(len(K))),
+        rng.uniform(*cell.ends),
+        rig.step * np.arange(round(rig.travel / rig.step) + 1),
+        known.runs,
+        Noise(
+            known.force_noise,
+            known.displacement_noise,
+            design_readout(design).averaged_noise,
+            of_run=known.run_scatter,
+        ),
+        rng,
+    )
+    line = np.arange(len(rows)) + 2
+    readings = CalibrationReadings(rows[:, 0].astype(int), rows[:, 1].astype(int), *rows[:, 2:].T, line)
+    table = calibrate(readings, cell)
+    return Sensitivity(
+        number,
+        np.array([e.stiffness.value for e in table]),
+        np.array([e.stiffness.standard_error for e in table]),
+        np.array([e.signal_per_deflection.value for e in table]),
+        np.array([e.signal_per_deflection.standard_error for e in table]),
+        np.array([e.correlation for e in table]),
+        np.array([e.dof for e in table]),
+        np.full(len(K), cell.stiffness),
+        np.full(len(K), cell.half_width),
+    )
+
+
+def exactly(K: np.ndarray, K_v: np.ndarray) -> Sensitivity:
+    """A calibration without error."""
+    none = np.zeros(len(K))
+    return Sensitivity(np.arange(1, len(K) + 1), K, none, K_v, none, none, none + KNOWN, none + KNOWN, none)
+
+
+def reading_error(design: Design) -> float:
+    """Standard deviation of an averaged reading in a grasp, V: noise, rounding, and the zero's drift."""
+    r = design_readout(design)
+    count = 2.0 * r.adc_range / 2.0**r.adc_bits
+    drift = design.tolerance.zero_drift / 4.0 * r.excitation * r.gain  # a quarter bridge
+    return float(((r.noise**2 + count**2 / 12.0) / r.samples + (drift / LIMIT) ** 2) ** 0.5)
+
+
+def pressed(
+    target: Target, design: Design, K: np.ndarray, K_v: np.ndarray, x: float, rng: np.random.Generator
+) -> GraspReadings:
+    """Signals of one grasp on separate springs x."""
+    grip = target.grasp
+    load = grip.force * np.arange(1, grip.loads + 1) / grip.loads
+    signal = K_v[:, np.newaxis] * approach(load, K, x)[1]
+    signal += reading_error(design) * rng.standard_normal(signal.shape)
+    return GraspReadings(1, np.arange(1, len(K) + 1), load, np.zeros(len(load), int), signal)
+
+
+def _felt(
+    target: Target,
+    design: Design,
+    table: Sensitivity,
+    K: np.ndarray,
+    K_v: np.ndarray,
+    x: float,
+    rng: np.random.Generator,
+) -> list[float]:
+    """Low, high and estimate over x, and an oracle's half-width."""
+    readings = pressed(target, design, K, K_v, x, rng)
+    got, sure = combined(readings, table), combined(readings, exactly(K, K_v))
+    return [got.low / x, got.high / x, got.estimate / x, (sure.high - sure.low) / 2.0 / x]
+
+
+def combined(readings: GraspReadings, table: Sensitivity) -> Interval:
+    """`evaluate`'s interval of all elements together, without its pairs, which take five times as long."""
+    tables = [table]
+    if table.load_cell_half_width.any():
+        tables += [table.at_load_cell_limit(sign) for sign in (-1.0, 1.0)]
+    best, *others = (
+        combine(common_slopes(readings.element, readings.signal, at)[0], LEVEL)[0] for at in tables
+    )
+    return hull(best, others)
+
+
+def overloaded(
+    target: Target, design: Design, arrays: Assembled, K: np.ndarray, objects: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Which arrays have an element that closes its stop, passes its rated force or the one asked for, under
+    the largest force on any of the objects."""
+    most = np.array([target.grasp.force])
+    forces = np.array([[k * approach(most, k, x)[1][:, 0] for x in objects] for k in K]).max(axis=1)
+    rated = (
+        strength.yield_force_where_known(arrays.section, design_alloy(design)) / design.rating.yield_factor
+    )
+    return {
+        "stop": (forces > arrays.closing_force).any(axis=1),
+        "rated": (forces > rated).any(axis=1),
+        "asked": (forces > target.grasp.element_force * (1.0 + 1e-9)).any(axis=1),
+    }
