@@ -12,6 +12,7 @@ from functools import cached_property
 from math import ceil
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, SheetMaterial
@@ -269,10 +270,10 @@ class Candidates:
         """Sum of what is beyond limits; inf where the estimator does not reach."""
         total = sum(np.maximum(v, 0.0) for v in self.misses.values())
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
-        return np.where(known & np.isfinite(total) & self.known_as_made, total, np.inf)
+        return np.where(known & self.known_as_made & np.isfinite(total), total, np.inf)
 
     @cached_property
-    def known_as_made(self) -> Array:
+    def known_as_made(self) -> NDArray[np.bool_]:
         """Whether the estimator reaches elements at either end of their tolerances too. What bounds it are
         ratios to the hinge's thickness, so the ends are where thickness and all else part most."""
         s, t = self.section, self.stand.base.tolerance

@@ -163,7 +163,8 @@ def coupled_estimate(
     compliance = share / x + np.eye(e.stiffness.shape[-1]) / e.stiffness[..., np.newaxis, :]
     f = np.linalg.solve(compliance, np.ones((*compliance.shape[:-1], 1)))[..., 0]
     load = force * (np.arange(loads) + 1.0) / loads
-    f = np.atleast_2d(f * np.sqrt(((load - load.mean()) ** 2).sum()) / f.sum(axis=-1, keepdims=True))
+    spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
+    f = np.atleast_2d(np.asarray(f * spread / f.sum(axis=-1, keepdims=True), dtype=np.float64))
     of_s, of_f = noise / e.signal, noise * e.stiffness / e.signal
     belief = Covariance.of(known.of_k, known.of_v, known.cross)
     dof = (known.dof, (f.shape[1] - 1.0) * (loads - 2.0))
