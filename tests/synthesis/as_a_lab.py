@@ -26,7 +26,7 @@ from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows
 from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout
+from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
 from tactcad.scenes import make_scene
 from tactcad.synthesis.evaluation import Covariance, Evaluation
 from tactcad.synthesis.target import Target
@@ -327,3 +327,44 @@ def _many_felt(
     soft = rig.load_cell_accuracy / (1.0 - rig.load_cell_accuracy) / rig.load_cell_stiffness
     stiff = rig.load_cell_accuracy / (1.0 + rig.load_cell_accuracy) / rig.load_cell_stiffness
     return [1.0 / (1.0 / got.low + stiff) / x, 1.0 / (1.0 / got.high - soft) / x, got.estimate / x]
+
+
+def believed(
+    K: np.ndarray, K_v: np.ndarray, K_se: np.ndarray, V_se: np.ndarray, correlation: np.ndarray, dof: float
+) -> Sensitivity:
+    """Beliefs with stated errors, behind no load cell."""
+    none, number = np.zeros(len(K)), np.arange(1, len(K) + 1)
+    return Sensitivity(number, K, K_se, K_v, V_se, correlation, none + dof, none + KNOWN, none)
+
+
+def uncalibrated(
+    target: Target,
+    design: Design,
+    count: int,
+    distribution: Distribution,
+    seed: int,
+    errors: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> np.ndarray:
+    """K_obj over the true one, (arrays, points), of arrays that are believed to be as drawn, or as drawn with
+    the hinges' thickness measured; each gauge has a sensitivity of its own. `errors` (relative standard
+    errors of K and K_v, correlation) make the weights only."""
+    rng = np.random.default_rng(seed)
+    parts = sensor(design, [make_scene(design, "array")])
+    arrays = Assembled(parts.layout, made(parts.variables, count, distribution, rng))
+    said = drawn = hinge_section(parts.layout, parts.layout.elements)
+    used = used_elsewhere(arrays.section, target.known.contact, rng)
+    K, K_v = spring_and_signal(used, design)
+    K_v = K_v * (1.0 + target.known.gauge_factor / LIMIT * rng.standard_normal(K.shape))
+    out = []
+    for i in range(count):
+        if target.known.how == "inspected":
+            t = arrays.section.hinge_thickness[i]
+            wrong = target.known.thickness / LIMIT * rng.standard_normal(t.shape)
+            said = drawn.with_(hinge_thickness=t + wrong)
+        k, v = spring_and_signal(said, design)
+        table = believed(k, v, errors[0] * k, errors[1] * v, errors[2], KNOWN)
+        objects = np.geomspace(*target.stiffness_range, 3)
+        out.append(
+            [combined(pressed(target, design, K[i], K_v[i], x, rng), table).estimate / x for x in objects]
+        )
+    return np.array(out)
