@@ -1,7 +1,9 @@
 """A lab's way from arrays as made to K_obj, simulated: readings, `tactcad calibrate`, `tactcad stiffness`.
 
 Nothing here uses the room's own interval, knowledge or yield. The virtual shop and mechanic make the arrays;
-what is said of them comes from simulated readings through the lab's own evaluation.
+what is said of them comes from simulated readings through the lab's own evaluation. `many` does the same for
+tens of thousands of arrays: own regressions of all readings, and the room's evaluation of what they give,
+which test_evaluation.py holds against the lab's array by array.
 """
 
 from __future__ import annotations
@@ -24,8 +26,9 @@ from tactcad.lab.simulate import Noise, Truth, approach, calibration_rows
 from tactcad.mechanics import gauge_signal, ladder, strength
 from tactcad.mechanics.readout import volts_per_strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout
+from tactcad.parts.hinge_section import design_alloy, design_gauge, design_readout, hinge_section
 from tactcad.scenes import make_scene
+from tactcad.synthesis.evaluation import Covariance, Evaluation
 from tactcad.synthesis.target import Target
 
 LEVEL = 0.95
@@ -221,3 +224,147 @@ def overloaded(
         "rated": (forces > rated).any(axis=1),
         "asked": (forces > target.grasp.element_force * (1.0 + 1e-9)).any(axis=1),
     }
+
+
+def many(
+    target: Target, design: Design, count: int, distribution: Distribution, seed: int, at_once: int = 2000
+) -> Outcome:
+    """As `outcome`, of many arrays; without an oracle."""
+    rng = np.random.default_rng(seed)
+    parts = sensor(design, [make_scene(design, "array")])
+    objects = np.geomspace(*target.stiffness_range, 3)
+    found, lacks = [], []
+    for _ in range(0, count, at_once):
+        arrays = Assembled(parts.layout, made(parts.variables, at_once, distribution, rng))
+        K, K_v = spring_and_signal(arrays.section, design)
+        in_use = spring_and_signal(used_elsewhere(arrays.section, target.known.contact, rng), design)
+        table = calibrations(target, design, K, K_v, rng)
+        found.append([_many_felt(target, design, table, *in_use, x, rng) for x in objects])
+        bad = {r.name: (r.margin(r.value(arrays)) < -ROUNDING).any(axis=1) for r in parts.requirements}
+        bad |= overloaded(target, design, arrays, K, objects)
+        lacks.append({name: np.broadcast_to(which, (at_once,)) for name, which in bad.items()})
+    low, high, estimate = np.concatenate(np.moveaxis(np.array(found), 1, -1), axis=1)
+    return Outcome(
+        low,
+        high,
+        estimate,
+        np.full_like(low, np.nan),
+        {n: np.concatenate([b[n] for b in lacks]) for n in lacks[0]},
+    )
+
+
+Table = tuple[np.ndarray, np.ndarray, Covariance]
+
+
+def calibrations(
+    target: Target, design: Design, K: np.ndarray, K_v: np.ndarray, rng: np.random.Generator
+) -> Table:
+    """K, K_v and their relative covariance from every array's calibration, each run a line of its own."""
+    rig, known = design.calibration, target.known
+    assert rig is not None
+    steps = rig.step * np.arange(1, round(rig.travel / rig.step) + 1)  # the first reading is left out
+    true = rig.load_cell_stiffness * (1.0 + rig.load_cell_accuracy * rng.uniform(-1.0, 1.0, (len(K), 1)))
+    share = true / (true + K)
+    shape = (*K.shape, known.runs, len(steps))
+
+    def normal(sigma: float, shape: tuple[int, ...] = shape) -> np.ndarray:
+        return sigma * rng.standard_normal(shape)
+
+    def run() -> np.ndarray:
+        return 1.0 + normal(known.run_scatter, (*shape[:3], 1))
+
+    deflection = share[..., None, None] * (steps + normal(known.displacement_noise))
+    force = K[..., None, None] * deflection * run() + normal(known.force_noise)
+    signal = K_v[..., None, None] * deflection * run() + normal(design_readout(design).averaged_noise)
+    away = steps - steps.mean()
+    k_run, v_run = (y @ away / (away @ away) for y in (force, signal))
+    k, v = k_run.mean(axis=-1), v_run.mean(axis=-1)
+    off = np.stack([k_run - k[..., None], v_run - v[..., None]])
+    kk, vv, kv = (
+        (off[a] * off[b]).sum(axis=-1) / known.runs / (known.runs - 1) for a, b in ((0, 0), (1, 1), (0, 1))
+    )
+    left = 1.0 - k / rig.load_cell_stiffness
+    a, b, c = 1.0 / left**2, v / rig.load_cell_stiffness / left**2, 1.0 / left
+    K_hat, V_hat = k / left, v / left
+    return (
+        K_hat,
+        V_hat,
+        Covariance.of(
+            a * a * kk / K_hat**2,
+            (b * b * kk + 2 * b * c * kv + c * c * vv) / V_hat**2,
+            (a * b * kk + a * c * kv) / (K_hat * V_hat),
+        ),
+    )
+
+
+def _many_felt(
+    target: Target,
+    design: Design,
+    table: Table,
+    K: np.ndarray,
+    K_v: np.ndarray,
+    x: float,
+    rng: np.random.Generator,
+) -> list[np.ndarray]:
+    grip, rig = target.grasp, design.calibration
+    assert rig is not None
+    load = grip.force * np.arange(1, grip.loads + 1) / grip.loads
+    rate = K * x / (K + x)
+    volts = K_v[..., None] * (rate / K / rate.sum(axis=1, keepdims=True))[..., None] * load
+    volts += reading_error(design) * rng.standard_normal(volts.shape)
+    volts -= volts.mean(axis=2, keepdims=True)
+    _, size, vt = np.linalg.svd(volts, full_matrices=False)
+    dof = (K.shape[1] - 1) * (grip.loads - 2)
+    noise = np.sqrt((size[:, 1:] ** 2).sum(axis=1, keepdims=True) / dof)
+    g = (volts @ vt[:, 0, :, None])[..., 0]
+    g *= np.sign(g.sum(axis=1, keepdims=True))
+    K_hat, V_hat, errors = table
+    f = g * K_hat / V_hat
+    read = Evaluation(
+        g / V_hat, f, (noise / V_hat, noise * K_hat / V_hat), errors, (target.known.runs - 1.0, dof)
+    )
+    got = read.evaluated(x)
+    soft = rig.load_cell_accuracy / (1.0 - rig.load_cell_accuracy) / rig.load_cell_stiffness
+    stiff = rig.load_cell_accuracy / (1.0 + rig.load_cell_accuracy) / rig.load_cell_stiffness
+    return [1.0 / (1.0 / got.low + stiff) / x, 1.0 / (1.0 / got.high - soft) / x, got.estimate / x]
+
+
+def believed(
+    K: np.ndarray, K_v: np.ndarray, K_se: np.ndarray, V_se: np.ndarray, correlation: np.ndarray, dof: float
+) -> Sensitivity:
+    """Beliefs with stated errors, behind no load cell."""
+    none, number = np.zeros(len(K)), np.arange(1, len(K) + 1)
+    return Sensitivity(number, K, K_se, K_v, V_se, correlation, none + dof, none + KNOWN, none)
+
+
+def uncalibrated(
+    target: Target,
+    design: Design,
+    count: int,
+    distribution: Distribution,
+    seed: int,
+    errors: tuple[np.ndarray, np.ndarray, np.ndarray],
+) -> np.ndarray:
+    """K_obj over the true one, (arrays, points), of arrays that are believed to be as drawn, or as drawn with
+    the hinges' thickness measured; each gauge has a sensitivity of its own. `errors` (relative standard
+    errors of K and K_v, correlation) make the weights only."""
+    rng = np.random.default_rng(seed)
+    parts = sensor(design, [make_scene(design, "array")])
+    arrays = Assembled(parts.layout, made(parts.variables, count, distribution, rng))
+    said = drawn = hinge_section(parts.layout, parts.layout.elements)
+    used = used_elsewhere(arrays.section, target.known.contact, rng)
+    K, K_v = spring_and_signal(used, design)
+    K_v = K_v * (1.0 + target.known.gauge_factor / LIMIT * rng.standard_normal(K.shape))
+    out = []
+    for i in range(count):
+        if target.known.how == "inspected":
+            t = arrays.section.hinge_thickness[i]
+            wrong = target.known.thickness / LIMIT * rng.standard_normal(t.shape)
+            said = drawn.with_(hinge_thickness=t + wrong)
+        k, v = spring_and_signal(said, design)
+        table = believed(k, v, errors[0] * k, errors[1] * v, errors[2], KNOWN)
+        objects = np.geomspace(*target.stiffness_range, 3)
+        out.append(
+            [combined(pressed(target, design, K[i], K_v[i], x, rng), table).estimate / x for x in objects]
+        )
+    return np.array(out)

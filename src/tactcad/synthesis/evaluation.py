@@ -17,7 +17,8 @@ from tactcad.mechanics.section import Array
 
 LEVEL = 0.95
 REWEIGHTED = 6  # fits, each weighted at the K_obj of the one before; each shrinks the change by the interval
-PARABOLAS = 10  # through the misfit about its least
+PARABOLAS = 12  # through the misfit about its least
+MOST = 50.0  # steps that a parabola moves K_obj by
 HALVINGS = 20  # of the way from the best K_obj to FARTHEST times it: to 1e-6 of it
 FARTHEST = 30.0  # an interval that reaches so many times K_obj is no interval
 
@@ -138,9 +139,9 @@ class Evaluation:
         for _ in range(PARABOLAS):
             step = np.minimum(step, 0.1 * x)
             below, at, above = (self.fit(x + d * step, weights)[1] for d in (-1.0, 0.0, 1.0))
-            bend = below - 2.0 * at + above
-            move = 0.5 * (below - above) / np.where(bend > 0.0, bend, np.inf)
-            x = x + step * np.clip(move, -8.0, 8.0)
+            bend, fall = below - 2.0 * at + above, 0.5 * (below - above)
+            move = np.where(bend > 0.0, fall / np.where(bend > 0.0, bend, 1.0), MOST * np.sign(fall))
+            x = np.clip(x + step * np.clip(move, -MOST, MOST), near / FARTHEST, near * FARTHEST)
         return x
 
     def _end(self, sign: float, best: Array, limit: Array, weights: Covariance) -> Array:
