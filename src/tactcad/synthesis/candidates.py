@@ -245,15 +245,17 @@ class Candidates:
             self.yield_force / d.rating.deflection_factor * tip, land_room(s.layout, s.layout.common_hinge)
         )
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
-        # a hinge at its lower limit bears less: its yield force goes with t^2, and a little more
-        strong = d.rating.yield_factor * (1.0 + 2.5 * d.tolerance.hinge_thickness / self.thickness)
+        # at its lower limit a hinge bears less, about as t^2, and gives way more, about as t^-3
+        thin = d.tolerance.hinge_thickness / self.thickness
+        strong = d.rating.yield_factor * (1.0 + 2.5 * thin)
+        soft = tip * (1.0 + 3.5 * thin)
         volts = e.signal * self.largest_force / e.stiffness
         readout = design_readout(d)
         length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
         return {
             "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
-            "stop": (self.largest_force * tip / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
+            "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
             "room.elements": np.maximum(self.total / max(s.most, 0.1), room.elements[0] / self.total) - 1.0,
             "room.length": length / room.length - 1.0,

@@ -240,10 +240,9 @@ def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
     sensor = MadeSensor(target, found.design)
     if asked is not None:
         return sensor.built(arrays, asked / 100.0), asked / 100.0
-    # the least that enough of them keep; a little above, so that the share asked for is kept for sure
-    widths = sensor.built(arrays, np.inf).half_widths
-    wanted = float(np.quantile(widths, 1.0 - (1.0 - target.target.share) / 2.0))
-    wanted = float(f"{wanted * 1.005:.3g}")
+    # a little above the least that enough of them keep, so that the share asked for is kept for sure
+    wanted = sensor.kept_by(1.0 - (1.0 - target.target.share) / 2.0, arrays)
+    wanted = float(f"{1.005 * wanted:.3g}") if np.isfinite(wanted) else found.half_width
     return sensor.built(arrays, wanted), wanted
 
 
