@@ -18,7 +18,7 @@ from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, SheetMaterial
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.mechanics.stop import tip_compliance
+from tactcad.mechanics.stop import largest_closing_force, tip_compliance
 from tactcad.parts.finding import SAME
 from tactcad.parts.hinge_section import design_alloy, design_readout, shared_parameters
 from tactcad.parts.layout import Layout
@@ -78,6 +78,11 @@ class Stand:
         """Elements that the room takes."""
         room = self.target.room
         return min(int(room.elements[1]), room.rows * (int((self.widths <= room.width + SAME).sum()) - 1))
+
+    @cached_property
+    def give(self) -> float:
+        """Compliance of the stop, mm/N, with all elements that the room takes."""
+        return _with_rows(self.base, max(self.most // self.target.room.rows, 1)).stop_give
 
     @cached_property
     def height(self) -> float:
@@ -241,9 +246,10 @@ class Candidates:
         s, e = self.stand, self.elements
         grip, room, d = s.target.grasp, s.target.room, s.base
         tip = tip_compliance(self.section, e.stiffness, self.arm)
-        closing = np.minimum(
-            self.yield_force / d.rating.deflection_factor * tip, land_room(s.layout, s.layout.common_hinge)
-        )
+        rated = self.yield_force / d.rating.deflection_factor
+        overload = d.rating.overload_force
+        closing = largest_closing_force(self.section, e.stiffness, self.arm, s.give, overload, rated)
+        closing = np.minimum(closing * tip, land_room(s.layout, s.layout.common_hinge))
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
         # at its lower limit a hinge bears less, about as t^2, and gives way more, about as t^-3
         thin = d.tolerance.hinge_thickness / self.thickness

@@ -164,7 +164,8 @@ def coupled_estimate(
     f = np.linalg.solve(compliance, np.ones((*compliance.shape[:-1], 1)))[..., 0]
     load = force * (np.arange(loads) + 1.0) / loads
     spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
-    f = np.atleast_2d(np.asarray(f * spread / f.sum(axis=-1, keepdims=True), dtype=np.float64))
+    f = f * (spread / f.sum(axis=-1, keepdims=True))
+    f = f.reshape(-1, f.shape[-1])
     of_s, of_f = noise / e.signal, noise * e.stiffness / e.signal
     belief = Covariance.of(known.of_k, known.of_v, known.cross)
     dof = (known.dof, (f.shape[1] - 1.0) * (loads - 2.0))
