@@ -140,7 +140,17 @@ def _behind_contacts(
 
 
 # First words of the variables that may matter to contacts; those of screwed joints do not.
-OF_THE_ARRAY = ("element", "sheet", "blank", "spacer", "dowel", "end plate", "stop plate")
+OF_THE_ARRAY = (
+    "element:",
+    "sheet:",
+    "blank:",
+    "spacer:",
+    "dowel",
+    "end plate",
+    "stop plate:",
+    "axle",
+    "wheel:",
+)
 
 
 def _at(value: Array, instance: int) -> Array:
