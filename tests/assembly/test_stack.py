@@ -60,7 +60,7 @@ ENTER = {
     "M4x12 through gauge-plate into FORCE-GAUGE-5N": (4.5 - 4 - 0.1, 0.1 + 0.2),  # bought: 0.2
     "M3x8 through RAIL-9x100-guide into riser": (3.5 - 3 - 0.1, 0.2 + 0.1),
     "M5x16 through base into post": (5.5 - 5 - 0.1, 0.1 + 0.1),
-    # element on a 3.002 pin by a hole of 3.018, pins within 0.03; the head plate's hole is 3.03 to 3.06
+    # element on a 3.002 pin by a hole of 3.018, pins within 0.03; the head plate's hole is 3.04 to 3.07
     "M3x30 through element into end-plate-tapped": (3.4 - 3 - 0.1 - 0.016 - 0.03, 0.1 + 0.1),
     "M3x30 through end-plate-head into end-plate-tapped": (3.4 - 3 - 0.1 - 0.068 - 0.03, 0.1 + 0.1),
 }

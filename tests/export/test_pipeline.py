@@ -320,6 +320,7 @@ def test_a_changed_arm_rebuilds_only_what_depends_on_it(mine):
         "pictures/macro-array-array-open.svg",
         "stack.csv",
         "stack.html",
+        "inspection-parts.csv",
     }
     after = contents(mine)
     assert not [name for name in after if "-a4mm" in name], "the old element is gone"
@@ -340,7 +341,7 @@ def test_what_is_taken_from_the_cache_equals_what_is_made_anew(mine, tmp_path, m
 def test_a_change_that_no_solid_depends_on_makes_the_stack_anew(mine):
     done, _ = exported(variant({**TWO_ARMS, "rating.force": 1.5}), mine)
     assert done.reasons == ("design.rating.force changed 2.0 -> 1.5",)
-    assert (done.made, done.built) == (("stack.csv", "stack.html"), ())
+    assert (done.made, done.built) == (("stack.csv", "stack.html", "inspection-parts.csv"), ())
 
 
 def test_another_author_writes_headers_anew_and_builds_no_solid(mine):

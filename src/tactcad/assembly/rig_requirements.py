@@ -13,8 +13,8 @@ from tactcad.parts.library.bearings import BORE, OUTSIDE
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.rigs.cart_layout import LOOSE_WHEEL, cart_layout
-from tactcad.parts.rigs.cart_plate import AXLES
-from tactcad.parts.rigs.roller_tip import SEAT, seat_radius
+from tactcad.parts.rigs.cart_plate import AXLES, AXLES_OVER
+from tactcad.parts.rigs.roller_tip import SEAT, SEAT_RADIUS, seat_radius
 from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
@@ -44,19 +44,20 @@ def rig_requirements(
     if shown & {"sample-stiffness", "grasping"}:
         wanted.append(_wheels(design, known))
     if "calibration" in shown:
-        wanted += _roller(present(design.calibration).roller, known)
+        wanted += _roller(design, known)
     return wanted
 
 
 def _wheels(design: Design, known: dict[str, DimensionLimits]) -> Requirement:
     rig = present(cart_layout(design))
-    for name, (low, high) in (
-        (AXLE_HEIGHT, (-AXLES, AXLES)),
-        (WHEEL, OUTSIDE),
-        (BORES, BORE),
-        (SHANKS, deviations(SHANK, rig.bearing.d)),
+    plate = ((f"{design.name}-cart-plate", AXLES_OVER),)
+    for name, (low, high), of in (
+        (AXLE_HEIGHT, (-AXLES, AXLES), plate),
+        (WHEEL, OUTSIDE, ()),
+        (BORES, BORE, ()),
+        (SHANKS, deviations(SHANK, rig.bearing.d), ()),
     ):
-        known[name] = variable(name, low, high, len(AROUND))
+        known[name] = variable(name, low, high, len(AROUND), of)
     return Requirement("wheels touch", "mm", -inf, LOOSE_WHEEL, loose_wheel)
 
 
@@ -70,10 +71,11 @@ def loose_wheel(a: Assembled) -> Array:
     return np.maximum(off, 0.0)[:, np.newaxis]
 
 
-def _roller(size: str, known: dict[str, DimensionLimits]) -> list[Requirement]:
+def _roller(design: Design, known: dict[str, DimensionLimits]) -> list[Requirement]:
+    size, of = present(design.calibration).roller, ((f"{design.name}-tip-roller", SEAT_RADIUS),)
     seat, pin = "roller tip: seat radius", "roller: diameter"
     low, high = (limit - float(size) for limit in dowel_limits(size))
-    known[seat], known[pin] = variable(seat, -SEAT, SEAT), variable(pin, low, high)
+    known[seat], known[pin] = variable(seat, -SEAT, SEAT, stated=of), variable(pin, low, high)
     play = 2 * seat_radius(size) - float(size)
     return [
         summed("roller enters its seat", LEAST_PLAY, inf, play, ((seat, 2.0), (pin, -1.0))),

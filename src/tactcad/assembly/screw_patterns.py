@@ -76,5 +76,6 @@ def _places(who: str, part: Part, hole: Hole, known: dict[str, DimensionLimits])
         raise ValueError(f"{part.part_no}: screws pass {hole.name}, which has no position tolerance")
     zone = g.zone if g else BOUGHT
     name = f"{who}: places of {g.name if g else 'holes'}"
-    known.setdefault(name, variable(name, -zone / 2, zone / 2, 2))
+    of = ((part.part_no, g.name),) if g and not name.startswith("element") else ()
+    known.setdefault(name, variable(name, -zone / 2, zone / 2, 2, of))
     return name

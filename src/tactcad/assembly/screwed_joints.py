@@ -214,4 +214,5 @@ def thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
         nominal = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
         return _general(known, f"{part.part_no}: thickness", nominal)
     name = f"{part.part_no}: thickness"
-    return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal))
+    of = ((part.part_no, own.name),) if not part.bought else ()
+    return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal, stated=of))

@@ -45,7 +45,7 @@ def plate(
     features = tuple(features)
     limited = {f for c in characteristics for f in c.between} | {f for g in geometric for f in g.features}
     geometric += tuple(
-        Geometric(f"{name} holes", "position", PLACE, (name,), FRAME, True)
+        Geometric(f"{name.replace('_', ' ')} holes", "position", PLACE, (name,), FRAME, True)
         for name in _screw_holes(features)
         if name not in limited
     )

@@ -99,9 +99,8 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
     pin, y = dowel(STOP_PIN, STOP_LENGTH), front + STOP_DEPTH - STOP_LENGTH
     stop = b.place("ES", pin, (0, y, z - stop_below(rig)), ALONG_Y)
-    latch = b.place("LP", pin, (-LATCH if latched else -LATCH_KEPT, y, z + latch_above(rig)), ALONG_Y)
-    for name in (stop, latch):
-        b.meet(riser, name, "press")
+    b.place("LP", pin, (-LATCH if latched else -LATCH_KEPT, y, z + latch_above(rig)), ALONG_Y)
+    b.meet(riser, stop, "press")
     b.step(
         "Guide rail",
         (0, -85, 110),

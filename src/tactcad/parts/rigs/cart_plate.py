@@ -56,12 +56,11 @@ def cart_plate(rig: CartLayout) -> Part:
         Extrusion(rectangle(-x, -y, x, y), t),
         axles + holder,
         notes=("break edges 0.2", "axle threads of one side in one setting"),
-        characteristics=(
-            within("axles over the underside", rig.axle_z - c.clearance, AXLES, between=(FACES[0], "axle")),
-        ),
+        characteristics=(within(AXLES_OVER, rig.axle_z - c.clearance, AXLES, between=(FACES[0], "axle")),),
     )
 
 
 # mm, plus and minus; chosen: as the end plates' dowel holes. What four of them are off a plane, the
 # shanks' play in the bores nearly always takes up (requirement "wheels touch").
 AXLES = 0.015
+AXLES_OVER = "axles over the underside"

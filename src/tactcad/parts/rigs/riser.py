@@ -18,6 +18,7 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Hole, Part
 from ..library.dowels import dowel_diameter
+from ..library.fits import deviations
 from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
@@ -77,8 +78,10 @@ def riser(rig: GuideLayout) -> Part:
         drill_point=True,
         tolerance="H7",
     )
+    size = float(STOP_PIN)
+    wide = round(size + sum(deviations(LATCH_FIT, size)) / 2, 6)  # the middle of its limits
     features += [
-        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), tolerance=LATCH_FIT)
+        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), diameter=wide, tolerance=LATCH_FIT)
         for x in (LATCH, LATCH_KEPT)
     ]
     features += [pin, *(tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length))]

@@ -51,10 +51,11 @@ def roller_tip(rig: StandLayout) -> Part:
         features=(shaft_thread((0.0, TIP, 5.0), (0, -1, 0)),),
         colour="#565d66",
         notes=("roller bonded in its seat; it may not turn while an element is loaded",),
-        characteristics=(within("seat radius", r, SEAT, between=(seat,)),),
+        characteristics=(within(SEAT_RADIUS, r, SEAT, between=(seat,)),),
     )
 
 
+SEAT_RADIUS = "seat radius"
 SEAT = 0.005  # mm, plus and minus; chosen: two to three passes of the wire
 # Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the tip's middle.
 LEAST_AROUND_ROLLER = 0.001
