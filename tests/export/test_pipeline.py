@@ -95,16 +95,20 @@ TWO_SCENES = ("--scene", "array", "--scene", "sample-stiffness")
 
 @pytest.fixture(scope="module")
 def two_exports(tmp_path_factory):
-    """The same design exported by two processes that share nothing but the code."""
+    """The same design exported by two processes that share nothing but the code; by the second its array
+    only."""
     folders = []
-    for seed, zone, language in (("1", "Pacific/Auckland", "C"), ("4242", "America/St_Johns", "C.UTF-8")):
+    for seed, zone, language, scenes in (
+        ("1", "Pacific/Auckland", "C", TWO_SCENES),
+        ("4242", "America/St_Johns", "C.UTF-8", TWO_SCENES[:2]),
+    ):
         home = tmp_path_factory.mktemp(f"home {seed}")
         (home / "designs").mkdir()
         shutil.copy(HARDWARE / "macro-array.toml", home / "designs" / "paper.toml")
         said, _ = run(
             "export",
             "designs/paper.toml",
-            *TWO_SCENES,
+            *scenes,
             "--out",
             f"out-{seed}",
             cwd=home,
@@ -124,10 +128,11 @@ def two_exports(tmp_path_factory):
     return folders
 
 
-def test_two_processes_write_equal_bytes_in_every_file(two_exports):
+def test_two_processes_write_equal_bytes_in_every_file_of_the_array(two_exports):
+    """Those that list the parts of all scenes apart, which test_surroundings.py compares."""
     first, second = (contents(home / f"out-{seed}") for home, seed in zip(two_exports, ("1", "4242")))
-    assert sorted(first) == sorted(second)
-    assert [name for name in first if first[name] != second[name]] == []
+    assert len(second) > 40 and set(second) < set(first)
+    assert {name for name in second if first[name] != second[name]} <= {"manifest.json", "inspection.csv"}
 
 
 def test_the_export_is_what_the_contract_says(two_exports):
