@@ -7,7 +7,16 @@ import signal
 import time
 
 import pytest
-from command_line import Bench, assert_sound, assert_tidy, contents, environment, one_by_one, tactcad_run
+from command_line import (
+    Bench,
+    assert_sound,
+    assert_tidy,
+    contents,
+    environment,
+    one_by_one,
+    tactcad_forked,
+    tactcad_run,
+)
 
 # A shell that starts the tests in the background has SIGINT ignored, nohup SIGHUP: what the tests start would
 # inherit it.
@@ -46,7 +55,7 @@ def work(bench, tmp_path):
 @pytest.fixture
 def exported(bench, work):
     """That folder with A exported to exports/out."""
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
     assert done.returncode == 0, done.stderr.decode()
     assert contents(work / "exports" / "out") == bench.files["A"]
     return work
