@@ -11,9 +11,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+from plane_health import corner_angles, plane_health
 
 from tactcad.fem.convergence import RATE, richardson
-from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.fit.accuracy_samples import draw_range

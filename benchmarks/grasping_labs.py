@@ -8,7 +8,7 @@ import numpy as np
 from labs import LEVEL, Lab, known, measured
 
 from tactcad.design.load import DEFAULT_DESIGN
-from tactcad.lab import pads, simulate
+from tactcad.lab import pads
 from tactcad.lab.combine import DISAGREE, Interval, Slopes, combine
 from tactcad.lab.grasp import common_slopes, evaluate
 from tactcad.lab.readings import GraspReadings
@@ -55,6 +55,26 @@ class Touch:
         return off + (1 - off) * np.eye(n)
 
 
+def coupled_deflection(
+    load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
+) -> np.ndarray:
+    """Deflections (mm), [element, load], of elements whose pads are coupled through the sample.
+
+    Parameters
+    ----------
+    load : array, [load]
+        N.
+    stiffness : array, [element]
+        N/mm.
+    object_stiffness : float
+        Under one pad, N/mm.
+    share : array, [element, element]
+        Displacement of pad i by the force on pad j, over that by the same force on i; 1 on the diagonal.
+    """
+    force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
+    return np.outer(force / stiffness, load / force.sum())
+
+
 @dataclass(frozen=True)
 class Touched:
     """By lab: whether the intervals of all elements together and of every pair held the truth, their widths
@@ -70,9 +90,7 @@ class Touched:
 def touched(touch: Touch, array: Truth, labs: int, rng: np.random.Generator) -> Touched:
     """`labs` calibrations, each with a grasp."""
     share = touch.share(array)
-    clean = array.signal_per_deflection[:, None] * simulate.coupled_deflection(
-        LOAD, array.stiffness, STIFFNESS, share
-    )
+    clean = array.signal_per_deflection[:, None] * coupled_deflection(LOAD, array.stiffness, STIFFNESS, share)
     oracle = np.array([_width(i) for i in _known(touch, array, clean, share)])
     coupling = pads.coupling(DEFAULT_DESIGN, _readings(array, clean), touch.limit)
     held, ratio, disagree = [], [], []

@@ -106,12 +106,3 @@ def test_python_shown_runs():
         [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False
     )
     assert run.returncode == 0, run.stderr
-
-
-@pytest.mark.cad
-def test_pictures_shown_are_the_exports(tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    assert main(["export", "macro-array", "--scene", "array", "--out", str(tmp_path / "out")]) == 0
-    for name in ("open", "below"):
-        made = (tmp_path / "out" / "pictures" / f"macro-array-array-{name}.svg").read_bytes()
-        assert (ROOT / "docs" / "images" / f"macro-array-{name}.svg").read_bytes() == made, name

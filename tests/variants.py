@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,12 @@ IN_SLOT = {"gauge.carrier_arm_side": 0.14, "gauge.carrier_body_side": 0.14, "gau
 BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]\n")[
     0
 ] + '\n[origin]\n"material.youngs_modulus" = "paper: 69000 MPa"\n'
+
+
+def without_rigs(name: str) -> str:
+    """The text of a shipped design with its array only."""
+    text = (HARDWARE / f"{name}.toml").read_text("utf-8")
+    return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", text)
 
 
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:

@@ -44,11 +44,9 @@ def draw(count: int, start: int, row_lengths: tuple[int, ...], rigs: float) -> C
     return counts
 
 
-@pytest.mark.parametrize("start", [CI_SEED, CI_SEED + 1])
-def test_four_designs_drawn_over_the_whole_legal_range(start, record_property):
-    """Twice, so that two workers share them."""
-    counts = draw(4, start, (1, 2, 3), rigs=0.15)
-    record_property("random designs", f"seed {start}, {counts}")
+def test_four_designs_drawn_over_the_whole_legal_range(record_property):
+    counts = draw(4, CI_SEED, (1, 2, 3), rigs=0.15)
+    record_property("random designs", f"seed {CI_SEED}, {counts}")
     assert counts.failed == []
     assert counts.drawn >= 4 and 2 * counts.accepted >= counts.drawn
 

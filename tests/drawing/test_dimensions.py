@@ -128,15 +128,16 @@ def test_conventions_hold_on_the_part_itself(some_plans):
 
 
 def told(text: str) -> float:
-    """The number that a dimension's text states, the middle of its limits (H7 of 3 mm is +0.010/0, ISO 286).
+    """The number that a dimension's text states, the middle of its limits (of 3 mm, H7 is +0.010/0 and D10
+    +0.060/+0.020, ISO 286).
     A pressed pin's hole is modelled as the pin, m6 of 3 mm (+0.008/+0.002) or of 5 mm (+0.012/+0.004)."""
     match = re.fullmatch(
-        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7)?", text
+        r"(?:\d+× )?[⌀R↧]?(-?[\d.]+)°?(?: ±[\d.]+)?(?: ([+-][\d.]+)/([+-][\d.]+|0))?( H7| D10)?", text
     )
     assert match, text
     if not match[2]:
         assert not match[4] or match[1] == "3"
-        return float(match[1]) + (0.005 if match[4] else 0.0)
+        return float(match[1]) + {None: 0.0, " H7": 0.005, " D10": 0.04}[match[4]]
     size, upper, lower = map(float, match.groups()[:3])
     return size + ((0.005 if size <= 3 else 0.008) if upper < 0 else (upper + lower) / 2)
 

@@ -196,7 +196,8 @@ def holds(part: Part, data: bytes) -> None:
         assert (symbol, rounded, letters) == (g.symbol, g.round, g.datums)
         assert zone == pytest.approx(g.zone, rel=0, abs=1e-9)
         assert all(any(lies_on(text, f, part, name) for name in g.features) for f in faces)
-        holes = [f for f in part.features if f.name in g.features]
+        openings = [c.segments[0] for c in getattr(part.body, "openings", ())]
+        holes = [f for f in (*part.features, *openings) if f.name in g.features]
         assert len(faces) == (len(holes) or len(g.features)) == len(set(faces))
     datums = text.datums()
     assert set(datums) == {d.letter for d in part.datums}

@@ -9,11 +9,11 @@ import fem_extremes
 import numpy as np
 import pytest
 from hinges import scaled
+from plane_health import corner_angles, plane_health
 
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import fem_ladder as elements
 from tactcad.fem.convergence import converged_plane, converged_solid
-from tactcad.fem.health import corner_angles, plane_health
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
 from tactcad.fit.accuracy_samples import draw_range

@@ -6,9 +6,10 @@ import warnings
 
 import numpy as np
 import pytest
+from pair_interval import object_stiffness_interval
 
 from tactcad.mechanics import lumped
-from tactcad.mechanics.fieller import object_stiffness_interval, ratio_interval
+from tactcad.mechanics.fieller import ratio_interval
 
 RATIOS = {
     "one and a millionth of a millionth": 1 + 1e-12,

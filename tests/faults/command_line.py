@@ -210,8 +210,16 @@ class Started:
         return subprocess.CompletedProcess([], status, self.out.read_bytes(), self.err.read_bytes())
 
 
+def tactcad_forked(
+    *arguments: str | Path, cwd: Path, env: dict[str, str]
+) -> subprocess.CompletedProcess[bytes]:
+    """As `tactcad_run` with its plain command, but Python and libraries are loaded already: the variables
+    that Python reads as it starts do nothing."""
+    return Started([str(a) for a in arguments], cwd, env).result()
+
+
 def tactcad_runs(
     commands: Sequence[Sequence[str]], cwd: Path, env: dict[str, str]
 ) -> list[subprocess.CompletedProcess[bytes]]:
     """`tactcad ARGUMENTS` for many argument lists, one after the other, each in its own process."""
-    return [Started(arguments, cwd, env).result() for arguments in commands]
+    return [tactcad_forked(*arguments, cwd=cwd, env=env) for arguments in commands]

@@ -14,7 +14,7 @@ from html.parser import HTMLParser
 from xml.etree import ElementTree
 
 import pytest
-from command_line import contents, environment, one_by_one, refused, tactcad_run, tactcad_runs
+from command_line import contents, environment, one_by_one, refused, tactcad_forked, tactcad_runs
 
 GOOD = one_by_one(4.0, "A")
 
@@ -204,7 +204,7 @@ def test_what_is_no_file(tmp_path):
         "~/x.toml",
     ]
     for name in names:
-        said = refused(tactcad_run("export", name, cwd=work, env=environment(tmp_path)))
+        said = refused(tactcad_forked("export", name, cwd=work, env=environment(tmp_path)))
         assert "; legal: " in said, said
     assert sorted(p.name for p in work.iterdir()) == before
 
@@ -220,7 +220,7 @@ def test_encodings_that_are_fine(bench, work, change):
     (work / "A.toml").write_bytes(
         text.encode("utf-8-sig" if change in ("byte order mark", "both") else "utf-8")
     )
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
     assert done.returncode == 0, done.stderr.decode()
     assert contents(work / "exports" / "out") == bench.files["A"]
 
@@ -273,7 +273,9 @@ def test_legal_text_is_escaped_in_every_kind_of_file(work):
             flags=re.MULTILINE,
         )
     (work / "A.toml").write_text(text, encoding="utf-8")
-    done = tactcad_run("export", "A.toml", "--guide", "--out", "exports/out", cwd=work, env=environment(work))
+    done = tactcad_forked(
+        "export", "A.toml", "--guide", "--out", "exports/out", cwd=work, env=environment(work)
+    )
     assert done.returncode == 0, done.stderr.decode()
     seen = dict.fromkeys(("svg", "html", "step", "csv"), 0)
     for path, data in contents(work / "exports" / "out").items():
@@ -304,6 +306,6 @@ def test_legal_text_is_escaped_in_every_kind_of_file(work):
         elif kind == "dxf":
             assert data.isascii() and b"calc" not in data
     assert all(seen.values()), seen
-    again = tactcad_run("diff", "A.toml", "B.toml", "--html", "d.html", cwd=work, env=environment(work))
+    again = tactcad_forked("diff", "A.toml", "B.toml", "--html", "d.html", cwd=work, env=environment(work))
     page = Page((work / "d.html").read_text(encoding="utf-8"))
     assert again.returncode == 0 and "script" not in page.tags and TITLE in page.text and AUTHOR in page.text

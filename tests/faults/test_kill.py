@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import MODULE, assert_sound, assert_tidy, contents, environment, running, tactcad_run
+from command_line import MODULE, assert_sound, assert_tidy, contents, environment, running, tactcad_forked
 
 # TACTCAD_SEED repeats a run's moments.
 SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
@@ -53,7 +53,7 @@ def kill_exports(bench, folder: Path, kills: int) -> None:
             assert found in ([bench.files[wanted]] + ([bench.files[standing]] if standing else []))
         else:
             assert standing is None
-        done = tactcad_run(*arguments, cwd=folder, env=env)
+        done = tactcad_forked(*arguments, cwd=folder, env=env)
         assert done.returncode == 0, done.stderr.decode()
         assert contents(out) == bench.files[wanted]
         assert_tidy(out, folder)
@@ -92,7 +92,7 @@ def test_killed_while_helpers_draw(bench, work):
     while any(running(helper) for helper in helpers) and time.monotonic() < until:
         time.sleep(0.05)
     assert not any(running(helper) for helper in helpers)
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=env)
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=work, env=env)
     assert done.returncode == 0 and b"waiting" not in done.stderr, done.stderr.decode()
     assert contents(work / "exports" / "out") == bench.files["A"]
     assert_tidy(work / "exports" / "out", work)

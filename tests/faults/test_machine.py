@@ -11,7 +11,16 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import MODULE, assert_sound, assert_tidy, contents, environment, refused, tactcad_run
+from command_line import (
+    MODULE,
+    assert_sound,
+    assert_tidy,
+    contents,
+    environment,
+    refused,
+    tactcad_forked,
+    tactcad_run,
+)
 
 # Runs "$@" with a small disk of its own mounted on $1; the mount is gone with the process.
 SMALL_DISK = 'mkdir -p "$1" && mount -t tmpfs -o size="$2" none "$1" && shift 2 && exec "$@"'
@@ -53,7 +62,7 @@ def test_no_file_larger_than_this(bench, exported, most_bytes):
     assert "File too large" in refused(done, status=1)
     assert contents(out) == bench.files["A"]
     assert_tidy(out, exported)
-    done = tactcad_run("export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported))
+    done = tactcad_forked("export", "B.toml", "--out", "exports/out", cwd=exported, env=environment(exported))
     assert done.returncode == 0 and contents(out) == bench.files["B"]
     assert_tidy(out, exported)
 
@@ -177,7 +186,7 @@ def test_places_that_not_even_root_can_write_to(work, place):
     (work / "loop").symlink_to("loop")
     before = contents(work / "cache"), sorted(p.name for p in work.iterdir())
     assert place[:100] in refused(
-        tactcad_run("export", "A.toml", "--out", place, cwd=work, env=environment(work))
+        tactcad_forked("export", "A.toml", "--out", place, cwd=work, env=environment(work))
     )
     assert (contents(work / "cache"), sorted({p.name for p in work.iterdir()} - {"home", "tmp"})) == before
 
@@ -274,7 +283,7 @@ def test_four_exports_at_once_into_one_directory(bench, work):
     together([["export", f"{name}.toml", "--out", "exports/out"] for name in "ABAB"], work, env)
     assert contents(out) in bench.files.values()
     assert_tidy(out, work)
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=env)
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=work, env=env)
     assert done.returncode == 0 and contents(out) == bench.files["A"]
 
 
@@ -320,7 +329,7 @@ def test_damaged_cache_entries_are_built_again(bench, work):
         else:
             path.unlink()
             path.mkdir()
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=work, env=environment(work))
     assert done.returncode == 0 and b"Traceback" not in done.stderr, done.stderr.decode()
     assert done.stderr.count(b"is damaged and will be built again") > 10
     assert b" 0 taken from the cache" in done.stderr

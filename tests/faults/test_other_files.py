@@ -9,7 +9,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from command_line import ROOT, contents, environment, refused, tactcad_run, tactcad_runs
+from command_line import ROOT, contents, environment, refused, tactcad_forked, tactcad_runs
 
 EXAMPLES = ROOT / "hardware" / "examples"
 BATCH = (
@@ -38,8 +38,8 @@ def good(bench, tmp_path_factory) -> dict[str, bytes]:
     folder = tmp_path_factory.mktemp("good")
     env = environment(folder)
     readings = EXAMPLES / "calibration.csv"
-    as_csv = tactcad_run("calibrate", readings, "--out", "calibration.csv", cwd=folder, env=env)
-    as_json = tactcad_run("calibrate", readings, "--json", cwd=folder, env=env)
+    as_csv = tactcad_forked("calibrate", readings, "--out", "calibration.csv", cwd=folder, env=env)
+    as_json = tactcad_forked("calibrate", readings, "--json", cwd=folder, env=env)
     assert as_csv.returncode == as_json.returncode == 0
     data = ROOT / "src" / "tactcad"
     return {

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import ROOT, assert_tidy, contents, environment, tactcad_run
+from command_line import ROOT, assert_tidy, contents, environment, tactcad_forked, tactcad_run
 
 # The command with the user's locale switched on, as an application around it would, and another clock where
 # asked for.
@@ -125,11 +125,11 @@ def test_dates_of_files_mean_nothing(bench, exported, date):
     out, env = exported / "exports" / "out", environment(exported)
     for path in [*exported.rglob("*"), exported]:
         os.utime(path, (DATES[date], DATES[date]), follow_symlinks=False)
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=exported, env=env)
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=exported, env=env)
     assert done.returncode == 0 and b"nothing was rebuilt" in done.stderr
     (exported / "A.toml").write_text(bench.texts["B"], encoding="utf-8")
     os.utime(exported / "A.toml", (DATES[date], DATES[date]))
-    done = tactcad_run("export", "A.toml", "--out", "exports/out", cwd=exported, env=env)
+    done = tactcad_forked("export", "A.toml", "--out", "exports/out", cwd=exported, env=env)
     assert done.returncode == 0 and b" 0 made" in done.stderr
     assert contents(out) == bench.files["B"]
     assert_tidy(out, exported)

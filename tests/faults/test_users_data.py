@@ -12,13 +12,13 @@ import time
 from pathlib import Path
 
 import pytest
-from command_line import MODULE, assert_sound, assert_tidy, contents, environment, refused, tactcad_run
+from command_line import MODULE, assert_sound, assert_tidy, contents, environment, refused, tactcad_forked
 
 SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))  # TACTCAD_SEED repeats a run's moments
 
 
 def export(work: Path, design: str, *arguments: str) -> subprocess.CompletedProcess[bytes]:
-    return tactcad_run(
+    return tactcad_forked(
         "export", f"{design}.toml", "--out", "exports/out", *arguments, cwd=work, env=environment(work)
     )
 
@@ -41,7 +41,7 @@ def test_an_archived_export_comes_out_whole(bench, exported):
     (exported / "there").mkdir()
     subprocess.run(["tar", "-xf", "ex.tar", "-C", "there"], cwd=exported, check=True)
     assert contents(exported / "there" / "out") == bench.files["A"]
-    done = tactcad_run("export", "A.toml", "--out", "there/out", cwd=exported, env=environment(exported))
+    done = tactcad_forked("export", "A.toml", "--out", "there/out", cwd=exported, env=environment(exported))
     assert b"nothing changed" in done.stderr, "an export is known wherever it lies"
 
 
@@ -69,7 +69,7 @@ def test_an_inspection_sheet_filled_in_inside_the_export_is_not_lost(bench, expo
     assert done.returncode == 0 and b"out-kept-1" in done.stderr, done.stderr.decode()
     assert contents(out) == bench.files[design]
     assert contents(exported / "exports" / "out-kept-1") == filled
-    done = tactcad_run(
+    done = tactcad_forked(
         "estimate",
         "A.toml",
         "--inspection",
@@ -93,7 +93,7 @@ def test_an_inspection_sheet_has_a_place_of_its_own(exported):
     fill_in(exported / "inspections" / "A.csv")
     for design in "BA":
         assert export(exported, design).returncode == 0
-    done = tactcad_run(
+    done = tactcad_forked(
         "estimate", "A.toml", "--inspection", "inspections/A.csv", cwd=exported, env=environment(exported)
     )
     assert done.returncode == 0, done.stderr.decode()
@@ -124,10 +124,10 @@ def killed_while_somebody_writes(bench, work: Path, kills: int) -> None:
             (f"note {turn}".encode(), bench.files[standing]),
             (None, bench.files[wanted]),
         )
-        done = tactcad_run(*arguments, cwd=work, env=env)
+        done = tactcad_forked(*arguments, cwd=work, env=env)
         if done.returncode == 2:
             assert "note.txt (added)" in refused(done)
-            done = tactcad_run(*arguments, "--keep", cwd=work, env=env)
+            done = tactcad_forked(*arguments, "--keep", cwd=work, env=env)
         assert done.returncode in (0, 1), done.stderr.decode()
         (note,) = work.glob("exports/out-kept-*/note.txt")
         assert note.read_text() == f"note {turn}"
@@ -175,6 +175,6 @@ def test_the_link_that_an_earlier_tactcad_wrote_is_refused_and_kept(bench, work)
 def test_names_of_folders_in_exports_are_no_designs(work, name):
     text = (work / "A.toml").read_text()
     (work / "A.toml").write_text(text.replace('name = "macro-array"', f'name = "{name}"'))
-    said = refused(tactcad_run("export", "A.toml", cwd=work, env=environment(work)))
+    said = refused(tactcad_forked("export", "A.toml", cwd=work, env=environment(work)))
     assert said.startswith("tactcad: design.name: ")
     assert not (work / "exports").exists()

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from pair_interval import object_stiffness_interval
 
-from tactcad.mechanics.fieller import object_stiffness_interval, ratio_interval
+from tactcad.mechanics.fieller import ratio_interval
 
 
 @pytest.mark.parametrize("x", [2.0, 20.0, 300.0])

@@ -387,6 +387,11 @@ ALSO = {
 }
 
 
+@cache
+def _test_files() -> dict[Path, str]:
+    return {path: path.read_text(encoding="utf-8") for path in sorted(TESTS.rglob("test_*.py"))}
+
+
 def tests_of(mutant: Mutant) -> list[str]:
     """The test files that concern it most, those that name it most first: they import its module, or stand in
     ALSO; for a rule, those that name it.
@@ -400,8 +405,7 @@ def tests_of(mutant: Mutant) -> list[str]:
     )
     chosen: dict[str, int] = dict.fromkeys(ALSO.get(mutant.module, ()), 0)
     word = mutant.name.split(":")[0]
-    for path in sorted(TESTS.rglob("test_*.py")):
-        text = path.read_text(encoding="utf-8")
+    for path, text in _test_files().items():
         concerns = (
             word in text
             if mutant.kind == "rule"

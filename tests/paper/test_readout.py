@@ -62,15 +62,15 @@ def test_quarter_bridge_is_exact(x):
     assert float(readout.bridge_nonlinearity(x)) == pytest.approx(
         solved_bridge(x) / (x / 4) - 1, rel=1e-4, abs=1e-7
     )
-    assert float(readout.resistance_change(readout.bridge_output(x))) == pytest.approx(x, rel=1e-12)
+    v = float(readout.bridge_output(x))
+    assert 4 * v / (1 - 2 * v) == pytest.approx(x, rel=1e-12)
 
 
-def test_strain_and_volts_invert_each_other_with_an_offset():
+def test_volts_give_the_strain_back_with_an_offset():
     r = replace(READOUT, bridge_offset=-0.03)
     eps = np.linspace(-5e-3, 5e-3, 7)
-    assert readout.strain_from_output(readout.unlimited_output(eps, 2.1, r), 2.1, r) == pytest.approx(
-        eps, abs=1e-14
-    )
+    v = readout.unlimited_output(eps, 2.1, r) / (r.excitation * r.gain)
+    assert (4 * v / (1 - 2 * v) + 0.03) / 2.1 == pytest.approx(eps, abs=1e-14)
     step = 1e-7
     slope = (
         readout.unlimited_output(2e-3 + step, 2.1, r) - readout.unlimited_output(2e-3 - step, 2.1, r)
@@ -79,9 +79,8 @@ def test_strain_and_volts_invert_each_other_with_an_offset():
 
 
 def test_three_per_cent_of_offset_gives_the_paper_s_largest_zero_signal():
-    """mechanics of V0 = -2.14 V: U G x/(4 + 2x) = -2.14 at x = -3 %."""
-    x = readout.resistance_change(-2.14 / 270.0)
-    assert float(x) == pytest.approx(-0.0312, abs=2e-4)
+    """V0 = -2.14 V: U G x/(4 + 2x) = -2.14 at x = -3 %."""
+    assert 270.0 * float(readout.bridge_output(-0.0312)) == pytest.approx(-2.14, abs=0.015)
 
 
 def test_output_is_held_at_supply_and_converter():

@@ -268,7 +268,7 @@ def test_several_broken_rules_are_all_named():
         refuse_broken(design)
 
 
-@settings(max_examples=150, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=75, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 @given(sound_designs())
 def test_a_design_made_to_keep_all_rules_is_not_refused(design):
     assert broken_rules(design) == []
@@ -313,7 +313,7 @@ def checked(design: Design) -> list[str]:
 @pytest.mark.cad
 # no shrinking: each example is a whole check, and a failing one says itself what is wrong
 @settings(
-    max_examples=3,
+    max_examples=2,
     derandomize=True,
     deadline=None,
     suppress_health_check=list(HealthCheck),
@@ -381,7 +381,7 @@ def _numbers() -> list[tuple[str, float, float]]:
     return found
 
 
-@settings(max_examples=300, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=150, derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.data())
 def test_any_legal_values_are_judged_without_a_crash_and_what_passes_can_be_drawn(data):
     """Values anywhere in their ranges: the rules answer, and whatever they let pass becomes a scene."""

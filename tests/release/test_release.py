@@ -13,7 +13,6 @@ import shutil
 import subprocess
 import sys
 import zipfile
-from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -21,10 +20,8 @@ from variants import BARE_TEXT
 
 import tactcad
 from tactcad.cli.main import main
-from tactcad.drawing import assembly_file
 from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
-from tactcad.release import verify
 from tactcad.release.archive import archive_bytes
 from tactcad.release.readme import DRAFT, ReleaseContents
 from tactcad.release.verify import check_archive
@@ -244,26 +241,15 @@ TAMPERED = {
 }
 
 
-@pytest.fixture
-def read_once(monkeypatch):
-    """Equal PDFs are read once: reading takes most of the check's time."""
-    monkeypatch.setattr(verify, "pdf_runs", READ)
-    monkeypatch.setattr(assembly_file, "pdf_runs", READ)
-    monkeypatch.setattr(assembly_file, "_ballooned", COUNTED)
-
-
-READ, COUNTED = lru_cache(assembly_file.pdf_runs), lru_cache(assembly_file._ballooned)
-
-
 @pytest.mark.parametrize("fault", [None, *TAMPERED])
-def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path, read_once):
+def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path):
     own = {n: d for n, d in files.items() if n != "MANIFEST.sha256"}
     path = tmp_path / "a.zip"
     path.write_bytes(archive_bytes(TAMPERED[fault](own) if fault else own, "2026-11-21"))
     assert bool(check_archive(path, contents)) == bool(fault)
 
 
-def test_damage_is_found_anywhere(released, contents, tmp_path, read_once):
+def test_damage_is_found_anywhere(released, contents, tmp_path):
     """A bit turned in the middle of every entry, and the file cut off."""
     data = released.read_bytes()
     path = tmp_path / "a.zip"

@@ -82,6 +82,15 @@ def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, 
     assert {p.stem.rsplit("_", 1)[0] for p in (tmp_path / "out").glob("dxf/*.dxf")} == cut
     again = export(design, ExportOptions((scene,)), tmp_path / "out", progress(StringIO()))
     assert (again.made, again.built) == ((), ())
+    # envelopes cost less and weigh the same
+    export(design, ExportOptions((scene,), detail="envelope"), tmp_path / "envelopes", progress(StringIO()))
+    full, envelope = (
+        next((tmp_path / out).glob(f"step/smallest-bearing-{scene}_*.step")) for out in ("out", "envelopes")
+    )
+    assert envelope.stat().st_size < full.stat().st_size / 2
+    assert not list((tmp_path / "envelopes").glob("dxf/*"))
+    light = json.loads((tmp_path / f"envelopes/bom-{scene}.json").read_text())["rows"]
+    assert [(r["part_no"], r["mass_g"]) for r in light] == [(r["part_no"], r["mass_g"]) for r in bill]
 
 
 @pytest.mark.parametrize("number", range(1, 11))
@@ -347,22 +356,6 @@ def test_wheels_touch_the_base_and_only_they():
     assert set(low.values()) == {5.0}  # 623: 10 mm outside
     assert sum(c.second == "BP1" and c.first.startswith("BB") for c in scene.contacts) == 4
     assert all(p.rotation[1] == (0, 0, 1) for p in scene.placements if p.designator.startswith("BB"))
-
-
-def test_envelopes_cost_less_and_weigh_the_same(tmp_path, monkeypatch):
-    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
-    design = load("smallest-bearing")
-    sizes, masses = {}, {}
-    for detail in ("full", "envelope"):
-        out = tmp_path / detail
-        export(design, ExportOptions(("sample-stiffness",), detail=detail), out, progress(StringIO()))
-        (step,) = out.glob("step/smallest-bearing-sample-stiffness_*.step")
-        sizes[detail] = step.stat().st_size
-        rows = json.loads((out / "bom-sample-stiffness.json").read_text())["rows"]
-        masses[detail] = {r["part_no"]: r["mass_g"] for r in rows}
-        assert (detail == "full") or not list(out.glob("dxf/*"))
-    assert masses["full"] == masses["envelope"]
-    assert sizes["envelope"] < sizes["full"] / 2
 
 
 def test_an_array_beyond_the_estimator_still_has_a_calibration():

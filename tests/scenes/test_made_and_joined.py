@@ -99,6 +99,26 @@ def test_without_the_cart_the_carriage_comes_down_on_its_stop(name):
         assert apart or at[d][0][2] > carriage[0][2], d
 
 
+@pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
+def test_the_latch_holds_the_lifted_carriage(name):
+    """Lifted all the way, the carriage's side stands over the pin by less than a tenth; in use the pin stands
+    beside everything that moves, on its whole way."""
+    design = load(name)
+    lift = design.grasping.lift
+    up = {p.designator: box(p) for p in make_scene(design, "grasping", Pose(height=lift)).placements}
+    pin, carriage, rail = up["LP1"], up["CG1"], up["RL1"]
+    assert 0.0 <= carriage[0][2] - pin[1][2] <= 0.1
+    sides = [min(pin[1][k], carriage[1][k]) - max(pin[0][k], carriage[0][k]) for k in (0, 1)]
+    assert sides[0] > 2.5 and sides[1] > 5.0, "most of the pin lies under the carriage"
+    assert pin[1][0] < rail[0][0] or pin[0][0] > rail[1][0]
+    scene = make_scene(design, "grasping")
+    at = {p.designator: box(p) for p in scene.placements}
+    kept = at["LP1"]
+    for d in dict(scene.groups)["axis"]:
+        way = np.array([at[d][0], at[d][1] + [0.0, 0.0, lift]])
+        assert np.any((way[0] >= kept[1]) | (way[1] <= kept[0])), d
+
+
 @pytest.mark.parametrize("name", ["calibration", "sample-stiffness"])
 def test_the_tip_is_held_by_a_jam_nut(name):
     scene = make_scene(load("macro-array"), name)

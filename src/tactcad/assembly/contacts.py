@@ -92,7 +92,7 @@ def _blocks(design: Array, limits: Array, cost: list[float], bounds: list[tuple]
         m = len(some)
         result = linprog(
             np.tile(cost, m),
-            A_ub=sparse.block_diag([design] * m, format="csr"),
+            A_ub=sparse.kron(sparse.eye_array(m), sparse.csr_array(design), format="csr"),
             b_ub=some.ravel(),
             bounds=bounds * m,
             method="highs",

@@ -6,7 +6,7 @@ Read off the placements: a cap screw, the tapped hole it stands in, and every pa
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,7 @@ from tactcad.parts.library.fits import deviations, general
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 
-from .variables import STACK_LENGTH, DimensionLimits, variable
+from .variables import STACK_LENGTH, Array, DimensionLimits, variable
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
 # What is stacked between the end plates: its length is held as a whole.
@@ -48,99 +48,144 @@ class ScrewedJoint:
     bought: bool
 
 
-def joints(design: str, scene: Scene, known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
-    """Every kind of screwed joint of a scene.
+@dataclass(frozen=True)
+class Screwed:
+    """A cap screw in a tapped hole.
 
-    Parameters
-    ----------
-    design, scene
-        The design's name, and a scene of it; its contacts name the threads.
-    known
-        Variables by name; those of the joints are added where they are not known yet.
+    thread, length  of the screw, mm
+    tapped, hole    the part with the thread
+    end             of the screw along the hole, from its mouth, mm
+    pierced         parts between its head and the tapped one, with the holes that it passes
     """
+
+    thread: str
+    length: float
+    tapped: Placement
+    hole: Hole
+    end: float
+    pierced: tuple[tuple[Placement, Hole], ...]
+
+
+def screwed(scene: Scene) -> list[Screwed]:
+    """Every cap screw of a scene in its thread; its contacts name the threads."""
     by_name = {p.designator: p for p in scene.placements}
-    kinds: dict[ScrewedJoint, None] = {}
+    bored = [_bored(p) for p in scene.placements if not CAP_SCREW.match(p.part.part_no)]
+    found: list[Screwed] = []
     for contact in scene.contacts:
         if contact.kind != "thread":
             continue
         pair = (by_name[contact.first], by_name[contact.second])
         for screw, tapped in (pair, pair[::-1]):
-            if CAP_SCREW.match(screw.part.part_no):
-                kinds |= dict.fromkeys(_joint(design, scene, screw, tapped, known))
-    return list(kinds)
+            if match := CAP_SCREW.match(screw.part.part_no):
+                found += _screwed(screw, tapped, match[1], float(match[2]), bored)
+    return found
 
 
-def _joint(
-    design: str, scene: Scene, screw: Placement, tapped: Placement, known: dict[str, DimensionLimits]
-) -> Iterator[ScrewedJoint]:
-    match = CAP_SCREW.match(screw.part.part_no)
-    assert match
-    thread, length = match[1], float(match[2])
-    for hole, _, end in engaged(screw, tapped):
-        start, stop = thread_range(hole)
-        if end - length > start + COAXIAL or end < start:
-            continue  # another hole of the part in the same axis
-        length_name = _known(
-            known, variable(f"{thread}x{length:g} screw: length", *deviations(LENGTH, length))
-        )
-        terms = {length_name: 1.0}
-        through = ""
-        for pierced, clearance in _pierced(scene, screw, tapped, length):
-            if clearance.counterbore or not through:
-                through = f"through {_short(design, pierced)} "
-            if pierced.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED)):
-                terms[STACK_LENGTH] = -1.0
-                continue
-            thick = thickness(pierced.part, known)
-            terms[thick] = terms.get(thick, 0.0) - 1.0
-            if clearance.counterbore:
-                deep = clearance.counterbore[1]
-                sunk = _general(known, f"{pierced.part.part_no}: counterbore depth", deep)
-                terms[sunk] = terms.get(sunk, 0.0) + 1.0
-        room, deeper = None, ""
-        if not hole.through:
-            room, deeper = (
-                stop - end,
-                _general(known, f"{tapped.part.part_no}: thread depth", hole.thread_depth),
-            )
-        elif end <= hole.depth:
-            room, deeper = hole.depth - end, thickness(tapped.part, known)
-        yield ScrewedJoint(
-            f"{thread}x{length:g} {through}into {_short(design, tapped)} ({hole.name.replace('_', ' ')})",
-            thread,
-            round(min(end, stop) - start, 6),
-            None if room is None else round(room, 6),
-            tuple(sorted(terms.items())),
-            deeper,
-            tapped.part.bought,
-        )
+def joints(design: str, screws: Sequence[Screwed], known: dict[str, DimensionLimits]) -> list[ScrewedJoint]:
+    """Every kind of screwed joint of a scene.
+
+    Parameters
+    ----------
+    design, screws
+        The design's name, and the screws of a scene of it.
+    known
+        Variables by name; those of the joints are added where they are not known yet.
+    """
+    return list(dict.fromkeys(_joint(design, s, known) for s in screws))
 
 
-def _short(design: str, p: Placement) -> str:
+def _joint(design: str, s: Screwed, known: dict[str, DimensionLimits]) -> ScrewedJoint:
+    start, stop = thread_range(s.hole)
+    length_name = _known(
+        known, variable(f"{s.thread}x{s.length:g} screw: length", *deviations(LENGTH, s.length))
+    )
+    terms = {length_name: 1.0}
+    through = ""
+    for pierced, clearance in s.pierced:
+        if clearance.counterbore or not through:
+            through = f"through {short(design, pierced)} "
+        if is_stacked(design, pierced):
+            terms[STACK_LENGTH] = -1.0
+            continue
+        thick = thickness(pierced.part, known)
+        terms[thick] = terms.get(thick, 0.0) - 1.0
+        if clearance.counterbore:
+            deep = clearance.counterbore[1]
+            sunk = _general(known, f"{pierced.part.part_no}: counterbore depth", deep)
+            terms[sunk] = terms.get(sunk, 0.0) + 1.0
+    room, deeper = None, ""
+    if not s.hole.through:
+        room = stop - s.end
+        deeper = _general(known, f"{s.tapped.part.part_no}: thread depth", s.hole.thread_depth)
+    elif s.end <= s.hole.depth:
+        room, deeper = s.hole.depth - s.end, thickness(s.tapped.part, known)
+    into = f"{short(design, s.tapped)} ({s.hole.name.replace('_', ' ')})"
+    return ScrewedJoint(
+        f"{s.thread}x{s.length:g} {through}into {into}",
+        s.thread,
+        round(min(s.end, stop) - start, 6),
+        None if room is None else round(room, 6),
+        tuple(sorted(terms.items())),
+        deeper,
+        s.tapped.part.bought,
+    )
+
+
+def short(design: str, p: Placement) -> str:
     """A part's number without its design's name, which all of them share."""
     return p.part.part_no.removeprefix(f"{design}-")
 
 
-def _pierced(
-    scene: Scene, screw: Placement, tapped: Placement, length: float
-) -> Iterator[tuple[Placement, Hole]]:
-    """Parts that a screw's shank passes through before its thread, with their holes."""
+def is_stacked(design: str, p: Placement) -> bool:
+    """Whether a part stands between the end plates."""
+    return p.part.part_no.startswith(tuple(f"{design}-{w}" for w in STACKED))
+
+
+def _screwed(
+    screw: Placement, tapped: Placement, thread: str, length: float, bored: Sequence[_Bored]
+) -> Iterator[Screwed]:
     axis, head = np.array(screw.rotation)[:, 2], np.array(screw.origin)
-    for p in scene.placements:
-        if p in (screw, tapped) or CAP_SCREW.match(p.part.part_no):
-            continue
-        for hole in _holes(p.part):
-            turn = np.array(p.rotation)
-            mouth, way = turn @ np.array(hole.at) + p.origin, turn @ np.array(hole.axis)
-            beside = mouth - head
-            beside = beside - (beside @ axis) * axis
-            if abs(abs(way @ axis) - 1.0) > COAXIAL or np.linalg.norm(beside) > COAXIAL:
-                continue
-            ends = sorted(
-                (float((mouth - head) @ axis), float((mouth - head) @ axis + hole.depth * (way @ axis)))
-            )
-            if ends[0] < length and ends[1] > 1e-6:
-                yield p, hole
+    for hole, _, end in engaged(screw, tapped):
+        start, _ = thread_range(hole)
+        if end - length > start + COAXIAL or end < start:
+            continue  # another hole of the part in the same axis
+        mouth = length - end  # from the head
+        passed = [
+            (part.placed, part.holes[i])
+            for part in bored
+            if part.placed != tapped
+            for i in part.along(axis, head, mouth)
+        ]
+        yield Screwed(thread, length, tapped, hole, end, tuple(passed))
+
+
+@dataclass(frozen=True)
+class _Bored:
+    """A placed part with its holes; where they begin and which way they lead, in the scene, (n, 3) mm."""
+
+    placed: Placement
+    holes: tuple[Hole, ...]
+    mouths: Array
+    ways: Array
+    depths: Array
+
+    def along(self, axis: Array, head: Array, mouth: float) -> Iterator[int]:
+        """Holes in a screw's axis that begin or end between its head and the thread's mouth."""
+        from_head = self.mouths - head
+        height, turn = from_head @ axis, self.ways @ axis
+        beside = np.linalg.norm(from_head - np.outer(height, axis), axis=1)
+        far = height + self.depths * turn
+        passed = np.minimum(height, far) < mouth - COAXIAL
+        passed &= (np.maximum(height, far) > COAXIAL) & (beside <= COAXIAL)
+        yield from np.flatnonzero(passed & (np.abs(np.abs(turn) - 1.0) <= COAXIAL)).tolist()
+
+
+def _bored(p: Placement) -> _Bored:
+    holes, turn = tuple(_holes(p.part)), np.array(p.rotation, float)
+    at = np.array([h.at for h in holes], float).reshape(-1, 3)
+    ways = np.array([h.axis for h in holes], float).reshape(-1, 3)
+    depths = np.array([h.depth for h in holes], float)
+    return _Bored(p, holes, at @ turn.T + np.array(p.origin), ways @ turn.T, depths)
 
 
 def _holes(part: Part) -> Iterator[Hole]:
@@ -149,7 +194,8 @@ def _holes(part: Part) -> Iterator[Hole]:
         for opening in part.body.openings:
             if circle := opening.as_circle():
                 (x, y), r = circle
-                yield Hole("", (x, y, 0.0), (0, 0, 1), 2 * r, part.body.thickness, True)
+                name = opening.segments[0].name
+                yield Hole(name, (x, y, 0.0), (0, 0, 1), 2 * r, part.body.thickness, True)
 
 
 def _known(known: dict[str, DimensionLimits], v: DimensionLimits) -> str:
@@ -168,4 +214,5 @@ def thickness(part: Part, known: dict[str, DimensionLimits]) -> str:
         nominal = part.extrusion.thickness if isinstance(part.body, Extrusion) else 1.0
         return _general(known, f"{part.part_no}: thickness", nominal)
     name = f"{part.part_no}: thickness"
-    return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal))
+    of = ((part.part_no, own.name),) if not part.bought else ()
+    return _known(known, variable(name, own.lower - own.nominal, own.upper - own.nominal, stated=of))

@@ -122,12 +122,17 @@ def _behind_contacts(
         for r in wanted:
             moved = _at(r.value(changed), instance[r.name]) - seen[r.name][:EFFECTS]
             effect[r.name][name] = float((moved**2).mean() / 2)
+    if not wanted:
+        return
+    worst = []
     for r in wanted:
+        ways = {name: _way(corners.made[name], seen[r.name]) for name in variables}
+        worst += [_corner(variables, ways, sign) for sign in (-1.0, 1.0)]
+    # all of them at once: a program's own cost is larger than that of a few arrays
+    extreme = Assembled(layout, {name: np.vstack([made_[name] for made_ in worst]) for name in variables})
+    for n, r in enumerate(wanted):
         value, at = seen[r.name], instance[r.name]
-        ways = {name: _way(corners.made[name], value) for name in variables}
-        ends = [
-            _at(r.value(Assembled(layout, _corner(variables, ways, sign))), at)[0] for sign in (-1.0, 1.0)
-        ]
+        ends = _at(r.value(extreme), at)[2 * n : 2 * n + 2]
         yield StackLine(
             r,
             float(_at(r.value(middle), at)[0]),
@@ -140,7 +145,17 @@ def _behind_contacts(
 
 
 # First words of the variables that may matter to contacts; those of screwed joints do not.
-OF_THE_ARRAY = ("element", "sheet", "blank", "spacer", "dowel", "end plate", "stop plate")
+OF_THE_ARRAY = (
+    "element:",
+    "sheet:",
+    "blank:",
+    "spacer:",
+    "dowel",
+    "end plate",
+    "stop plate:",
+    "axle",
+    "wheel:",
+)
 
 
 def _at(value: Array, instance: int) -> Array:

@@ -31,20 +31,24 @@ class DimensionLimits:
 
     name          part and dimension, as stack and findings call it
     lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
+    stated        part number and limit that it is of; empty where it is of elements, or general
     """
 
     name: str
     lower: Array
     upper: Array
+    stated: tuple[tuple[str, str], ...] = ()
 
     @property
     def pieces(self) -> int:
         return len(self.lower)
 
 
-def variable(name: str, lower: float, upper: float, pieces: int = 1) -> DimensionLimits:
+def variable(
+    name: str, lower: float, upper: float, pieces: int = 1, stated: tuple[tuple[str, str], ...] = ()
+) -> DimensionLimits:
     """A variable with the same limits for all its pieces."""
-    return DimensionLimits(name, np.full(pieces, lower), np.full(pieces, upper))
+    return DimensionLimits(name, np.full(pieces, lower), np.full(pieces, upper), stated)
 
 
 def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
@@ -72,38 +76,43 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     modulus = present(d.tolerance.youngs_modulus)
     yield variable("sheet: Young's modulus, relative", -modulus, modulus)
     if layout.blanks():
-        half = next(g.zone for g in blank(layout).geometric if g.name == "ledge") / 2
-        yield variable("blank: ledge over the dowel hole", -half, half, len(layout.blanks()))
+        yield _zone("blank: ledge over the dowel hole", "ledge", len(layout.blanks()), blank(layout))
     yield _characteristic("spacer", spacer(layout), "thickness")
     yield variable(STACK_LENGTH, -STACK, STACK)
     pins = 2 * len(layout.dowel_x)
     low, high = dowel_limits(d.clamp.dowel)
     yield variable("dowel pin: diameter", low - float(d.clamp.dowel), high - float(d.clamp.dowel), pins)
-    for which, head in (("tapped", False), ("head", True)):
-        part, name = end_plate(layout, head), f"end plate, {which}"
-        zones = {g.name: g.zone / 2 for g in part.geometric}
-        if not head:  # the pair is made together: what it shares lies in one zone, its difference in another
+    pair = (end_plate(layout, False), end_plate(layout, True))
+    for which, part in zip(("tapped", "head"), pair):
+        name = f"end plate, {which}"
+        if (
+            part is pair[0]
+        ):  # the pair is made together: what it shares lies in one zone, its difference in another
             for axis in "xz":
-                yield _zone(f"end plates: dowel holes along {axis}", zones["dowel holes"], pins)
-                yield _zone(
-                    f"{name}: dowel holes' squareness along {axis}", zones["dowel holes' squareness"], pins
-                )
+                yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, *pair)
+                square = f"{name}: dowel holes' squareness along {axis}"
+                yield _zone(square, "dowel holes' squareness", pins, part)
         for axis in "xz":
-            yield _zone(
-                f"{name}: dowel holes against the pair's along {axis}", zones["dowel holes of the pair"], pins
-            )
+            against = f"{name}: dowel holes against the pair's along {axis}"
+            yield _zone(against, "dowel holes of the pair", pins, part)
         bore = next(c for c in part.characteristics if c.name == "dowel hole diameter")
         size = float(d.clamp.dowel)  # pin and hole are both counted from it
-        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins)
-    flat = {g.name: g.zone for g in stop_plate(layout).geometric}["flatness"]
-    yield variable("stop plate: flatness", 0.0, flat, len(places))
-    yield _characteristic("stop plate", stop_plate(layout), "thickness")
+        of = ((part.part_no, bore.name),)
+        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of)
+    plate = stop_plate(layout)
+    flat = next(g for g in plate.geometric if g.name == "flatness")
+    of = ((plate.part_no, flat.name),)
+    yield variable("stop plate: flatness", 0.0, flat.zone, len(places), of)
+    yield _characteristic("stop plate", plate, "thickness")
 
 
-def _zone(name: str, half: float, pieces: int) -> DimensionLimits:
-    return variable(name, -half, half, pieces)
+def _zone(name: str, limit: str, pieces: int, *parts: Part) -> DimensionLimits:
+    """Deviations within a zone that every one of these parts states."""
+    half = next(g.zone for g in parts[0].geometric if g.name == limit) / 2
+    return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts))
 
 
 def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:
     c = next(c for c in part.characteristics if c.name == name)
-    return variable(f"{who}: {name}", c.lower - c.nominal, c.upper - c.nominal, pieces)
+    of = ((part.part_no, name),)
+    return variable(f"{who}: {name}", c.lower - c.nominal, c.upper - c.nominal, pieces, of)

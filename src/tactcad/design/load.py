@@ -14,8 +14,9 @@ from .files import read_text
 from .materials import ALLOYS, LOT_SPREAD, completed
 from .messages import InputError, near, one_of
 from .plain_numbers import as_number
+from .stock import sheet_tolerance
 from .toml_text import parse_toml
-from .tree import Design, Element, Hinge, SheetMaterial, Stop, Tolerance
+from .tree import Design, Element, Hinge, Sheet, SheetMaterial, Stop, Tolerance
 
 # A design is a page of text; a larger file is a mistake or an attack, and is refused without parsing.
 MOST_BYTES = 1_000_000
@@ -92,7 +93,7 @@ def from_table(table: dict[str, Any]) -> Design:
             continue  # a rig that this design does not have
         values[name] = read_table(kind, table.get(name, {}), name)
     values["material"] = _material(values["material"])
-    values["tolerance"] = _tolerance(values["tolerance"], values["material"].alloy)
+    values["tolerance"] = _tolerance(values["tolerance"], values["material"], values["sheet"])
     design = Design(**values, origin={})
     design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
     _ = design.differences  # refuses values that are not those of the material's name
@@ -164,12 +165,14 @@ def _material(given: SheetMaterial) -> SheetMaterial:
     return SheetMaterial(**completed(given.alloy, vars(given)))
 
 
-def _tolerance(given: Tolerance, alloy: str) -> Tolerance:
-    """[tolerance], completed with the spread of Young's modulus from the material's row."""
-    if given.youngs_modulus is not None:
-        return given
-    row = ALLOYS.get(alloy)
-    return dataclasses.replace(given, youngs_modulus=row.spread["youngs_modulus"] if row else LOT_SPREAD)
+def _tolerance(given: Tolerance, material: SheetMaterial, sheet: Sheet) -> Tolerance:
+    """[tolerance], completed with what the sheet as bought may differ by: Young's modulus and thickness."""
+    row = ALLOYS.get(material.alloy)
+    bought = {
+        "youngs_modulus": row.spread["youngs_modulus"] if row else LOT_SPREAD,
+        "sheet_thickness": sheet_tolerance(sheet.thickness, material.density),
+    }
+    return dataclasses.replace(given, **{n: v for n, v in bought.items() if getattr(given, n) is None})
 
 
 def _origins(table: dict[str, Any], design: Design) -> dict[str, str]:

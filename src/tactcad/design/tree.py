@@ -13,6 +13,7 @@ from typing import Any
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
 from .rigs import Calibration, Cart, Grasping, Holder, Sample
+from .stock import OTHER_SHEET
 
 # Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
 # cannot hold.
@@ -252,7 +253,11 @@ class Tolerance:
     hinge_length: float = given(Number("mm", 1e-4, 0.5, "slot length"), 0.02)
     fillet_radius: float = given(Number("mm", 1e-4, 0.5, "radius of the slot's fillets"), 0.02)
     load_arm: float = given(Number("mm", 1e-4, 1, "pad edges, and element in its clamp"), 0.05)
-    sheet_thickness: float = given(Number("mm", 1e-4, 1, "sheet thickness"), 0.1)
+    sheet_thickness: float = given(
+        Number("mm", 1e-4, 1, "sheet thickness"),
+        None,
+        f"of aluminium as EN 485-4 has it, sheets up to 1 m wide; of others {OTHER_SHEET:g}",
+    )
     arm_height: float = given(Number("mm", 1e-4, 0.5, "arm height"), 0.02)
     tip: float = given(Number("mm", 1e-4, 0.5, "arm's tip from the dowel hole's centre"), 0.02)
     ledge: float = given(Number("mm", 1e-4, 0.1, "ledge over the pad's face"), 0.005)

@@ -3,7 +3,6 @@ materials."""
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from tactcad.scenes.scene import Scene
 from .assembly import assembly_sheets
 from .balloons import height
 from .fonts import em
-from .gate import pdf_runs
+from .gate import pdf_runs, pdf_texts
 from .ink import DrawnSheet
 from .workers import Written
 
@@ -127,18 +126,12 @@ def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRo
 
 def _ballooned(pdf: bytes) -> list[int]:
     """Numbers in balloons, recognised by the height of their letters."""
-    from pypdf import PdfReader
-
-    numbers: list[int] = []
-
-    def take(text: str, _matrix: object, _text_matrix: object, _font: object, size: float) -> None:
-        number = text.strip()
-        if number.isdecimal() and isclose(size, em(height(number)), rel_tol=1e-3):
-            numbers.append(int(number))
-
-    for page in PdfReader(io.BytesIO(pdf)).pages:
-        page.extract_text(visitor_text=take)
-    return numbers
+    return [
+        int(text)
+        for page in pdf_texts(pdf)
+        for text, size in page
+        if text.isdecimal() and isclose(size, em(height(text)), rel_tol=1e-3)
+    ]
 
 
 def _without_spaces(text: str) -> str:

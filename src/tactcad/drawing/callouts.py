@@ -123,6 +123,10 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
         if contour.as_circle():
             continue
         arcs = [(f"{owner} radius", Radius(owner, i), s) for i, s in enumerate(contour) if isinstance(s, Arc)]
+        for c in part.characteristics:
+            limited = [arc for arc in arcs if arc[2].name in c.between]
+            callouts += equal_radii(sketch, view, limited, c.name)
+            arcs = [arc for arc in arcs if arc not in limited]
         callouts += equal_radii(sketch, view, arcs)
     return callouts
 

@@ -7,7 +7,7 @@ everything is laid out in (s, o): s along the side, o outwards from the view's b
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from .boxes import Box, Point
 from .fonts import ink_box, width
@@ -104,8 +104,8 @@ def stacked(
     items: list[Item] = []
     offset = max(start, FIRST)
     for n, (_, a, b, oa, ob, d) in enumerate(spots):
-        text, key = d.dimension.text(values), d.dimension.key
-        length = boxed_width(text, key)
+        text, key, basic = d.dimension.text(values), d.dimension.key, d.dimension.basic
+        length = boxed_width(text, key) + (2 * BASIC if basic else 0.0)
         # extension lines that pass this dimension on their way out: its own, and those of what stands outside
         # it
         feet = [s for spot in spots[n:] for s in spot[1:3]]
@@ -113,12 +113,12 @@ def stacked(
         number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, ends), length)
         if number == len(tracks):
             tracks.append(
-                _Track(offset if not tracks else tracks[-1].offset + (PITCH_BOXED if key else PITCH))
+                _Track(offset if not tracks else tracks[-1].offset + (PITCH_BOXED if key or basic else PITCH))
             )
         tracks[number].taken.append(_interval(a, b, t0, length, inside))
         o = tracks[number].offset
         items += _one(on_paper, side, o, a, b, oa, ob, t0, t0 + length, inside)
-        items += _text_on(on_paper, side, o, t0, text, key)
+        items += _text_on(on_paper, side, o, t0, text, key, basic)
     return items
 
 
@@ -194,15 +194,24 @@ def _one(
 
 
 def _text_on(
-    on_paper: Callable[[float, float], Point], side: Side, o: float, t0: float, text: str, key: int
+    on_paper: Callable[[float, float], Point],
+    side: Side,
+    o: float,
+    t0: float,
+    text: str,
+    key: int,
+    basic: bool,
 ) -> list[Item]:
     """The text above its dimension line, read from below or from the right."""
     x, y = on_paper(t0, o)
     below = -ink_box(text, HEIGHT)[1]  # parentheses reach below the line of writing, down to the arrow heads
-    lift = max(ABOVE + (PAD - 0.2 if key else 0.0), below + CLEAR_OF_ARROW)
+    lift = max(ABOVE + (PAD - 0.2 if key or basic else 0.0), below + CLEAR_OF_ARROW)
     upright = side in ("left", "right")
     at = (x - lift, y) if upright else (x, y + lift)
     shown = Text(at, text, HEIGHT, angle=90.0 if upright else 0.0)
+    if basic:
+        shown = replace(shown, at=polar(at, BASIC, shown.angle))
+        return [shown, _outline(at, shown, shown.width + 2 * BASIC, BASIC)]
     return boxed(shown, key) if key else [shown]
 
 

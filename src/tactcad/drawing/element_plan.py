@@ -23,7 +23,7 @@ from .limit_marks import with_marks
 from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .prism import FRONT, side_view
 from .sheet_plan import Across, Callout, Dimension, Linear, SheetPlan, View
-from .sketch import ALIKE, Sketch, closed, view_of
+from .sketch import ALIKE, Coordinate, Sketch, closed, view_of
 
 HINGE_LEAST = 10.0  # the hinge is shown at 10:1 or larger
 HINGE_ROOM = (110.0, 110.0)  # mm of paper for the hinge's detail
@@ -116,9 +116,10 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
     for r in sorted((r for g in called for r in g.holes if r is not dowel), key=lambda r: r.at[0]):
         ends = (x, level(r.owner.place(0)))
         row = Span(*ends) if r.at[0] > at[0] else Span(*reversed(ends))
-        linears.append(
-            Linear(sketch.must(Dimension(f"{r.label} from dowel hole", (row,))), "top", at, r.at[:2])
-        )
+        origin, there = (Coordinate(s.label, s.owner.place(0), s.at) for s in (dowel, r))
+        basic = sketch.locates(origin, there, 0)
+        d = sketch.must(Dimension(f"{r.label} from dowel hole", (row,), basic=basic))
+        linears.append(Linear(d, "top", at, r.at[:2]))
     for name, row, q in (
         ("clamp edge from dowel hole", Span(o.x("clamp_edge"), x), top),
         ("rear end from dowel hole", Span(x, o.x("rear_end")), o.end("rear_end")),

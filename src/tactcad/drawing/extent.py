@@ -7,6 +7,9 @@ from dataclasses import replace
 from itertools import product
 from math import cos, pi, sin
 
+import numpy as np
+from numpy.typing import NDArray
+
 from tactcad.contour import Arc, Contour, Point
 from tactcad.parts.description import Extrusion, ModelFile, Part, Pocket, Revolution, Vector, vector
 from tactcad.scenes.scene import Placement
@@ -22,13 +25,18 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
     A model file counts with its box, which may be seen larger than the model.
     """
     up = _unit(_cross(eye, right))
+    axes = np.array([right, up])
+    points: dict[str, NDArray[np.float64]] = {}
     spans: dict[tuple, Box] = {}  # equal parts turned alike differ by their place alone
     corners = []
     for p in placements:
         key = (p.part.part_no, p.rotation)
         if key not in spans:
-            turned = (placed(replace(p, origin=(0.0, 0.0, 0.0)), v) for v in _surface_points(p.part))
-            spans[key] = bounds((_dot(v, right), _dot(v, up)) for v in turned)
+            if p.part.part_no not in points:
+                points[p.part.part_no] = np.array(list(_surface_points(p.part)))
+            seen = points[p.part.part_no] @ (axes @ np.array(p.rotation)).T
+            (x0, y0), (x1, y1) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
+            spans[key] = (x0, y0, x1, y1)
         x, y = _dot(p.origin, right), _dot(p.origin, up)
         x0, y0, x1, y1 = spans[key]
         corners += [(x + x0, y + y0), (x + x1, y + y1)]

@@ -6,7 +6,7 @@ Heights are those of ISO 3098-1: the height h of capital letters, in mm.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
@@ -76,11 +76,13 @@ def em(height: float) -> float:
     return height / _glyph("H")[1][3]
 
 
+@lru_cache(maxsize=4096)  # a sheet's layout is tried in many ways
 def width(text: str, height: float) -> float:
     """Sum of the letters' advances, mm."""
     return sum(_glyph(letter)[0] for letter in text) * em(height)
 
 
+@lru_cache(maxsize=4096)
 def ink_box(text: str, height: float) -> Box:
     """x_min, y_min, x_max, y_max of the ink (mm), baseline from (0, 0); a text of blanks has no area.
 

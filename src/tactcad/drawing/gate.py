@@ -6,6 +6,7 @@ import io
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 from tactcad.parts.description import Characteristic, Part
 
@@ -19,16 +20,27 @@ _VALUE = re.compile(
 )
 
 
-def pdf_runs(data: bytes) -> list[list[str]]:
-    """Texts of every page in the order in which they were drawn, as pypdf reads them."""
+@lru_cache(maxsize=16)  # a release asks several things of each of its sheets
+def pdf_texts(data: bytes) -> tuple[tuple[tuple[str, float], ...], ...]:
+    """Texts of every page with the size of their letters (points), in the order in which they were drawn, as
+    pypdf reads them."""
     from pypdf import PdfReader
 
     pages = []
     for page in PdfReader(io.BytesIO(data)).pages:
-        runs: list[str] = []
-        page.extract_text(visitor_text=lambda text, *_, runs=runs: runs.extend(text.splitlines()))
-        pages.append([run.strip() for run in runs if run.strip()])
-    return pages
+        texts: list[tuple[str, float]] = []
+
+        def take(text: str, _matrix: object, _text_matrix: object, _font: object, size: float) -> None:
+            texts.extend((run.strip(), size) for run in text.splitlines() if run.strip())
+
+        page.extract_text(visitor_text=take)
+        pages.append(tuple(texts))
+    return tuple(pages)
+
+
+def pdf_runs(data: bytes) -> list[list[str]]:
+    """Texts of every page in the order in which they were drawn."""
+    return [[text for text, _ in page] for page in pdf_texts(data)]
 
 
 def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) -> list[str]:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from math import hypot
 
+import numpy as np
+
 from .boxes import Chord, Point, bounds
 from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Stroke, Text, points_of
 from .paper import LEFT, OTHER
@@ -64,8 +66,18 @@ def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
 
 
 def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator[str]:
+    """A text over a line, or nearer to its ink than BESIDE_LINE."""
+    ends = np.array([piece.ends for piece in drawn]).reshape(-1, 2, 2)
+    half = np.array([[piece.half] for piece in drawn]).reshape(-1, 1)
+    low, high = ends.min(1) - half, ends.max(1) + half
     for text in texts:
-        hit = text_hits(text, drawn)
+        x0, y0, x1, y1 = bounds(text.corners(BESIDE_LINE))
+        near = [drawn[i] for i in np.flatnonzero(((high >= (x0, y0)) & (low <= (x1, y1))).all(1)).tolist()]
+        hit = {
+            piece.role
+            for piece in near
+            if piece.role != "watermark" and chord_meets(piece.ends, text.corners(BESIDE_LINE + piece.half))
+        }
         if hit:
             yield f"text {text.text!r} at {_shown(text.at)} over a line ({', '.join(sorted(hit))})"
 
@@ -75,21 +87,6 @@ def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[
     for text in texts:
         if any(item.holds(corner) for item in items if isinstance(item, Hatch) for corner in text.corners()):
             yield f"text {text.text!r} at {_shown(text.at)} over hatching"
-
-
-def text_hits(text: Text, drawn: Sequence[_Straight]) -> set[str]:
-    """Roles of the lines that come nearer to the text's ink than BESIDE_LINE."""
-    quad = text.corners(BESIDE_LINE)
-    x0, y0, x1, y1 = bounds(quad)
-    hit = set()
-    for piece in drawn:
-        (ax, ay), (bx, by) = piece.ends
-        w = piece.half
-        if max(ax, bx) < x0 - w or min(ax, bx) > x1 + w or max(ay, by) < y0 - w or min(ay, by) > y1 + w:
-            continue
-        if piece.role != "watermark" and chord_meets(piece.ends, text.corners(BESIDE_LINE + w)):
-            hit.add(piece.role)
-    return hit
 
 
 def _outside(sheet: DrawnSheet) -> Iterator[str]:

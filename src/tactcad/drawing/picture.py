@@ -239,7 +239,8 @@ def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint)
     x0, y0, x1, y1 = bounds(points)
     drawn = (x1 - x0, y1 - y0)
     described = [p for p in placements if not isinstance(p.part.body, ModelFile)]
-    least, most = (_span(some, view) if some else (0.0, 0.0) for some in (described, placements))
+    most = _span(placements, view)
+    least = most if len(described) == len(placements) else _span(described, view) if described else (0.0, 0.0)
     for got, low, high, name in zip(drawn, least, most, ("width", "height")):
         if not low - SAME_EXTENT <= got <= high + SAME_EXTENT:
             meant = f"{low:.3f}" if low == high else f"{low:.3f} to {high:.3f}"

@@ -5,6 +5,7 @@ and what the kernel may crash on.
 from __future__ import annotations
 
 import ctypes
+import gc
 import multiprocessing
 import os
 import signal
@@ -45,6 +46,7 @@ def end_with(parent: int) -> None:
     of the export's folder included. Systems without prctl leave it waiting. Ctrl-C and a terminal's end reach
     the helper too, but the parent answers them; SIGTERM is how the pool ends it.
     """
+    gc.freeze()
     past_ending()
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     with suppress(AttributeError, OSError):

@@ -91,23 +91,29 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
 
 
 def stack_products(design: Design, scenes: Sequence[Scene], shapes: Shapes) -> list[Output]:
-    """How the limits of all parts add up: a table, and a page with bars; from one run of virtual builds."""
+    """How the limits of all parts add up: a table, a page with bars, and what to measure on which part; from
+    one run of virtual builds."""
 
     @cache
-    def run() -> tuple[bytes, bytes]:
+    def run() -> tuple[bytes, bytes, bytes]:
         from tactcad.assembly.stack import stack_bytes
         from tactcad.assembly.stack_page import stack_page
         from tactcad.assembly.virtual_build import sensor
 
+        from . import part_inspection
+
         made = sensor(design, scenes)
         lines = made.stack()
         title = f"{design.design.title}, revision {design.design.revision}"
-        return stack_bytes(lines), stack_page(title, made.built(1000), lines)
+        parts = (p for scene in scenes for p in scene.parts)
+        measured = part_inspection.part_inspection_bytes(design, parts, made.variables, lines)
+        return stack_bytes(lines), stack_page(title, made.built(1000), lines), measured
 
     made_by = digest(("stack", shapes.made_by, design, scenes))
     return [
         Output("stack.csv", "report", "", digest((made_by, "csv")), lambda: run()[0]),
         Output("stack.html", "report", "", digest((made_by, "html")), lambda: run()[1]),
+        Output("inspection-parts.csv", "report", "", digest((made_by, "parts")), lambda: run()[2]),
     ]
 
 

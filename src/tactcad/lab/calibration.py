@@ -1,57 +1,42 @@
 """From force, deflection and signal readings to Table 1's columns with intervals.
 
-The stage's displacement X is shared by two springs, element K and load cell K_c, so F = k X + c with k = K
-K_c/(K + K_c). Force and signal are regressed on X, which the micrometer sets, and the series spring is
-removed from the slopes: K = k K_c/(K_c - k), K_v = v/(1 - k/K_c), K_v/K = v/k, with k and v the slopes of
-force and signal. Regressing on d = X - F/K_c, as the paper did, puts the force's noise on both axes; that
-estimate is given beside it.
+Force and signal are regressed on the stage's displacement X, which the micrometer sets; the load cell in
+series is removed from the slopes (`series_spring`). What the paper's own regression gives stands beside it
+(`averaged`).
 
 Every interval covers more than noise. Runs differ: the slopes' variance is taken from the runs' own slopes
-(Student's t with one degree of freedom fewer than runs); with a single run it is assumed. The load cell's
-stiffness is known within limits: the interval holds for every value within them. Readings before contact are
-detected and left out.
+(Student's t with one degree of freedom fewer than runs); with a single run it is assumed. Readings before
+contact are detected and left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 
 from tactcad.design.messages import InputError
-from tactcad.lab import noise
+from tactcad.lab import averaged, noise
 from tactcad.lab.contact import first_in_contact
-from tactcad.lab.load_cell import LoadCell, series_removed
+from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.readings import CalibrationReadings, groups
 from tactcad.lab.regression import (
     KNOWN,
     Lines,
     extreme_deviates,
     fit_lines,
-    ratio_interval,
     require_level,
-    rounding,
     spare_steps,
     steps,
     t_quantile,
 )
+from tactcad.lab.series_spring import Estimate, correlation, element_stiffness, require_spring, sensitivities
 
 FALSE_ALARM = 0.01  # probability that an outlier is reported in a file that has none
 # Assumed standard deviation of an element's slope from run to run, relative, where there is a single run.
 # Chosen: a micrometer read to 1 um over the 100 to 150 um of a calibration's travel.
 RUN_SCATTER = 0.01
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A value with its interval; standard error as used for the interval. Same unit throughout."""
-
-    value: float
-    low: float
-    high: float
-    standard_error: float
 
 
 @dataclass(frozen=True)
@@ -195,12 +180,13 @@ def _element(
     covariance, dof = _covariance(lines, run_scatter, notes)
     t = t_quantile(level, dof)
     k, v = lines.slope
-    _require_spring(e.where, x, y, lines.slope, t * covariance[0, 0] ** 0.5, load_cell, outliers)
-    stiffness = _stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
-    per_deflection, per_force = _sensitivities(k, v, covariance, load_cell, t)
-    averaged = _averaged(x, y, run)
+    far = [str(o.line) for o in outliers if o.quantity == "force"]
+    require_spring(e.where, x, y, lines.slope, t * covariance[0, 0] ** 0.5, load_cell, far)
+    stiffness = element_stiffness(k, covariance[0, 0] ** 0.5, load_cell, t, notes)
+    per_deflection, per_force = sensitivities(k, v, covariance, load_cell, t)
+    means = averaged.over_runs(x, y, run)
     cell = load_cell.stiffness
-    paper = _as_paper(*averaged, cell, level, notes)
+    paper = averaged.as_paper(*means, cell, level, notes)
     return ElementCalibration(
         e.number,
         len(x),
@@ -210,11 +196,11 @@ def _element(
         per_deflection,
         paper[1],
         per_force,
-        _correlation(k, v, covariance, cell),
+        correlation(k, v, covariance, cell),
         dof,
         float(lines.intercept[1] - v * lines.intercept[0] / k),
-        *_extremes(*averaged, cell),
-        *_linearity(*averaged),
+        *averaged.extremes(*means, cell),
+        *averaged.linearity(*means),
         outliers,
         tuple(notes),
     )
@@ -263,145 +249,3 @@ def _covariance(lines: Lines, run_scatter: float | None, notes: list[str]) -> tu
     with np.errstate(divide="ignore"):  # Welch and Satterthwaite; an assumed scatter counts as known
         dof = lines.dof * float((np.diag(total) / np.diag(noise)).min()) ** 2
     return total, min(dof, KNOWN)
-
-
-def _require_spring(
-    where: str,
-    x: np.ndarray,
-    y: np.ndarray,
-    slope: np.ndarray,
-    half_width: float,
-    load_cell: LoadCell,
-    outliers: tuple[Outlier, ...],
-) -> None:
-    """Raise InputError where the force (y[:, 0], N) cannot be that of a spring and a load cell in series, or
-    the signal (y[:, 1], V) that of a gauge on the spring.
-
-    `slope` is of force and signal over displacement (N/mm, V/mm), `half_width` that of the force's slope.
-    """
-    constant = np.abs(slope) * np.ptp(x) <= rounding(y)
-    for name, unit, unchanged in zip(("force", "signal"), "NV", constant):
-        if unchanged:
-            raise InputError(
-                where,
-                f"the {name} does not change with displacement",
-                legal=f"{name} in {unit} that {'rises' if unit == 'N' else 'changes'} with displacement",
-            )
-    k = float(slope[0])
-    if k + half_width < 0:
-        raise InputError(
-            where,
-            f"the force falls with displacement, by {-k:.4g} N/mm: the sign of one column is reversed",
-            legal="force and displacement both grow as the element is pressed",
-        )
-    if k - half_width >= load_cell.ends[1]:
-        raise InputError(
-            where,
-            f"the force rises by {k:.4g} N/mm, which the load cell of {load_cell.stiffness:g} N/mm cannot: "
-            "another unit of displacement or force, or another load cell",
-            legal="displacement in mm (displacement_um for micrometres), force in N, --load-cell",
-        )
-    far = [str(o.line) for o in outliers if o.quantity == "force"]
-    if far and not 0 < k < load_cell.ends[1]:  # without outliers noise alone can bring k there: no refusal
-        does = "falls with displacement" if k <= 0 else "rises by more than the load cell can"
-        raise InputError(
-            where,
-            f"the force {does}, because of what lies far from the other readings: line {', '.join(far)}",
-            value=f"{k:.4g} +-{half_width:.4g} N/mm",
-            legal="force in N that rises with displacement; --drop-outliers leaves those lines out",
-        )
-
-
-def _stiffness(k: float, se: float, load_cell: LoadCell, t: float, notes: list[str]) -> Estimate:
-    """K = k K_c/(K_c - k), N/mm. It rises with k and falls with K_c, so each end of the interval comes from
-    that end of k and the load cell at the limit that widens it."""
-    low, high = k - t * se, k + t * se
-    softest, stiffest = load_cell.ends
-    if low <= 0:
-        notes.append(
-            "the force does not rise with displacement beyond noise: the data do not tell the stiffness "
-            "from zero"
-        )
-    if high >= softest:
-        notes.append("as stiff as the load cell within noise: the data bound the stiffness from below only")
-    cell = load_cell.stiffness
-    slope = (1 - k / cell) ** -2 if k < cell else inf
-    return Estimate(
-        series_removed(k, cell),
-        max(series_removed(low, stiffest), 0.0),
-        series_removed(high, softest),
-        se * slope,
-    )
-
-
-def _sensitivities(
-    k: float, v: float, covariance: np.ndarray, load_cell: LoadCell, t: float
-) -> tuple[Estimate, Estimate]:
-    """K_v = v/(1 - k/K_c) for every load cell within its limits, and K_v/K = v/k: ratios of two estimates,
-    with Fieller's interval."""
-    to_force = np.array([[0.0, 1.0], [1.0, 0.0]])
-
-    def ratio(matrix: np.ndarray, bottom: float) -> Estimate:
-        c = matrix @ covariance @ matrix.T
-        value = v / bottom
-        se = np.sqrt(max(c[0, 0] - 2 * value * c[0, 1] + value * value * c[1, 1], 0.0)) / abs(bottom)
-        return Estimate(value, *ratio_interval(v, bottom, c, t), float(se))
-
-    def per_deflection(cell: float) -> Estimate:
-        return ratio(np.array([[0.0, 1.0], [-1 / cell, 0.0]]), 1 - k / cell)  # (k, v) -> (v, 1 - k/K_c)
-
-    best, *ends = (per_deflection(cell) for cell in (load_cell.stiffness, *load_cell.ends))
-    low, high = (min(e.low for e in ends), max(e.high for e in ends))
-    return Estimate(best.value, low, high, best.standard_error), ratio(to_force, k)
-
-
-def _correlation(k: float, v: float, covariance: np.ndarray, load_cell: float) -> float:
-    """Correlation of K and K_v, linearised in k and v."""
-    share = 1 - k / load_cell
-    jacobian = np.array([[1 / share**2, 0.0], [v / load_cell / share**2, 1 / share]])
-    c = jacobian @ covariance @ jacobian.T
-    scale = (c[0, 0] * c[1, 1]) ** 0.5
-    return float(np.clip(c[0, 1] / scale, -1, 1)) if scale > 0 else 0.0
-
-
-def _averaged(x: np.ndarray, y: np.ndarray, run: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean over the runs at each displacement (equal within 1e-9 mm) that every run has; all readings as they
-    are where fewer than three displacements are shared."""
-    step, index = np.unique(steps(x), return_inverse=True)
-    count = np.bincount(index)
-    shared = count == len(np.unique(run))
-    if shared.sum() < 3:
-        return x, y
-    mean = np.column_stack([np.bincount(index, column) / count for column in y.T])
-    return step[shared], mean[shared]
-
-
-def _as_paper(
-    x: np.ndarray, y: np.ndarray, load_cell: float, level: float, notes: list[str]
-) -> tuple[Estimate, Estimate]:
-    """K and K_v as the paper took them: slopes of the averaged force and signal over d = X - F/K_c, each with
-    its t interval."""
-    d = x - y[:, 0] / load_cell
-    lines = fit_lines(d, y, np.zeros(len(d), int))
-    t = t_quantile(level, lines.dof)
-    se = np.sqrt(np.diag(lines.covariance))
-    if len(x) == len(np.unique(x)) and lines.dof < 3:
-        notes.append(f"as the paper did it leaves {lines.dof} degrees of freedom")
-    first, second = (
-        Estimate(float(b), float(b - t * s), float(b + t * s), float(s)) for b, s in zip(lines.slope, se)
-    )
-    return first, second
-
-
-def _extremes(x: np.ndarray, y: np.ndarray, load_cell: float) -> tuple[float, float, float]:
-    """Largest deflection (mm), force (N) and change of signal (V) of the averaged readings."""
-    deflection = x - y[:, 0] / load_cell
-    return float(deflection.max()), float(y[:, 0].max()), float(np.ptp(y[:, 1]))
-
-
-def _linearity(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Largest deviation from the least-squares line over the full scale of the averaged readings."""
-    lines = fit_lines(x, y, np.zeros(len(x), int))
-    scale = np.ptp(y, axis=0)
-    force, signal = np.where(scale > 0, np.abs(lines.residual).max(0) / np.where(scale > 0, scale, 1), inf)
-    return float(force), float(signal)

@@ -11,11 +11,12 @@ from tactcad.design.csv_table import LARGEST_FILE, Field, refuse_duplicates
 from tactcad.design.csv_table import read as read_table
 from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.lab.calibration import ElementCalibration, Estimate
+from tactcad.lab.calibration import ElementCalibration
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.plain import plain
 from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity
+from tactcad.lab.series_spring import Estimate
 
 SCHEMA = "tactcad-calibration-1"
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)

@@ -1,13 +1,13 @@
 """Straight lines through repeated runs: one slope, an intercept for each run, several responses at once.
 
-Sources: weighted least squares and its t interval (any statistics text); Fieller 1954 for the ratio of two
-normal estimates; Rosner 1983 for the generalised extreme Studentized deviate (ESD) test.
+Sources: weighted least squares and its t interval (any statistics text); Rosner 1983 for the generalised
+extreme Studentized deviate (ESD) test.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import sqrt
 
 import numpy as np
 from scipy.special import stdtrit
@@ -124,34 +124,6 @@ def require_level(level: float) -> None:
 def t_quantile(level: float, dof: float) -> float:
     """Half-width of a two-sided interval of that level, in standard errors."""
     return float(stdtrit(dof, 0.5 + level / 2))
-
-
-def ratio_interval(top: float, bottom: float, covariance: np.ndarray, t: float) -> tuple[float, float]:
-    """Fieller's interval of the ratio of two normal estimates.
-
-    Parameters
-    ----------
-    top, bottom : float
-        The estimates.
-    covariance : array, [2, 2]
-        Of (top, bottom).
-    t : float
-        Half-width in standard errors (`t_quantile`).
-
-    Returns
-    -------
-    low, high : float
-        -inf and inf where `bottom` cannot be distinguished from zero.
-    """
-    a = bottom * bottom - t * t * covariance[1, 1]
-    b = top * bottom - t * t * covariance[0, 1]
-    if a <= 0:
-        return -inf, inf
-    (tt, tb), (_, bb) = covariance
-    # b b - a c with c = top^2 - t^2 tt, written so that (top bottom)^2 is not subtracted from itself
-    along = top * top * bb - 2 * top * bottom * tb + bottom * bottom * tt
-    root = t * sqrt(max(along + t * t * (tb * tb - tt * bb), 0.0))
-    return (b - root) / a, (b + root) / a
 
 
 def extreme_deviates(

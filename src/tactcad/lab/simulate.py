@@ -120,26 +120,6 @@ def approach(
     return z, share[:, None] * np.maximum(z[None, :] + h[:, None], 0.0)
 
 
-def coupled_deflection(
-    load: np.ndarray, stiffness: np.ndarray, object_stiffness: float, share: np.ndarray
-) -> np.ndarray:
-    """Deflections (mm), [element, load], of elements whose pads are coupled through the sample.
-
-    Parameters
-    ----------
-    load : array, [load]
-        N.
-    stiffness : array, [element]
-        N/mm.
-    object_stiffness : float
-        Under one pad, N/mm.
-    share : array, [element, element]
-        Displacement of pad i by the force on pad j, over that by the same force on i; 1 on the diagonal.
-    """
-    force = np.linalg.solve(np.diag(1 / stiffness) + share / object_stiffness, np.ones(len(stiffness)))
-    return np.outer(force / stiffness, load / force.sum())
-
-
 def grasp_signals(
     truth: Truth,
     load: np.ndarray,

@@ -1,4 +1,4 @@
-"""Fieller's interval for a ratio of two measured quantities, here K_obj from a pair's readings."""
+"""Fieller's interval for a ratio of two measured quantities, such as K_obj from a pair's readings."""
 
 from __future__ import annotations
 
@@ -78,45 +78,3 @@ def ratio_interval(
     return RatioInterval(
         estimate, np.where(known, lower, -np.inf), np.where(known, upper, np.inf), bounded, open_ended
     )
-
-
-def object_stiffness_interval(
-    K_r: Array | float,
-    K_m: Array | float,
-    d_r: Array | float,
-    d_m: Array | float,
-    var_r: Array | float,
-    var_m: Array | float,
-    covariance: Array | float = 0.0,
-    *,
-    var_K_r: Array | float = 0.0,
-    var_K_m: Array | float = 0.0,
-    quantile: float | None = None,
-) -> RatioInterval:
-    """Fieller's interval for K_obj = (K_r d_r - K_m d_m)/(d_m - d_r), N/mm.
-
-    Parameters
-    ----------
-    K_r, K_m
-        Stiffness of the reference and the measuring element, N/mm.
-    d_r, d_m
-        Their deflections, mm.
-    var_r, var_m, covariance
-        Of the deflections, mm2.
-    var_K_r, var_K_m
-        Variances of the calibrated stiffnesses, (N/mm)^2; taken to first order, independent.
-    quantile
-        As for `ratio_interval`.
-    """
-    K_r, K_m, d_r, d_m = (np.asarray(v, dtype=float) for v in (K_r, K_m, d_r, d_m))
-    numerator, denominator = K_r * d_r - K_m * d_m, d_m - d_r
-    var_numerator = (
-        K_r * K_r * var_r
-        + K_m * K_m * var_m
-        - 2.0 * K_r * K_m * covariance
-        + d_r * d_r * var_K_r
-        + d_m * d_m * var_K_m
-    )
-    var_denominator = var_r + var_m - 2.0 * np.asarray(covariance)
-    cov = (K_r + K_m) * covariance - K_r * var_r - K_m * var_m
-    return ratio_interval(numerator, denominator, var_numerator, var_denominator, cov, quantile=quantile)

@@ -1,4 +1,4 @@
-"""Quarter bridge, instrumentation amplifier and converter: from strain to volts and back.
+"""Quarter bridge, instrumentation amplifier and converter: from strain to volts.
 
 One active gauge R(1 + x) with three equal ones, x = GF strain + offset: the bridge gives
 U x/(4 + 2 x), exactly; x/4 is only its slope at zero (any text on Wheatstone bridges).
@@ -66,12 +66,6 @@ def bridge_nonlinearity(x: ArrayLike) -> Array:
     return -x / (2 + x)
 
 
-def resistance_change(ratio: ArrayLike) -> Array:
-    """Inverse of `bridge_output`: x = 4 v/(1 - 2 v) from v = output over supply, for v < 1/2."""
-    v = np.asarray(ratio, dtype=float)
-    return 4 * v / (1 - 2 * v)
-
-
 def output(strain: ArrayLike, factor: float, readout: ReadOut) -> Array:
     """Amplifier's output (V) at a foil strain, held at the supplies' and the converter's limits."""
     raw = unlimited_output(strain, factor, readout)
@@ -82,12 +76,6 @@ def unlimited_output(strain: ArrayLike, factor: float, readout: ReadOut) -> Arra
     """Amplifier's output (V) at a foil strain as if nothing limited it."""
     x = factor * np.asarray(strain, dtype=float) + readout.bridge_offset
     return readout.excitation * readout.gain * bridge_output(x)
-
-
-def strain_from_output(volts: ArrayLike, factor: float, readout: ReadOut) -> Array:
-    """Foil strain from the amplifier's output (V); the bridge's non-linearity is removed exactly."""
-    x = resistance_change(np.asarray(volts, dtype=float) / (readout.excitation * readout.gain))
-    return (x - readout.bridge_offset) / factor
 
 
 def volts_per_strain(factor: float, readout: ReadOut, strain: ArrayLike = 0.0) -> Array:

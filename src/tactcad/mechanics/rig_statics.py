@@ -11,11 +11,15 @@ Point = tuple[float, float]
 def inside_by(polygon: Sequence[Point], point: Point) -> float:
     """Distance (mm) of a point from the nearest side of a convex counter-clockwise polygon; negative
     outside."""
-    distances = []
-    for (x0, y0), (x1, y1) in zip(polygon, [*polygon[1:], polygon[0]]):
-        length = hypot(x1 - x0, y1 - y0)
-        distances.append(((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / length)
-    return min(distances)
+    return min(_inside_sides(polygon, point))
+
+
+def _inside_sides(polygon: Sequence[Point], point: Point) -> list[float]:
+    """Distance (mm) of a point from each side; negative outside of it."""
+    return [
+        ((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / hypot(x1 - x0, y1 - y0)
+        for (x0, y0), (x1, y1) in zip(polygon, [*polygon[1:], polygon[0]])
+    ]
 
 
 def tipping_margin(contacts: Sequence[Point], half: float) -> float:
@@ -50,16 +54,8 @@ def tipping_pull(contacts: Sequence[Point], height: float, weight: float, load: 
     """
     if height == 0:
         return inf
-    moments = []
-    for side, p in enumerate(contacts):
-        pair = [p, contacts[(side + 1) % len(contacts)]]
-        moments.append(_side(pair, at) * load + _side(pair, (0.0, 0.0)) * weight)
-    return min(moments) / height
-
-
-def _side(pair: Sequence[Point], point: Point) -> float:
-    (x0, y0), (x1, y1) = pair
-    return ((x1 - x0) * (point[1] - y0) - (y1 - y0) * (point[0] - x0)) / hypot(x1 - x0, y1 - y0)
+    arms = zip(_inside_sides(contacts, at), _inside_sides(contacts, (0.0, 0.0)))
+    return min(load * of_load + weight * of_weight for of_load, of_weight in arms) / height
 
 
 def holding_force(vacuum: float, area: float) -> float:

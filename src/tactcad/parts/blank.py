@@ -14,7 +14,7 @@ from tactcad.contour import Corner, rounded_polygon
 from tactcad.design.tree import Design
 
 from .description import Extrusion, Part
-from .element import dowel_hole_limits, mounting_holes, rear_corners, sheet_material
+from .element import dowel_hole_limits, mounting_holes, rear_corners, screw_places, sheet_material
 from .layout import Layout
 from .limits import FACES, DatumFeature, Geometric, within
 
@@ -50,6 +50,9 @@ def blank(layout: Layout) -> Part:
             dowel_hole_limits(d),
         ),
         # as far from the dowel hole as any element's ledge: pad height and ledge over the pad
-        geometric=(Geometric("ledge", "position", blank_ledge_zone(d), ("ledge",), ("A",)),),
+        geometric=(
+            Geometric("ledge", "position", blank_ledge_zone(d), ("ledge",), ("A",)),
+            screw_places("A"),
+        ),
         datums=(DatumFeature("A", "dowel_hole"),),
     )

@@ -15,12 +15,11 @@ from tactcad.contour import rectangle
 from tactcad.design.present import present
 
 from .description import Extrusion, Feature, Hole, Part
-from .end_plate import SCREWS
 from .fasteners import STACK, carrier_screw
 from .layout import Layout
+from .library.fits import general
 from .library.screws import METRIC, counterbore_diameter
-from .limits import FACES, DatumFeature, Geometric
-from .plate import plate
+from .plate import PLACE, plate
 from .screw_holes import tapped_through
 
 
@@ -69,27 +68,18 @@ def carrier(layout: Layout) -> Part:
         "Carrier",
         Extrusion(rectangle(-length / 2, -width / 2, length / 2, width / 2), t),
         features,
-        geometric=(
-            Geometric("end plate screw holes", "position", PLACE, ("end_plate_screw",), FRAME, True),
-            Geometric("mounting threads", "position", 2 * PLACE, ("mount",), FRAME, True),
-        ),
-        datums=(DatumFeature("A", FACES[0]), DatumFeature("B", "left edge"), DatumFeature("C", "lower edge")),
     )
-
-
-FRAME = ("A", "B", "C")  # the datums that its holes stand from
-# Zone of the screw holes' pattern, mm; chosen: drilled in one clamping.
-PLACE = 0.1
 
 
 def carrier_clearance(layout: Layout) -> float:
     """Diameter of the holes for the end plates' screws, mm.
 
     They let the end plates stand as far apart as the stack makes them, and their threads where their zones
-    allow; but no wider than leaves LEAST_RING of every head's face on the carrier.
+    allow, be they as small as general tolerances allow; but no wider than leaves LEAST_RING of every head's
+    face on the carrier.
     """
     m = METRIC[layout.design.clamp.screw]
-    wanted = m.d + STACK + SCREWS + PLACE
+    wanted = m.d + STACK + 2 * PLACE + general(m.clearance)
     # (head - hole)/2 - (hole - d)/2 >= LEAST_RING
     widest = (m.head - HEAD_LESS + m.d) / 2 - LEAST_RING
     return max(m.clearance, min(floor(10 * widest + 1e-6), ceil(10 * wanted - 1e-6)) / 10)

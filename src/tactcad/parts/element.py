@@ -20,7 +20,8 @@ from tactcad.design.tree import Design
 
 from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
-from .limits import FACES, Characteristic, DatumFeature, within
+from .limits import FACES, Characteristic, DatumFeature, Geometric, within
+from .plate import PLACE
 from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
@@ -58,8 +59,14 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             *material_notes(design),
         ),
         characteristics=_limits(layout, place, gap, {s.name for s in outer}),
+        geometric=(screw_places("A", "B"),),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
     )
+
+
+def screw_places(*datums: str) -> Geometric:
+    """Zone of the clamping screws' holes in what is stacked: cut in one contour with the dowel holes."""
+    return Geometric("screw holes", "position", PLACE, ("screw_hole",), datums, True)
 
 
 # The load arm is the arm less half the pad: its tolerance is shared so that the two give just that.

@@ -22,7 +22,7 @@ from .library.dowels import dowel_diameter, dowel_limits
 from .library.fits import deviations
 from .library.screws import METRIC, counterbore_diameter
 from .limits import FACES, Characteristic, DatumFeature, Geometric
-from .plate import BREAK_EDGES, plate
+from .plate import BREAK_EDGES, FRAME, PLACE, plate
 from .screw_holes import tapped_blind, tapped_through
 
 PLATE_COLOUR = "#7c8794"
@@ -97,9 +97,8 @@ HEAD_TOLERANCE = 0.03  # mm, of the head plate's dowel holes; chosen: reamed or 
 # mm that a pin is bent at its end by hand while a plate goes on; chosen: 1 N on 3 mm of steel, 29 mm out.
 BENT = 0.01
 INNER = FACES[1]
-# Zones in mm; chosen: what a jig borer or wire holds in one clamping; of screw holes, half the clearance that
-# ISO 273 leaves an M3.
-HOLES, PAIR, SQUARE, SCREWS = 0.03, 0.01, 0.003, 0.2
+# Zones in mm; chosen: what a jig borer or wire holds in one clamping.
+HOLES, PAIR, SQUARE = 0.03, 0.01, 0.003
 
 
 def lean(layout: Layout) -> float:
@@ -126,12 +125,12 @@ def _pressed(size: float) -> Characteristic:
 
 def _places(layout: Layout) -> tuple[Geometric, ...]:
     screws = tuple(f"screw_{i + 1}" for i in range(len(layout.screw_x)))
-    dowels, frame = ("dowel_hole",), ("A", "B", "C")
+    dowels = ("dowel_hole",)
     return (
-        Geometric("dowel holes", "position", HOLES, dowels, frame, True),
+        Geometric("dowel holes", "position", HOLES, dowels, FRAME, True),
         Geometric("dowel holes of the pair", "position", PAIR, dowels, ("A", "B"), True),
-        Geometric("screw holes", "position", SCREWS, screws, frame, True),
-        Geometric("carrier threads", "position", SCREWS, ("carrier",), frame, True),
+        Geometric("screw holes", "position", PLACE, screws, FRAME, True),
+        Geometric("carrier threads", "position", PLACE, ("carrier",), FRAME, True),
     )
 
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from .description import Extrusion, Part
-from .element import dowel_hole_limits, mounting_holes, sheet_material
+from .element import dowel_hole_limits, mounting_holes, screw_places, sheet_material
 from .fasteners import SPACER_TOLERANCE, STACK
 from .layout import Layout
-from .limits import FACES, within
+from .limits import FACES, DatumFeature, within
 
 
 def spacer(layout: Layout) -> Part:
@@ -38,4 +38,6 @@ def spacer(layout: Layout) -> Part:
             within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
             dowel_hole_limits(d),
         ),
+        geometric=(screw_places("A"),),
+        datums=(DatumFeature("A", "dowel_hole"),),
     )

@@ -36,6 +36,7 @@ FOLDERS = {
     inspection.NAME: "what to measure on every numbered element: fill in `measured` (and `uncertainty_k2`, "
     "expanded, "
     "k = 2, if you state it) and send it back. Decimal points, mm.",
+    "inspection-parts.csv": "what to measure on other parts, what matters most to the assembled sensor first",
     "stack.csv": "how the limits of the parts add up; for information",
     strength.NAME: "what every element is rated for; for information",
     MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",

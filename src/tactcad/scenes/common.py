@@ -8,7 +8,7 @@ from tactcad.parts.consumables import Supply
 from tactcad.parts.library import dowels, orings, screws
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
-from tactcad.parts.rigs.cart_layout import CartLayout
+from tactcad.parts.rigs.cart_layout import LOOSE_WHEEL, CartLayout
 from tactcad.parts.rigs.force_gauge import GAUGE_THREADS
 from tactcad.parts.rigs.frame import (
     BASE,
@@ -92,17 +92,19 @@ def place_cart(
         b.step(
             f"Wheels, {which}",
             (0, sy * 70, 25),
-            "Put shim, bearing, shim on each axle and start its thread."
+            "Put shim, bearing, shim on each axle and start its thread; polish a shank that the bearing "
+            "does not pass."
             + (
                 " Then stand the cart on a surface plate, press lightly on its middle so that all four "
                 "wheels touch, and tighten the axles in that state, crosswise: the axles' play in the bores "
-                "takes up the threads' error. No wheel may be loose over a 0.02 mm feeler gauge. Every outer "
+                "takes up the threads' error. No wheel may be loose over a "
+                f"{LOOSE_WHEEL:g} mm feeler gauge. Every outer "
                 f"ring must turn at a breath: it has {c.shim:g} mm of air to plate and head."
                 if sy > 0
                 else ""
             ),
             fan=2,
-            tools=("surface plate, grade 1 or better", "feelers, 20 um"),
+            tools=("surface plate, grade 1 or better", f"feelers, {LOOSE_WHEEL * 1e3:g} um"),
         )
     h, (length, under) = rig.holder_screw, present(rig.holder_fixing)
     body = b.place("HB", rigs.holder_body(rig), (roll, 0, rig.cart_top))

@@ -9,11 +9,14 @@ from tactcad.parts.rigs.frame import POST_Y, RISER_PITCH, STAGE_HOLE, pad_middle
 from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
 from tactcad.parts.rigs.rail import rail_holes
 from tactcad.parts.rigs.riser import (
+    LATCH,
+    LATCH_KEPT,
     RISER_SCREW,
     RISER_UNDER_HEAD,
     STOP_DEPTH,
     STOP_LENGTH,
     STOP_PIN,
+    latch_above,
     stop_below,
 )
 from tactcad.parts.rigs.stand_layout import StandLayout
@@ -35,7 +38,7 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     dents = tuple((x - pose.cart, y) for x, y in pads) if pose.deflection else ()
     sample = place_cart(b, rig.cart, pose.cart, dents, pose.deflection)
     post = place_stand(b, StandLayout(design), stages=False)
-    rail = _guide(b, rig, post)
+    rail = _guide(b, rig, post, latched=pose.height == g.lift)
     lift = pose.height - pose.deflection
     below, z = place_axis(b, rig, rail, lift)
     disc = rigs.disc_weight(rig)
@@ -48,7 +51,9 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         b.step(
             "Weights",
             (0, 0, 330),
-            "One disc a loading step, laid on without a knock; each is weighed before. Without any, the "
+            "Lift the array by its platform and set the latch under the carriage; take it out and lower the "
+            "array by hand once cart and sample stand below. One disc a loading step, laid on without a "
+            "knock; each is weighed before. Without any, the "
             f"grasping force is the moving weight: {g.moving_weight:g} N.",
         )
     if pose.height == 0:
@@ -71,7 +76,9 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
     return b.scene("grasping", motions, cover=set(b.groups["axis"]) - elements)
 
 
-def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
+def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
+    """Riser, rail, end stop, and the latch under the lifted carriage or beside it; returns the rail's
+    designator."""
     front = POST_Y - rig.riser_depth
     z = rig.riser_middle
     length = rig.grasping.rail_length
@@ -90,19 +97,17 @@ def _guide(b: Builder, rig: GuideLayout, post: str) -> str:
     b.meet(riser, rail)
     for dz in rail_holes(length):
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
-    stop = b.place(
-        "ES",
-        dowel(STOP_PIN, STOP_LENGTH),
-        (0, front + STOP_DEPTH - STOP_LENGTH, z - stop_below(rig)),
-        ALONG_Y,
-    )
+    pin, y = dowel(STOP_PIN, STOP_LENGTH), front + STOP_DEPTH - STOP_LENGTH
+    stop = b.place("ES", pin, (0, y, z - stop_below(rig)), ALONG_Y)
+    b.place("LP", pin, (-LATCH if latched else -LATCH_KEPT, y, z + latch_above(rig)), ALONG_Y)
     b.meet(riser, stop, "press")
     b.step(
         "Guide rail",
         (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
         f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: with no cart "
-        "under the array the carriage comes down on it and stays on its rail.",
+        "under the array the carriage comes down on it and stays on its rail. Keep the latch's pin in the "
+        "outer of its two holes; in the inner one it holds the lifted carriage up.",
         tools=("parallel, as long as the rail", "soft-faced hammer"),
     )
     return rail

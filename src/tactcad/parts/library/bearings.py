@@ -35,6 +35,10 @@ BEARINGS = {
 }
 
 
+# Deviations of bore and outside diameter, mm: ISO 492, class Normal, d from 2.5 to 10, D from 6 to 18.
+BORE = OUTSIDE = (-0.008, 0.0)
+
+
 def bearing(size: str) -> Part:
     """The bearing of that designation; axis z, from z = 0 to its width."""
     b = BEARINGS[size]

@@ -13,6 +13,7 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
+from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import corners, sunk
 from .carrier_screws import carrier_pattern, under_carrier_screw
@@ -39,5 +40,6 @@ def array_mount(rig: StandLayout) -> Part:
         "Array mount",
         Extrusion(rectangle(-x, -STAGE / 2, x, STAGE / 2), PLATE),
         features,
-        finish="Ra 1.6, faces parallel within 0.01",
+        finish="Ra 1.6",
+        geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),
     )

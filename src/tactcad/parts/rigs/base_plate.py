@@ -15,8 +15,10 @@ from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
+from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import corners, sunk, tapped_blind
+from .cart_layout import LOOSE_WHEEL
 from .frame import BASE, POST, POST_Y, STAGE_HOLE
 from .post import POST_SCREWS
 from .stand_layout import StandLayout
@@ -42,6 +44,7 @@ def base_plate(rig: StandLayout) -> Part:
         Extrusion(rectangle(-x, rig.base_front, x, rig.base_back), t),
         features,
         colour="#6f7a86",
-        finish="upper face ground or fly-cut, Ra 0.8, flat within 0.02",
+        finish="upper face ground or fly-cut, Ra 0.8",
         notes=("break edges 0.5", "threads countersunk 0.3, no burr: wheels roll over this face"),
+        geometric=(Geometric("flatness", "flatness", LOOSE_WHEEL, (FACES[1],)),),
     )

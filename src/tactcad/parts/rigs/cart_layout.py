@@ -16,6 +16,8 @@ from tactcad.parts.library import orings
 from ..library.bearings import BEARINGS, Bearing
 from ..library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 
+# mm that a wheel may stand off the plane of the other three; chosen: the thinnest feeler that is handled.
+LOOSE_WHEEL = 0.02
 EDGE = 4.0  # screws of lid and holder from their edge
 GROOVE_WALL = 1.0  # least material beside plenum and groove
 

@@ -15,6 +15,7 @@ from tactcad.contour import rectangle
 from tactcad.design.present import present
 
 from ..description import Extrusion, Hole, Part
+from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import corners, sunk
 from .cart_layout import CartLayout
@@ -36,6 +37,7 @@ def holder_lid(rig: CartLayout) -> Part:
         Extrusion(rectangle(-s, -s, s, s), t),
         holes + screws,
         colour="#aab2ba",
-        finish="Ra 0.8 both faces, flat within 0.02",
+        finish="Ra 0.8 both faces",
         notes=("suction holes burr-free, not countersunk: rubber would be drawn in",),
+        geometric=(Geometric("flatness", "flatness", 0.02, FACES),),
     )

@@ -5,19 +5,24 @@ r"""Block between post and guide rail.
 |    o    |   ^ z
 |    o    |   |     the rail's M3 threads
 | O     O |   +-> x
-|    o    |   end stop's pin, below the rail
+|    o oo |   end stop's pin, below the rail; latch, with a hole to keep its pin
 +---------+
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import floor
+
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Feature, Hole, Part
 from ..library.dowels import dowel_diameter
+from ..library.fits import deviations
+from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
-from .frame import POST, RISER_PITCH, STAGE_HOLE
+from .frame import CARRIAGE_LENGTH, POST, RISER_PITCH, STAGE_HOLE
 from .guide_layout import GuideLayout
 from .rail import rail_holes
 
@@ -31,6 +36,18 @@ STOP_PIN, STOP_LENGTH, STOP_DEPTH = "3", 16.0, 8.0
 def stop_below(rig: GuideLayout) -> float:
     """How far the end stop's pin stands below the rail's middle, mm: 0.5 clear of its end."""
     return rig.grasping.rail_length / 2 + 2.0
+
+
+# The latch: a pin as the end stop's, by hand in a hole beside the rail, under the carriage's side; out of use
+# it stands beside the carriage. D10 leaves it 0.012 of play at least.
+LATCH, LATCH_KEPT, LATCH_FIT = 7.25, 16.0, "D10"
+
+
+def latch_above(rig: GuideLayout) -> float:
+    """How far the latch's holes stand over the rail's middle, mm: with the carriage lifted all the way."""
+    lowest = rig.carriage_middle + rig.grasping.lift - CARRIAGE_LENGTH / 2
+    # to a tenth: the carriage comes down on it by less
+    return floor(10 * (lowest - dowel_diameter(STOP_PIN) / 2 - rig.riser_middle)) / 10
 
 
 def riser(rig: GuideLayout) -> Part:
@@ -61,6 +78,12 @@ def riser(rig: GuideLayout) -> Part:
         drill_point=True,
         tolerance="H7",
     )
+    size = float(STOP_PIN)
+    wide = round(size + sum(deviations(LATCH_FIT, size)) / 2, 6)  # the middle of its limits
+    features += [
+        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), diameter=wide, tolerance=LATCH_FIT)
+        for x in (LATCH, LATCH_KEPT)
+    ]
     features += [pin, *(tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length))]
     return plate(
         rig.design,
@@ -68,5 +91,6 @@ def riser(rig: GuideLayout) -> Part:
         "Riser",
         Extrusion(rectangle(-POST[0] / 2, -low, POST[0] / 2, half), depth),
         features,
-        finish="rail face Ra 0.8, parallel to the back within 0.01",
+        finish="rail face Ra 0.8",
+        geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),
     )

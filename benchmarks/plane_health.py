@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, onenormest
 
-from . import elasticity
-from .mapped_mesh import PlaneMesh
-from .plane_elements import end_load, fixed_unknowns, solve_plane
-from .shape import ElementShape
+from tactcad.fem import elasticity
+from tactcad.fem.mapped_mesh import PlaneMesh
+from tactcad.fem.plane_elements import end_load, fixed_unknowns, solve_plane
+from tactcad.fem.shape import ElementShape
 
 Array = NDArray[np.float64]
 

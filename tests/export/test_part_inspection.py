@@ -1,0 +1,56 @@
+"""The sheet of what to measure on parts other than elements, against the parts and the stack."""
+
+import csv
+import io
+
+import pytest
+
+from tactcad.assembly.virtual_build import sensor
+from tactcad.export.part_inspection import COLUMNS, part_inspection_bytes
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene, scene_names
+
+
+@pytest.fixture(scope="module", params=["macro-array", "soft-tissue"])
+def made(request):
+    design = load(request.param)
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    built = sensor(design, scenes)
+    lines = built.stack()
+    parts = {p.part_no: p for scene in scenes for p in scene.parts}
+    data = part_inspection_bytes(design, parts.values(), built.variables, lines)
+    return design, parts, lines, list(csv.DictReader(io.StringIO(data.decode("ascii"), newline="")))
+
+
+def test_rows_are_the_parts_own_limits_each_once(made):
+    design, parts, _, rows = made
+    assert tuple(rows[0]) == COLUMNS
+    assert len({(r["part_no"], r["characteristic"]) for r in rows}) == len(rows)
+    for r in rows:
+        part = parts[r["part_no"]]
+        sizes = {c.name: (c.lower, c.upper) for c in part.characteristics}
+        zones = {g.name: (0.0, g.zone) for g in part.geometric}
+        limits = (float(r["lower"]), float(r["upper"]))
+        assert limits == pytest.approx((sizes | zones)[r["characteristic"]])
+        assert (r["design"], r["revision"], r["unit"], r["measured"]) == (
+            design.name,
+            design.design.revision,
+            "mm",
+            "",
+        )
+        assert r["where"] and not part.bought and "-element-" not in part.part_no
+
+
+def test_the_order_is_the_stacks(made):
+    """A row's share is that of a contributor of the requirement that it names, and none has more above it."""
+    _, _, lines, rows = made
+    shares = [float(r["share"]) for r in rows]
+    assert shares == sorted(shares, reverse=True) and 0.0 <= shares[-1] and shares[0] <= 1.0
+    own = {line.requirement.name: {f"{c.share:.3f}" for c in line.contributors} for line in lines}
+    assert all(r["share"] in own[r["requirement"]] for r in rows)
+
+
+def test_every_part_on_which_the_array_depends_is_in_it(made):
+    design, _, _, rows = made
+    listed = {r["part_no"].removeprefix(f"{design.name}-") for r in rows}
+    assert {"end-plate-head", "end-plate-tapped", "carrier", "stop-plate", "spacer"} <= listed
