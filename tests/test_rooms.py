@@ -26,6 +26,7 @@ ROOMS = (
     "paper",
     "fit",
     "bench",
+    "synthesis",
     "cli",
 )
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}

@@ -47,7 +47,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.synthesis import report
+    from tactcad.synthesis import target_report as report
     from tactcad.synthesis.synthesise import design
     from tactcad.synthesis.target import read_target
     from tactcad.synthesis.write import refuse_taken, write

@@ -123,7 +123,7 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     inflation, dof = scatter(slopes, m, c, scale * tan(best))
     # the variances are estimated too, hence F and not chi-squared
     p = float(fdtrc(extra, dof, least / extra / inflation)) if extra > 0 else 1.0
-    widened = (least / extra) ** 0.5 if p < DISAGREE else 1.0
+    widened = max(least / extra / inflation, 1.0) ** 0.5 if p < DISAGREE else 1.0
     dof = extra if widened > 1 else dof
     limit = least + (t_quantile(level, dof) * widened) ** 2 * inflation
     return _interval(misfit, best, limit, scale), p, widened

@@ -12,12 +12,13 @@ from functools import cached_property
 from math import ceil
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, SheetMaterial
 from tactcad.mechanics import as_built, ladder, strength, validity
 from tactcad.mechanics.section import Array, HingeSection
-from tactcad.mechanics.stop import tip_compliance
+from tactcad.mechanics.stop import largest_closing_force, tip_compliance
 from tactcad.parts.finding import SAME
 from tactcad.parts.hinge_section import design_alloy, design_readout, shared_parameters
 from tactcad.parts.layout import Layout
@@ -77,6 +78,11 @@ class Stand:
         """Elements that the room takes."""
         room = self.target.room
         return min(int(room.elements[1]), room.rows * (int((self.widths <= room.width + SAME).sum()) - 1))
+
+    @cached_property
+    def give(self) -> float:
+        """Compliance of the stop, mm/N, with all elements that the room takes."""
+        return _with_rows(self.base, max(self.most // self.target.room.rows, 1)).stop_give
 
     @cached_property
     def height(self) -> float:
@@ -240,19 +246,22 @@ class Candidates:
         s, e = self.stand, self.elements
         grip, room, d = s.target.grasp, s.target.room, s.base
         tip = tip_compliance(self.section, e.stiffness, self.arm)
-        closing = np.minimum(
-            self.yield_force / d.rating.deflection_factor * tip, land_room(s.layout, s.layout.common_hinge)
-        )
+        rated = self.yield_force / d.rating.deflection_factor
+        overload = d.rating.overload_force
+        closing = largest_closing_force(self.section, e.stiffness, self.arm, s.give, overload, rated)
+        closing = np.minimum(closing * tip, land_room(s.layout, s.layout.common_hinge))
         least_gap = closing - 2.0 * d.stop.tolerance - 2.0 * seat(s.layout) - STEP_MM - AIR / 2
-        # a hinge at its lower limit bears less: its yield force goes with t^2, and a little more
-        strong = d.rating.yield_factor * (1.0 + 2.5 * d.tolerance.hinge_thickness / self.thickness)
+        # at its lower limit a hinge bears less, about as t^2, and gives way more, about as t^-3
+        thin = d.tolerance.hinge_thickness / self.thickness
+        strong = d.rating.yield_factor * (1.0 + 2.5 * thin)
+        soft = tip * (1.0 + 3.5 * thin)
         volts = e.signal * self.largest_force / e.stiffness
         readout = design_readout(d)
         length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
         return {
             "grasp.element_force": (self.largest_force / grip.element_force - 1.0).max(axis=1),
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
-            "stop": (self.largest_force * tip / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
+            "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
             "room.elements": np.maximum(self.total / max(s.most, 0.1), room.elements[0] / self.total) - 1.0,
             "room.length": length / room.length - 1.0,
@@ -269,10 +278,10 @@ class Candidates:
         """Sum of what is beyond limits; inf where the estimator does not reach."""
         total = sum(np.maximum(v, 0.0) for v in self.misses.values())
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
-        return np.where(known & np.isfinite(total) & self.known_as_made, total, np.inf)
+        return np.where(known & self.known_as_made & np.isfinite(total), total, np.inf)
 
     @cached_property
-    def known_as_made(self) -> Array:
+    def known_as_made(self) -> NDArray[np.bool_]:
         """Whether the estimator reaches elements at either end of their tolerances too. What bounds it are
         ratios to the hinge's thickness, so the ends are where thickness and all else part most."""
         s, t = self.section, self.stand.base.tolerance

@@ -114,8 +114,8 @@ class Evaluation:
         inflation = total / S
         t = stdtrit(dof, 0.5 + LEVEL / 2.0)
         if n > 2:
-            away = least / (n - 2.0)
-            widened = np.where(fdtrc(n - 2.0, dof, away / inflation) < DISAGREE, np.sqrt(away), 1.0)
+            away = least / (n - 2.0) / inflation
+            widened = np.where(fdtrc(n - 2.0, dof, away) < DISAGREE, np.sqrt(np.maximum(away, 1.0)), 1.0)
             t = widened * np.where(widened > 1.0, stdtrit(n - 2.0, 0.5 + LEVEL / 2.0), t)
         for f, s in self.shared:
             shift = (pull * (self.f * f + best * self.s * s)).sum(axis=1, keepdims=True)

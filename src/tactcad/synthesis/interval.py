@@ -33,7 +33,7 @@ ROUNDS = 6  # of the fixed point for each end; each shrinks its error by about t
 
 
 @dataclass(frozen=True)
-class Motion:
+class InGrasp:
     """Elements in a grasp, arrays (..., elements): per unit of the loads' spread.
 
     s, f      deflection and force of each
@@ -65,7 +65,7 @@ class Bounds:
         return (self.high - self.low) / 2.0 / x
 
 
-def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> Motion:
+def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> InGrasp:
     """Deflections and forces of elements on separate springs x (N/mm) under `loads` even loads up to `force`
     (N); `count` says how many there are of each. x broadcasts against (..., elements)."""
     share = x / (e.stiffness + x)
@@ -74,11 +74,11 @@ def motion(e: Elements, count: Array, x: Array, force: float, loads: int) -> Mot
     spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
     approach = spread / total
     s = share * approach
-    return Motion(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
+    return InGrasp(s, e.stiffness * s, x * approach, e.stiffness * share * force / total)
 
 
 def weights(
-    m: Motion, e: Elements, known: Knowledge, count: Array, x: Array, noise: float
+    m: InGrasp, e: Elements, known: Knowledge, count: Array, x: Array, noise: float
 ) -> tuple[Array, Array, Array]:
     """v_i at a K_obj, in its parts by the readings' noise (V) and by belief in K and K_v; and what stands for
     v_i in the lab's weights."""
@@ -88,7 +88,7 @@ def weights(
     return by_noise, belief.along(m.f, m.s, x), by_noise + weighed
 
 
-def information(m: Motion, count: Array, v: Array) -> tuple[Array, Array]:
+def information(m: InGrasp, count: Array, v: Array) -> tuple[Array, Array]:
     """S, and the weight (s_i - s_mean)/v_i with which each element's f + x s moves x, times S."""
     w = count / v
     mean = (w * m.s).sum(axis=-1, keepdims=True) / w.sum(axis=-1, keepdims=True)
@@ -149,7 +149,7 @@ def bounds(
     return Bounds(ends[0], ends[1], error)
 
 
-def _shared(m: Motion, count: Array, pull: Array, S: Array, k: Array, v: Array) -> Array:
+def _shared(m: InGrasp, count: Array, pull: Array, S: Array, k: Array, v: Array) -> Array:
     """Shift of x by errors k of ln K and v of ln K_v that all elements have at once."""
     return -(count * pull * (m.f * k - m.c * v)).sum(axis=-1) / S
 
@@ -163,7 +163,9 @@ def coupled_estimate(
     compliance = share / x + np.eye(e.stiffness.shape[-1]) / e.stiffness[..., np.newaxis, :]
     f = np.linalg.solve(compliance, np.ones((*compliance.shape[:-1], 1)))[..., 0]
     load = force * (np.arange(loads) + 1.0) / loads
-    f = np.atleast_2d(f * np.sqrt(((load - load.mean()) ** 2).sum()) / f.sum(axis=-1, keepdims=True))
+    spread = float(np.sqrt(((load - load.mean()) ** 2).sum()))
+    f = f * (spread / f.sum(axis=-1, keepdims=True))
+    f = f.reshape(-1, f.shape[-1])
     of_s, of_f = noise / e.signal, noise * e.stiffness / e.signal
     belief = Covariance.of(known.of_k, known.of_v, known.cross)
     dof = (known.dof, (f.shape[1] - 1.0) * (loads - 2.0))

@@ -43,7 +43,8 @@ class Yield:
     interval       of the share, Clopper and Pearson's, 95 %
     distribution   the one that gives it
     why            by what an array lacks, how many of that distribution lack it
-    half_widths    of every array's interval, largest over the range, relative
+    half_widths    of every array's interval, largest over the range, relative; inf where it lacks anything
+                   else
     """
 
     count: int
@@ -90,22 +91,25 @@ class MadeSensor:
 
     def built(self, count: int, wanted: float, seed: int = SEED) -> Yield:
         """`count` arrays of each deciding distribution, held against a half-width (relative)."""
-        best: Yield | None = None
-        for name in DECIDING:
-            rng, why, widths = np.random.default_rng(seed), dict[str, int](), []
-            met = 0
-            for start in range(0, count, AT_ONCE):
-                some = min(AT_ONCE, count - start)
-                lacks, width = self._some(name, some, wanted, rng)
-                for what, bad in lacks.items():
-                    why[what] = why.get(what, 0) + int(bad.sum())
-                met += int((~np.logical_or.reduce(list(lacks.values()))).sum())
-                widths.append(width)
-            why = {what: n for what, n in sorted(why.items(), key=lambda item: -item[1]) if n}
-            y = Yield(count, met / count, of_share(met, count), name, why, np.concatenate(widths))
-            best = y if best is None or y.share < best.share else best
-        assert best is not None
-        return best
+        return min((self._built(name, count, wanted, seed) for name in DECIDING), key=lambda y: y.share)
+
+    def kept_by(self, share: float, count: int, seed: int = SEED) -> float:
+        """The least half-width (relative) that a share of the arrays keep, whichever their distribution; inf
+        where too many lack anything else."""
+        made_ = (self._built(name, count, np.inf, seed).half_widths for name in DECIDING)
+        return max(float(np.quantile(widths, share, method="higher")) for widths in made_)
+
+    def _built(self, name: Distribution, count: int, wanted: float, seed: int) -> Yield:
+        rng, why, widths, met = np.random.default_rng(seed), dict[str, int](), [], 0
+        for start in range(0, count, AT_ONCE):
+            some = min(AT_ONCE, count - start)
+            lacks, width = self._some(name, some, wanted, rng)
+            for what, bad in lacks.items():
+                why[what] = why.get(what, 0) + int(bad.sum())
+            met += int((~np.logical_or.reduce(list(lacks.values()))).sum())
+            widths.append(width)
+        why = {what: n for what, n in sorted(why.items(), key=lambda item: -item[1]) if n}
+        return Yield(count, met / count, of_share(met, count), name, why, np.concatenate(widths))
 
     def _some(
         self, distribution: Distribution, count: int, wanted: float, rng: np.random.Generator
@@ -126,7 +130,7 @@ class MadeSensor:
         yields = strength.yield_force_where_known(e.section, alloy) / self.design.rating.yield_factor
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)
         lacks["force on one element"] = (forces > grip.element_force * (1.0 + 1e-9)).any(axis=1)
-        width = self._half_widths(e, rng)
+        width = np.where(np.logical_or.reduce(list(lacks.values())), np.inf, self._half_widths(e, rng))
         lacks["interval too wide"] = ~(width <= wanted)
         return lacks, width
 

@@ -36,7 +36,7 @@ Tell = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
-class Choice:
+class Alternative:
     """One design of the front.
 
     name, what   of the entry, and what was held beside the interval
@@ -112,7 +112,7 @@ class Synthesis:
     met: bool
     binding: tuple[Limit, ...] = ()
     shares: tuple[Share, ...] = ()
-    front: tuple[Choice, ...] = ()
+    front: tuple[Alternative, ...] = ()
     ratios: tuple[tuple[float, float], ...] = ()
     changes: tuple[LeastChange, ...] = ()
     solid: tuple[float, ...] = ()
@@ -240,10 +240,9 @@ def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
     sensor = MadeSensor(target, found.design)
     if asked is not None:
         return sensor.built(arrays, asked / 100.0), asked / 100.0
-    # the least that enough of them keep; a little above, so that the share asked for is kept for sure
-    widths = sensor.built(arrays, np.inf).half_widths
-    wanted = float(np.quantile(widths, 1.0 - (1.0 - target.target.share) / 2.0))
-    wanted = float(f"{wanted * 1.005:.3g}")
+    # a little above the least that enough of them keep, so that the share asked for is kept for sure
+    wanted = sensor.kept_by(1.0 - (1.0 - target.target.share) / 2.0, arrays)
+    wanted = float(f"{1.005 * wanted:.3g}") if np.isfinite(wanted) else found.half_width
     return sensor.built(arrays, wanted), wanted
 
 
@@ -345,24 +344,24 @@ def _with_front(got: Synthesis) -> Synthesis:
     """Designs with fewer elements, in less room, with looser tolerances, each as accurate as can be."""
     target, c = got.target, got.found.candidate
     wish = target.with_("target.half_width", None)
-    entries = [Choice("chosen", "the design chosen", got.found)]
+    entries = [Alternative("chosen", "the design chosen", got.found)]
     most = int(target.room.elements[1])
     for n in sorted({2, 4, 6, 8, most // 2, most, 2 * most}):
         if max(2, 2 * target.elements.of_a_kind) <= n != int(c.total[0]):
             low = min(int(target.room.elements[0]), n)
             found = _search_near(wish.with_("room.elements", (low, n)), got.found, _narrowest)
             if found.accepted and int(found.candidate.total[0]) == n:
-                entries.append(Choice(f"elements-{n}", f"at most {n} elements", found))
+                entries.append(Alternative(f"elements-{n}", f"at most {n} elements", found))
     longest = 2.0 * float(c.arm.max() + c.slot[0] / 2 + c.stand.beyond_slot)
     for less in (1.0, 2.0, 3.0):
         found = _search_near(wish.with_("room.length", round(longest - less, 3)), got.found, _narrowest)
         if found.accepted:
-            entries.append(Choice(f"shorter-{less:g}", f"{less:g} mm shorter", found))
+            entries.append(Alternative(f"shorter-{less:g}", f"{less:g} mm shorter", found))
     for times in (0.5, 2.0) if target.known.how == "drawn" else ():
         finest = round(min(target.stock.hinge_tolerances) * times, 6)
         found = _search_near(wish.with_("stock.hinge_tolerances", (finest,)), got.found, _narrowest)
         if found.accepted:
-            entries.append(Choice(f"tolerance-{finest:g}", f"hinges within {finest:g} mm", found))
+            entries.append(Alternative(f"tolerance-{finest:g}", f"hinges within {finest:g} mm", found))
     return replace(got, front=tuple(entries))
 
 

@@ -9,8 +9,8 @@ from tactcad.design.design_text import design_text
 from tactcad.design.files import absolute, make_folder, write_whole
 from tactcad.design.messages import InputError
 
-from .report import answer, record, report_json, report_page
 from .synthesise import Synthesis
+from .target_report import answer, record, report_json, report_page
 
 
 def refuse_taken(out: str | Path) -> None:

@@ -147,8 +147,15 @@ def answer(target: Target, r: dict[str, Any]) -> str:
     low, high = r["object_range"]
     if not r["met"]:
         why = "; ".join(f"{name} by {_percent(v)}" for name, v in r["beyond"].items())
-        why = why or f"only {_percent(r['yield'])} of arrays made meet it"
-        return f"Impossible as asked: the best there is misses {why}."
+        why = (
+            f"misses {why}"
+            if why
+            else (
+                f"keeps it as drawn, but of the arrays made only {_percent(r['yield'])} do, not "
+                f"{_percent(r['yield_wanted'])}"
+            )
+        )
+        return f"Impossible as asked: the best there is {why}."
     e, base = r["elements"], r["base"]
     than = f"; {base['name']} as it is: {_percent(base['half_width'])}" if base["half_width"] else ""
     return (

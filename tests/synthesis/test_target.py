@@ -1,0 +1,127 @@
+"""A target file is read field by field; what contradicts itself is refused with field, value and legal."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields, replace
+from math import inf, log, pi, sqrt
+from pathlib import Path
+
+import pytest
+
+from tactcad.cli.main import main
+from tactcad.design.design_text import design_text
+from tactcad.design.load import names, parse, read
+from tactcad.design.messages import InputError
+from tactcad.mechanics.sample_coupling import pad_stiffness
+from tactcad.synthesis.target import TABLES, parse_target, read_target
+
+SHIPPED = Path(__file__).parents[2] / "hardware" / "targets" / "better-array.toml"
+LEAST = """
+[target]
+name = "mine"
+[object]
+stiffness = [2, 10]
+[grasp]
+force = 10
+overload = 12
+"""
+
+
+def test_a_target_needs_an_object_and_forces_only():
+    target = parse_target(LEAST, "t")
+    assert target.stiffness_range == (2.0, 10.0) and target.target.half_width is None
+    assert target.stock.sheets == (3.0,) and target.stock.alloys == ("7075-T6",)  # the base design's
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[object]\nstiffness = [2, 10]\n", "", "object: missing table"),
+        ("stiffness = [2, 10]", "", "needs one of stiffness and modulus"),
+        (
+            "stiffness = [2, 10]",
+            "stiffness = [2, 10]\nmodulus = [1, 2]",
+            "needs one of stiffness and modulus",
+        ),
+        (
+            "stiffness = [2, 10]",
+            "stiffness = [10, 2]",
+            "object.stiffness: its first value is above its second",
+        ),
+        ("stiffness = [2, 10]", "stiffness = [2, nan]", "object.stiffness[1]: not a finite number"),
+        ("stiffness = [2, 10]", "stiffness = [2]", "object.stiffness: a list of 1"),
+        (
+            "stiffness = [2, 10]",
+            "stiffness = [2, 10]\nthickness = 6",
+            "object.thickness: belongs to a modulus",
+        ),
+        ("stiffness = [2, 10]", "modulus = [1, 2]\nthickness = 1", "object.thickness: too thin"),
+        ("force = 10", "force = -1", "grasp.force: out of range"),
+        ("force = 10", "forse = 10", "grasp.forse: unknown field"),
+        ('name = "mine"', 'name = "con"', "target.name: not usable text"),
+        ('name = "mine"', 'name = "mine"\nbase = "none"', "no design of that name"),
+        ('name = "mine"', 'name = "mine"\nleast = "price"', "target.least: unknown choice"),
+        ("[grasp]", "[stock]\nalloys = ['unobtainium']\n[grasp]", "stock.alloys[0]: unknown choice"),
+        ("[grasp]", "[stock]\nalloys = ['7075-T6', '7075-T6']\n[grasp]", "not a list of different words"),
+        ("[grasp]", "[elements]\nof_a_kind = 6\n[grasp]", "elements.of_a_kind: two kinds of so many"),
+        ("[grasp]", "[elements]\narms = [8, 4]\n[grasp]", "elements.arms: its first value"),
+        ("[grasp]", "[grips]\nx = 1\n[grasp]", "grips: unknown field"),
+        ("[grasp]", "[origin]\n'grasp.farce' = 'x'\n[grasp]", "origin.grasp.farce: unknown field"),
+        ("[target]", "target = 1\n[targets]", "target"),
+    ],
+)
+def test_what_is_wrong_is_named(old, new, says):
+    assert old in LEAST
+    with pytest.raises(InputError) as caught:
+        parse_target(LEAST.replace(old, new, 1), "t")
+    assert says in str(caught.value)
+
+
+def test_an_array_without_a_calibration_rig_cannot_be_calibrated(tmp_path):
+    design = read("macro-array")
+    origin = {k: v for k, v in design.origin.items() if not k.startswith("calibration.")}
+    bare = design_text(replace(design, calibration=None, origin=origin))
+    (tmp_path / "bare.toml").write_text(bare)
+    text = LEAST.replace('name = "mine"', f'name = "mine"\nbase = "{tmp_path}/bare.toml"')
+    with pytest.raises(InputError, match=r"known.how: design macro-array has no \[calibration\]"):
+        parse_target(text, "t")
+    assert parse_target(text + '[known]\nhow = "drawn"\n', "t").known.how == "drawn"
+
+
+def test_schemas_have_every_field(capsys):
+    assert main(["schema", "--target"]) == 0
+    text = capsys.readouterr().out
+    assert main(["schema", "--target", "--json"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    for name, kind in TABLES.items():
+        wanted = {f.name for f in fields(kind)}
+        assert set(schema["properties"][name]["properties"]) == wanted
+        part = text.split(f"[{name}]")[1].split("\n\n")[0]
+        assert all(f"\n  {field} " in part for field in wanted)
+
+
+def test_the_shipped_target_says_where_its_values_are_from():
+    target = read_target(SHIPPED)
+    assert target.origin["object.stiffness"].startswith("paper")
+    assert target.stiffness_range == (2.34, 10.01)
+
+
+def test_a_modulus_is_a_stiffness_under_one_pad():
+    """On a half-space: Boussinesq's 1/(pi E* r), and the mean of 1/r between two points of a unit square,
+    4 ln(1 + sqrt 2) - 4 (sqrt 2 - 1)/3."""
+    mean = (4 * log(1 + sqrt(2)) - 4 * (sqrt(2) - 1) / 3) / pi
+    assert 1.0 / pad_stiffness(1.0, 1.0, 1.0, inf, 0.0) == pytest.approx(mean, rel=1e-3)
+    # a layer far thinner than the pad is compressed evenly: M A/h, M the modulus of one-dimensional strain
+    nu, h = 0.3, 0.02
+    oedometric = (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / h
+    assert pad_stiffness(1.0, 1.0, 1.0, h, nu) == pytest.approx(oedometric, rel=0.03)
+    target = parse_target(LEAST.replace("stiffness = [2, 10]", "modulus = [1, 2]\nthickness = 6"), "t")
+    low, high = target.stiffness_range
+    assert high == pytest.approx(2 * low) and low == pytest.approx(pad_stiffness(1.0, 2.0, 3.0, 6.0, 0.5))
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_designs_text_is_read_back_as_the_same_design(name):
+    design = read(name)
+    assert parse(design_text(design, "first\nsecond"), name) == design
