@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import binom, kstest
 
 from tactcad.lab.combine import Slopes, combine
 from tactcad.synthesis.evaluation import Covariance, Evaluation
@@ -12,7 +13,7 @@ NOISE, LOADS = 4e-4, 10
 
 
 def arrays(
-    elements: int, count: int, dof: int, seed: int, spread: float, wrong: float = 1.0
+    elements: int, count: int, dof: int, seed: int, spread: float | np.ndarray, wrong: float = 1.0
 ) -> tuple[Evaluation, list[Slopes]]:
     """Arrays of two kinds with errors of K and K_v of `spread`, and the same as the lab has them; the second
     element is believed `wrong` times as stiff."""
@@ -77,3 +78,13 @@ def test_where_elements_disagree_as_the_lab():
     got = together.evaluated(3.0)
     assert got.low == pytest.approx([w.low for w, _, _ in want], rel=2e-4)
     assert got.high == pytest.approx([w.high for w, _, _ in want], rel=2e-4)
+
+
+def test_sound_elements_of_unequal_errors_are_not_said_to_disagree():
+    """One kind is known ten times worse than the other, so that weights from common covariances are far off:
+    the probability of their disagreement is still even between 0 and 1."""
+    spread = np.where(np.arange(10) % 2, 0.05, 0.003)
+    _, labs = arrays(10, 200, 4, 7, spread)
+    p = [combine(slopes, 0.95)[1] for slopes in labs]
+    assert binom.ppf(1e-4, 200, 0.05) <= np.sum(np.array(p) < 0.05) <= binom.ppf(1 - 1e-4, 200, 0.05)
+    assert kstest(p, "uniform").pvalue > 1e-4

@@ -121,9 +121,10 @@ def combine(slopes: Slopes, level: float, members: list[int] | None = None) -> t
     least = float(misfit(np.array([best]))[0])
     extra = len(m) - 2
     inflation, dof = scatter(slopes, m, c, scale * tan(best))
+    expected, of_misfit = expected_misfit(slopes, m, c, scale * tan(best))
     # the variances are estimated too, hence F and not chi-squared
-    p = float(fdtrc(extra, dof, least / extra / inflation)) if extra > 0 else 1.0
-    widened = max(least / extra / inflation, 1.0) ** 0.5 if p < DISAGREE else 1.0
+    p = float(fdtrc(extra, of_misfit, least / expected)) if extra > 0 else 1.0
+    widened = max(least / expected, 1.0) ** 0.5 if p < DISAGREE else 1.0
     dof = extra if widened > 1 else dof
     limit = least + (t_quantile(level, dof) * widened) ** 2 * inflation
     return _interval(misfit, best, limit, scale), p, widened
@@ -171,19 +172,54 @@ def scatter(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[floa
     dof : float
         Welch and Satterthwaite's.
     """
+    along, share, s, heaviest = _weighed(slopes, m, c, x)
+    pull = share * (s - (share * s).sum() / share.sum())  # relative, of each element's f + x s on x
+    signal, calibration = _own(slopes, m, along, pull**2)
+    total = float((signal + calibration).sum())
+    model = float((pull**2 / share).sum()) / heaviest
+    dof = _dof(slopes, m, signal, calibration)
+    return (total / model, dof) if total > 0 and model > 0 and dof > 0 else (1.0, KNOWN)
+
+
+def expected_misfit(slopes: Slopes, m: list[int], c: np.ndarray, x: float) -> tuple[float, float]:
+    """The misfit to be expected of elements that agree, by their own covariances, and its degrees of freedom.
+
+    With weights from those very covariances it is the number of elements less two. Parameters as of
+    `scatter`.
+    """
+    along, share, s, heaviest = _weighed(slopes, m, c, x)
+    s = s - (share * s).sum() / share.sum()
+    spread = (share * s**2).sum()
+    left = share * (1.0 - share / share.sum() - (share * s**2 / spread if spread > 0 else 0.0))
+    signal, calibration = _own(slopes, m, along, left)
+    total = float((signal + calibration).sum()) * heaviest
+    dof = _dof(slopes, m, signal, calibration)
+    return (total, dof) if total > 0 and dof > 0 else (float(max(len(m) - 2, 1)), KNOWN)
+
+
+def _weighed(
+    slopes: Slopes, m: list[int], c: np.ndarray, x: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The direction of f + x s, the elements' weights in it from c over the largest, s (at an infinite x: f),
+    and the largest weight."""
     along = np.array([1.0, x]) if abs(x) < 1e12 else np.array([0.0, 1.0])
     w = 1 / np.maximum(np.einsum("i,nij,j->n", along, c, along), NO_VARIANCE)
-    share = w / w.max()
-    s = slopes.s[m] if abs(x) < 1e12 else slopes.f[m]
-    pull = share * (s - (share * s).sum() / share.sum())  # relative, of each element's f + x s on x
-    signal = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_signal[m], along)
-    calibration = pull**2 * np.einsum("i,nij,j->n", along, slopes.from_calibration[m], along)
-    total = float((signal + calibration).sum())
+    return along, w / w.max(), slopes.s[m] if abs(x) < 1e12 else slopes.f[m], float(w.max())
+
+
+def _own(
+    slopes: Slopes, m: list[int], along: np.ndarray, factor: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Variances of f + x s by signal and by calibration, each times its element's factor."""
+    parts = slopes.from_signal[m], slopes.from_calibration[m]
+    signal, calibration = (factor * np.einsum("i,nij,j->n", along, part, along) for part in parts)
+    return signal, calibration
+
+
+def _dof(slopes: Slopes, m: list[int], signal: np.ndarray, calibration: np.ndarray) -> float:
+    """Welch and Satterthwaite's degrees of freedom of the sum of all; 0 where it has no variance."""
     bottom = signal.sum() ** 2 / slopes.signal_dof + (calibration**2 / slopes.calibration_dof[m]).sum()
-    model = float((pull**2 / w).sum())
-    if not (total > 0 and model > 0 and bottom > 0):
-        return 1.0, KNOWN
-    return total / model, float(min(total**2 / bottom, KNOWN))
+    return float(min((signal + calibration).sum() ** 2 / bottom, KNOWN)) if bottom > 0 else 0.0
 
 
 def _minimum(misfit: Misfit, angle: np.ndarray) -> float:

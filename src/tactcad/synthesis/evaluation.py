@@ -114,14 +114,28 @@ class Evaluation:
         inflation = total / S
         t = stdtrit(dof, 0.5 + LEVEL / 2.0)
         if n > 2:
-            away = least / (n - 2.0) / inflation
-            widened = np.where(fdtrc(n - 2.0, dof, away) < DISAGREE, np.sqrt(np.maximum(away, 1.0)), 1.0)
-            t = widened * np.where(widened > 1.0, stdtrit(n - 2.0, 0.5 + LEVEL / 2.0), t)
+            away, misfit_dof = self._disagreement(best, least, weights)
+            widened = np.where(
+                fdtrc(n - 2.0, misfit_dof, away) < DISAGREE, np.sqrt(np.maximum(away, 1.0)), 1.0
+            )
+            t = np.where(widened > 1.0, widened * stdtrit(n - 2.0, 0.5 + LEVEL / 2.0), t)
         for f, s in self.shared:
             shift = (pull * (self.f * f + best * self.s * s)).sum(axis=1, keepdims=True)
             inflation = inflation + shift**2 / S
         limit = least + t**2 * inflation
         return Evaluated(best[:, 0], *(self._end(sign, best, limit, weights) for sign in (-1.0, 1.0)))
+
+    def _disagreement(self, x: Array, least: Array, weights: Covariance) -> tuple[Array, Array]:
+        """The misfit over the one expected of elements that agree, and that one's degrees of freedom."""
+        w = 1.0 / (self.signal(x) + weights.along(self.f, self.s, x))
+        all_w = w.sum(axis=1, keepdims=True)
+        s = self.s - (w * self.s).sum(axis=1, keepdims=True) / all_w
+        left = w * (1.0 - w / all_w - w * s**2 / (w * s**2).sum(axis=1, keepdims=True))
+        own = left * self.belief.along(self.f, self.s, x)
+        signal = (left * self.signal(x)).sum(axis=1, keepdims=True)
+        total = signal + own.sum(axis=1, keepdims=True)
+        dof = total**2 / (signal**2 / self.dof[1] + (own**2).sum(axis=1, keepdims=True) / self.dof[0])
+        return least / total, dof
 
     @property
     def weights(self) -> Covariance:
