@@ -62,6 +62,20 @@ def test_a_sensor_of_your_own_up_to_the_solids(empty):
             follow(commands, shown, empty)
 
 
+def test_a_sensor_from_a_target_up_to_the_solids(empty):
+    for commands, shown in steps("tutorial-target.md"):
+        if not SLOW.search(commands):
+            follow(commands, shown, empty)
+
+
+@pytest.mark.nightly
+@pytest.mark.cad
+def test_a_sensor_from_a_target_to_the_zip(empty):
+    for commands, shown in steps("tutorial-target.md"):
+        follow(commands, shown, empty)
+    assert (empty / "to-the-shop" / "tissue-A.zip").is_file()
+
+
 @pytest.mark.nightly
 @pytest.mark.cad
 def test_a_sensor_of_your_own_to_the_zip(empty):
@@ -71,7 +85,7 @@ def test_a_sensor_of_your_own_to_the_zip(empty):
     assert (empty / "exports" / "releases" / "my-sensor-A.zip").is_file()
 
 
-@pytest.mark.parametrize("page", ["tutorial-sensor.md", "tutorial-readings.md"])
+@pytest.mark.parametrize("page", ["tutorial-sensor.md", "tutorial-readings.md", "tutorial-target.md"])
 def test_every_block_is_one_that_is_run_or_compared(page):
     text = (DOCS / page).read_text("utf-8")
     assert text.count("```") == 2 * len(BLOCK.findall(text)) and not re.search(r"^    \S", text, re.MULTILINE)

@@ -25,7 +25,6 @@ from scipy.stats import binom, kstest
 from tactcad.design.tree import Design
 from tactcad.lab.combine import combine
 from tactcad.lab.grasp import common_slopes, evaluate
-from tactcad.lab.simulate import coupled_deflection
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.synthesis.candidates import stands
@@ -36,6 +35,15 @@ from tactcad.synthesis.shares import half_space_shares
 from tactcad.synthesis.target import Target, parse_target
 
 SEED = 20261122
+
+
+def coupled_deflection(load, stiffness, x, share):
+    """Deflections (mm), (elements, loads), of elements on one approach whose pads sink under each other's force
+    by `share` of what the same force on themselves does."""
+    force = np.linalg.solve(np.diag(1 / stiffness) + share / x, np.ones(len(stiffness)))
+    return np.outer(force / stiffness, load / force.sum())
+
+
 WITHIN = 0.05  # of the search: near the best, where predictions are most easily too good
 
 
