@@ -21,6 +21,7 @@ from tactcad.mechanics.section import Array
 from tactcad.parts.layout import Layout
 from tactcad.synthesis.candidates import Candidates, Stand, stands
 from tactcad.synthesis.made_arrays import MadeSensor
+from tactcad.synthesis.realise import realised
 from tactcad.synthesis.search import search
 from tactcad.synthesis.target import Target, read_target
 
@@ -45,7 +46,10 @@ def cases(target: Target) -> list[tuple[str, Stand]]:
 
 
 def searches(target: Target) -> str:
-    rows = ["| array | free numbers | candidates | s | us a candidate | half-width, % |", "|---|---|---|---|---|---|"]
+    rows = [
+        "| array | free numbers | candidates | s | us a candidate | half-width, % |",
+        "|---|---|---|---|---|---|",
+    ]
     for name, stand in cases(target):
         start = time.process_time()
         found = search(stand, half_width)
@@ -68,8 +72,6 @@ def loop(target: Target) -> str:
     with np.errstate(all="ignore"):
         usable = np.isfinite(stand.candidates(rows).violation)
     at_once = (time.process_time() - start) / len(rows)
-    from tactcad.synthesis.realise import realised
-
     start = time.process_time()
     for row in rows[usable][:LOOPED]:
         estimate(Layout(realised(stand.candidates(row[np.newaxis]))), "solid")
@@ -77,7 +79,7 @@ def loop(target: Target) -> str:
     return (
         "| way | us a candidate | times |\n|---|---|---|\n"
         f"| a plain loop over `estimate` | {1e6 * alone:.3g} | 1 |\n"
-        f"| candidates at once, interval and limits included | {1e6 * at_once:.3g} | {alone / at_once:.3g} |\n"
+        f"| candidates at once, with interval and limits | {1e6 * at_once:.3g} | {alone / at_once:.3g} |\n"
     )
 
 
@@ -89,8 +91,8 @@ def yields(target: Target) -> str:
         start = time.process_time()
         made = sensor.built(count, 1.3 * found.half_width)
         seconds = time.process_time() - start
-        low, high = made.interval
-        rows.append(f"| {count} | {seconds:.2g} | {100 * made.share:.4g} | {100 * low:.4g} to {100 * high:.4g} |")
+        low, high = (f"{100 * v:.4g}" for v in made.interval)
+        rows.append(f"| {count} | {seconds:.2g} | {100 * made.share:.4g} | {low} to {high} |")
     return "\n".join(rows) + "\n"
 
 

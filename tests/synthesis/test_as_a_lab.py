@@ -38,8 +38,8 @@ SEED = 20261122
 
 
 def coupled_deflection(load, stiffness, x, share):
-    """Deflections (mm), (elements, loads), of elements on one approach whose pads sink under each other's force
-    by `share` of what the same force on themselves does."""
+    """Deflections (mm), (elements, loads), of elements on one approach whose pads sink under each other's
+    force by `share` of what the same force on themselves does."""
     force = np.linalg.solve(np.diag(1 / stiffness) + share / x, np.ones(len(stiffness)))
     return np.outer(force / stiffness, load / force.sum())
 
