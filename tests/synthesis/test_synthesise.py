@@ -17,7 +17,7 @@ from tactcad.synthesis import relax
 from tactcad.synthesis.made_arrays import MadeSensor, of_share
 from tactcad.synthesis.realise import order
 from tactcad.synthesis.shares import variance_shares
-from tactcad.synthesis.synthesise import Synthesis, attempt
+from tactcad.synthesis.synthesise import Synthesis, attempt, design
 from tactcad.synthesis.target import parse_target
 
 SMALL = """
@@ -45,12 +45,12 @@ def small() -> Synthesis:
 def test_the_design_keeps_every_rule_and_says_where_its_values_are_from():
     got = small()
     assert got.met and got.found.accepted
-    design = got.design
-    assert not broken_rules(design)
+    made = got.design
+    assert not broken_rules(made)
     base = read("macro-array")
     for path in ("array.row_arms", "rating.force", "design.name"):
-        assert design.origin[path] != base.origin[path]
-    assert design.origin["clamp.screw"] == base.origin["clamp.screw"]
+        assert made.origin[path] != base.origin[path]
+    assert made.origin["clamp.screw"] == base.origin["clamp.screw"]
 
 
 def test_kinds_are_dealt_evenly_over_both_rows():
@@ -86,6 +86,10 @@ def test_variance_shares_add_up_to_one_where_causes_do_not_interact():
     drawn = small().target.with_("known.how", "drawn")
     by_drawing = {s.cause: s for s in variance_shares(MadeSensor(drawn, small().found.design))}
     assert by_drawing["element: hinge thickness"].total > 0.1
+    # measured, its thickness matters as far as the measurement errs
+    inspected = drawn.with_("known.how", "inspected").with_("known.thickness", 1e-6)
+    by_inspection = {s.cause: s for s in variance_shares(MadeSensor(inspected, small().found.design))}
+    assert by_inspection["element: hinge thickness"].total < 0.02
 
 
 def test_the_least_change_is_the_nearest_that_does():
@@ -116,8 +120,8 @@ def test_the_command_writes_design_and_report(tmp_path, capsys):
     assert wanted <= set(record) and record["met"] is True
     assert record == json.loads((out / "report.json").read_text())
     assert record["left_out"] and not (out / "front").exists()
-    design = load(out / "design.toml")  # every rule is tried
-    assert design.name == "small"
+    written = load(out / "design.toml")  # every rule is tried
+    assert written.name == "small"
     low, high = record["yield_interval"]
     assert low <= record["yield"] <= high
     widths = [(p["high"] - p["low"]) / 2 / p["object"] for p in record["object_interval"]]
@@ -150,6 +154,21 @@ def test_where_nothing_fits_the_limit_is_named(tmp_path, capsys):
         main(["design", str(tmp_path / "no.toml"), "--out", str(tmp_path / "o"), "--in", "0", "--best"]) == 1
     )
     assert "room.height" in capsys.readouterr().out and not (tmp_path / "o").exists()
+
+
+@pytest.mark.nightly
+def test_the_least_change_stated_makes_it_possible_and_a_little_less_does_not():
+    target = parse_target(SMALL.replace('name = "small"', 'name = "small"\nhalf_width = 4'), "t")
+    got = design(target)
+    assert not got.met and got.changes
+    for change in got.changes:
+        ease = relax.EASES[change.field]
+        by = np.geomspace(1.0, relax.FURTHEST, 2000)
+        reached = [relax.value_of(ease(target, b), change.field) for b in by]
+        at = int(np.argmin([abs(v - change.needed) for v in reached]))
+        assert attempt(ease(target, by[at])).met, change
+        less = ease(target, by[at] / (1.0 + 2.0 * relax.CLOSE))
+        assert relax.value_of(less, change.field) == change.needed or not attempt(less).met, change
 
 
 @pytest.mark.parametrize("arguments", [["--within", "0"], ["--within", "x"], ["--in", "-1"], ["--in", "nan"]])

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.virtual_shop import made
+from tactcad.assembly.virtual_shop import SIGMAS, made
 from tactcad.lab.pads import INCOMPRESSIBLE, places
 from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.section import Array
@@ -27,9 +27,12 @@ COUNT = 2048
 SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
 LEAST = 5e-4  # shares below are not listed
 OF_ELEMENTS = ("element: ", "sheet: ")
-READINGS, BELIEF, CELL, COUPLING, PADS = (
+READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, PADS = (
     "noise of readings",
-    "calibration and contact place",
+    "contact's place along the arm",
+    "calibration's noise and scatter",
+    "gauges' own sensitivity",
+    "thickness as measured",
     "load cell's limits",
     f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's",
     "pad heights",
@@ -60,7 +63,9 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
 
     def draw() -> dict[str, Array]:
         parts = made(variables, count, "normal", rng)
-        causes = {name: rng.standard_normal((count, n, 2)) for name in (READINGS, BELIEF)}
+        causes = {
+            name: rng.standard_normal((count, n, 2)) for name in (READINGS, CONTACT, *_of_belief(sensor))
+        }
         alike = {name: rng.uniform(-1.0, 1.0, count) for name in (CELL, COUPLING)}
         return {**parts, **causes, **alike}
 
@@ -83,7 +88,7 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
     x = float(np.median(sensor.points))
     grip, noise, alone = sensor.target.grasp, sensor.noise, np.eye(len(sensor.layout.elements))
     coupled = half_space_shares(sensor) * (1.0 - alone)
-    calibrated = sensor.target.known.how == "calibrated"
+    calibrated, inspected = sensor.calibrated, sensor.target.known.how == "inspected"
     ones = np.ones(1)
 
     def estimate(causes: dict[str, Array]) -> Array:
@@ -93,10 +98,20 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
         m = motion(true, ones, np.asarray(x), grip.force, grip.loads)
         by_noise, _, weighed = weights(m, true, known, ones, np.asarray(x), noise)
         S, pull = information(m, ones, weighed)
-        e_k, e_v = _errors(known, causes[BELIEF])
-        if not calibrated:
-            e_k = e_k + np.log(sensor.drawn.stiffness / true.stiffness)
-            e_v = e_v + np.log(sensor.drawn.signal / true.signal)
+        e_k, e_v = (d * causes[CONTACT][..., 0] for d in known.place)
+        if calibrated:
+            k, v = _errors(known, causes[CALIBRATION])
+        else:
+            drawn = sensor.drawn
+            if inspected:
+                t = (
+                    true.section.hinge_thickness
+                    + sensor.target.known.thickness / SIGMAS * causes[INSPECTION][..., 0]
+                )
+                drawn = elements(drawn.section.with_(hinge_thickness=t), sensor.design)
+            gauges = sensor.target.known.gauge_factor / SIGMAS * causes[GAUGES][..., 0]
+            k, v = np.log(drawn.stiffness / true.stiffness), np.log(drawn.signal / true.signal) + gauges
+        e_k, e_v = e_k + k, e_v + v
         by_reading = causes[READINGS][..., 0] * np.sqrt(by_noise)
         shift = -(pull * (m.f * e_k - m.c * e_v + by_reading)).sum(axis=1) / S
         share = (SLIGHT * (1.0 + causes[COUPLING]) / 2.0)[:, np.newaxis, np.newaxis]
@@ -107,12 +122,16 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
     return estimate
 
 
+def _of_belief(sensor: MadeSensor) -> tuple[str, ...]:
+    """Causes by what is known of the elements."""
+    how = sensor.target.known.how
+    return {"calibrated": (CALIBRATION,), "inspected": (GAUGES, INSPECTION), "drawn": (GAUGES,)}[how]
+
+
 def _errors(known: Knowledge, z: Array) -> tuple[Array, Array]:
-    """Errors of ln K and ln K_v from independent standard normal numbers, with their covariance."""
-    if (
-        known.dof > 1e6
-    ):  # the dimensions' own errors are drawn with the parts; what is left is gauge and contact
-        return np.zeros(z.shape[:-1]), np.zeros(z.shape[:-1])
-    k = np.sqrt(known.of_k)
-    along = known.cross / k
-    return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(known.of_v - along**2, 0.0)) * z[..., 1]
+    """Errors of ln K and ln K_v by a calibration from independent standard normal numbers, with their
+    covariance; the contact's place apart."""
+    of_k, of_v = known.of_k - known.place[0] ** 2, known.of_v - known.place[1] ** 2
+    k = np.sqrt(of_k)
+    along = (known.cross - known.place[0] * known.place[1]) / k
+    return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[..., 1]
