@@ -125,7 +125,8 @@ def search(
         popsize=POPULATION,
         maxiter=GENERATIONS,
         tol=within,
-        mutation=(0.4, 0.9),
+        strategy="rand1bin",  # "best1bin" was caught up to 24 % above the best of all of a small problem
+        mutation=(0.3, 0.7),
         recombination=0.8,
         init="sobol",
         x0=None if start is None else np.clip(start, low, high),
