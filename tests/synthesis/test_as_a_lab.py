@@ -142,7 +142,7 @@ def test_coupled_pads_shift_what_is_felt_as_predicted(sensors, share):
         assert abs(felt / x - 1.0) > 0.002
 
 
-@pytest.mark.parametrize("how", ["drawn", "inspected"])
+@pytest.mark.parametrize("how", ["drawn", pytest.param("inspected", marks=pytest.mark.nightly)])
 def test_predicted_interval_covers_uncalibrated_arrays(how):
     """Arrays as made, read with what the drawing or an inspection says of them: the estimate lies within the
     predicted interval of 95 %. Limits stand at two standard deviations: parts within them lie in it a little
