@@ -125,7 +125,7 @@ def search(
         popsize=POPULATION,
         maxiter=GENERATIONS,
         tol=within,
-        # from nowhere "best1bin" was caught up to 24 % above the best of all of a small problem; from a design
+        # from nowhere "best1bin" was caught up to 24 % above the best of a small problem; from a design
         # that was best for nearly the same target it is quicker
         strategy="rand1bin" if start is None else "best1bin",
         mutation=(0.3, 0.7) if start is None else (0.4, 0.9),
