@@ -3,6 +3,7 @@ targets are refused with what would make them possible, and nothing is lost or w
 
 from __future__ import annotations
 
+import errno
 import json
 from functools import lru_cache
 
@@ -11,9 +12,11 @@ import pytest
 
 from tactcad.cli.main import main
 from tactcad.design.load import parse, read
+from tactcad.design.messages import CheckFailure
 from tactcad.parts.designs import load
 from tactcad.parts.rules import broken_rules
 from tactcad.synthesis import relax
+from tactcad.synthesis import write as write_module
 from tactcad.synthesis.made_arrays import MadeSensor, of_share
 from tactcad.synthesis.realise import order
 from tactcad.synthesis.shares import variance_shares
@@ -136,6 +139,24 @@ def test_the_command_writes_design_and_report(tmp_path, capsys):
     # a folder that is not empty is never written over
     assert main(["design", str(tmp_path / "small.toml"), "--out", str(out)]) == 2
     assert "not an empty folder" in capsys.readouterr().err
+
+
+def test_a_synthesis_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
+    def full(_got):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(write_module, "report_page", full)
+    (tmp_path / "kept").mkdir()
+    for name in ("new", "kept"):
+        with pytest.raises(CheckFailure, match="No space left"):
+            write_module.write(small(), tmp_path / name)
+    assert [p.name for p in tmp_path.iterdir()] == ["kept"] and not list((tmp_path / "kept").iterdir())
+    monkeypatch.undo()
+    for name in ("new", "kept"):  # a new folder and an empty one
+        write_module.write(small(), tmp_path / name)
+        written = {p.name for p in (tmp_path / name).iterdir()}
+        assert written == {"design.toml", "report.json", "report.html"}
+    assert {p.name for p in tmp_path.iterdir()} == {"kept", "new"}
 
 
 def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_asked(tmp_path, capsys):

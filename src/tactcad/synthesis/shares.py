@@ -1,8 +1,8 @@
 """What spreads the estimate of K_obj: Sobol's first and total shares of its variance, by what errs.
 
 Arrays are made, known and read once each; y = ln of the estimate over the true K_obj. First and total
-effects are Saltelli's and Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181,
-259, table 2 b and f) with all numbers of one cause drawn anew together.
+effects are Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259, table 2 c and f) with
+all numbers of one cause drawn anew together.
 """
 
 from __future__ import annotations
@@ -77,7 +77,8 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
     out = [Share(PADS, 0.0, 0.0)]  # slopes do not see them once all pads touch, which every array is held to
     for name in a:
         y_c = estimate({**a, name: b[name]})
-        first = float((y_b * (y_c - y_a)).mean() / variance)
+        # c, unlike table 2 b, is steady where a single cause has nearly all of the variance
+        first = 1.0 - float(((y_b - y_c) ** 2).mean() / 2.0 / variance)
         total = float(((y_a - y_c) ** 2).mean() / 2.0 / variance)
         out.append(Share(name, max(first, 0.0) if total > LEAST else 0.0, total if total > LEAST else 0.0))
     return sorted(out, key=lambda s: -s.total)

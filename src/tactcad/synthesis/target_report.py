@@ -9,6 +9,7 @@ from html import escape
 from typing import Any
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from tactcad.paper.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
 from tactcad.parts.layout import Layout
@@ -310,6 +311,7 @@ def _front_part(r: dict[str, Any]) -> str:
             ax.plot([front[0][key]], [100 * front[0]["half_width"]], "s", color=BLACK, label="chosen")
             ax.set(xlabel=label, ylabel="half-width, %", ylim=(0, None))
             ax.legend()
+        left.xaxis.set_major_locator(MaxNLocator(integer=True))
         picture = svg(figure, "front")
     rows = [
         (

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 from tactcad.design.design_text import design_text
-from tactcad.design.files import absolute, make_folder, write_whole
+from tactcad.design.files import absolute, flush_entry, make_folder, refusal
+from tactcad.design.held import MAKING, held_folder, sweep_folders
 from tactcad.design.messages import InputError
 
 from .synthesise import Synthesis
@@ -23,17 +25,34 @@ def refuse_taken(out: str | Path) -> None:
 
 
 def write(got: Synthesis, out: str | Path) -> None:
-    """design.toml, front/NAME.toml, report.json and, last, report.html."""
+    """design.toml, front/NAME.toml, report.json and report.html: the whole folder in one step, or nothing.
+
+    Raises InputError where `out` is taken or cannot be written to, CheckFailure where there is no room.
+    """
     folder = absolute(out)
     refuse_taken(out)
-    make_folder(folder)
-    heading = f"{got.target.target.name}: by `tactcad design`.\n{answer(got.target, record(got))}"
-    write_whole(folder / "design.toml", design_text(got.design, heading).encode())
-    if len(got.front) > 1:
-        make_folder(folder / "front")
-        for entry in got.front[1:]:
-            name = f"{got.target.target.name[:24].rstrip('-')}-{entry.name.replace('.', '-')}"
-            text = design_text(got.as_design(entry.found, name), f"{name}: {entry.what}.")
-            write_whole(folder / "front" / f"{entry.name}.toml", text.encode())
-    write_whole(folder / "report.json", report_json(got))
-    write_whole(folder / "report.html", report_page(got))
+    make_folder(folder.parent)
+    try:
+        sweep_folders(folder.parent, folder.name)
+        with held_folder(folder.parent, folder.name) as own:
+            making = own / MAKING
+            for name, data in _files(got):
+                (making / name).parent.mkdir(parents=True, exist_ok=True)
+                (making / name).write_bytes(data)
+                flush_entry(making / name)
+            making.rename(folder)  # an empty folder gives way, any other refuses
+            flush_entry(folder.parent)
+    except OSError as error:
+        raise refusal(str(out), error) from error
+
+
+def _files(got: Synthesis) -> Iterator[tuple[str, bytes]]:
+    target = got.target.target.name
+    heading = f"{target}: by `tactcad design`.\n{answer(got.target, record(got))}"
+    yield "design.toml", design_text(got.design, heading).encode()
+    for entry in got.front[1:]:
+        name = f"{target[:24].rstrip('-')}-{entry.name.replace('.', '-')}"
+        text = design_text(got.as_design(entry.found, name), f"{name}: {entry.what}.")
+        yield f"front/{entry.name}.toml", text.encode()
+    yield "report.json", report_json(got)
+    yield "report.html", report_page(got)
