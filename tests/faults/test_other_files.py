@@ -48,9 +48,7 @@ def good(bench, tmp_path_factory) -> dict[str, bytes]:
         "grasp.csv": (EXAMPLES / "grasp.csv").read_bytes(),
         "calibration.csv": (folder / "calibration.csv").read_bytes(),
         "calibration.json": as_json.stdout,
-        "sheet.csv": next(
-            file for path, file in bench.files["A"].items() if "inspection" in path and path.endswith(".csv")
-        ),
+        "sheet.csv": next(file for path, file in bench.files["A"].items() if path.endswith("inspection.csv")),
         "shop.toml": (data / "checks" / "data" / "shop.toml").read_bytes(),
         "table1.csv": (data / "paper" / "data" / "table1.csv").read_bytes(),
         "table2.csv": (data / "paper" / "data" / "table2.csv").read_bytes(),
@@ -254,8 +252,8 @@ NEAR = {
     "check A.toml --shop limit.toml": "did you mean spark_gap?",
 }
 FAR = {
-    "zzz": "one of new, export, check",
-    "": "one of new, export, check",
+    "zzz": "one of new, design, export, check",
+    "": "one of new, design, export, check",
     "estimate --model zzz": "one of short, beam",
     "estimate zzz": "or one of ",
     "export A.toml --scene zzz": "one of array",

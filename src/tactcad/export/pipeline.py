@@ -185,11 +185,12 @@ def _rebuild(
     from .shapes import Shapes
 
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
-    scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
+    full = [make_scene(design, name, options.pose) for name in options.scenes]
+    scenes = [at_detail(scene, options.detail) for scene in full]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
-    products += stack_products(design, scenes, shapes)
+    products += stack_products(design, full, shapes)  # limits stand in the parts that are made
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)

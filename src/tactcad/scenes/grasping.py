@@ -17,6 +17,7 @@ from tactcad.parts.rigs.riser import (
     STOP_LENGTH,
     STOP_PIN,
     latch_above,
+    latch_lies,
     stop_below,
 )
 from tactcad.parts.rigs.stand_layout import StandLayout
@@ -99,8 +100,10 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
         b.screw("M3", 8.0, (0, front - 3.0, z + dz), (0, 1, 0), rail, riser)
     pin, y = dowel(STOP_PIN, STOP_LENGTH), front + STOP_DEPTH - STOP_LENGTH
     stop = b.place("ES", pin, (0, y, z - stop_below(rig)), ALONG_Y)
-    b.place("LP", pin, (-LATCH if latched else -LATCH_KEPT, y, z + latch_above(rig)), ALONG_Y)
+    hole = -LATCH if latched else -LATCH_KEPT
+    latch = b.place("LP", pin, (hole, y, z + latch_above(rig) - latch_lies()), ALONG_Y)
     b.meet(riser, stop, "press")
+    b.meet(riser, latch)
     b.step(
         "Guide rail",
         (0, -85, 110),

@@ -50,6 +50,17 @@ def latch_above(rig: GuideLayout) -> float:
     return floor(10 * (lowest - dowel_diameter(STOP_PIN) / 2 - rig.riser_middle)) / 10
 
 
+def latch_hole() -> float:
+    """Diameter of the latch's holes, mm: the middle of their limits."""
+    size = float(STOP_PIN)
+    return round(size + sum(deviations(LATCH_FIT, size)) / 2, 6)
+
+
+def latch_lies() -> float:
+    """How far under its hole's axis the latch's pin lies, mm."""
+    return (latch_hole() - dowel_diameter(STOP_PIN)) / 2
+
+
 def riser(rig: GuideLayout) -> Part:
     """Block between post and guide rail. Front face (the rail's) at local z = 0, contour in (x, z) about its
     middle."""
@@ -78,10 +89,8 @@ def riser(rig: GuideLayout) -> Part:
         drill_point=True,
         tolerance="H7",
     )
-    size = float(STOP_PIN)
-    wide = round(size + sum(deviations(LATCH_FIT, size)) / 2, 6)  # the middle of its limits
     features += [
-        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), diameter=wide, tolerance=LATCH_FIT)
+        replace(pin, name="latch", at=(x, latch_above(rig), 0.0), diameter=latch_hole(), tolerance=LATCH_FIT)
         for x in (LATCH, LATCH_KEPT)
     ]
     features += [pin, *(tapped_blind("rail", "M3", (0.0, y, 0.0), (0, 0, 1)) for y in rail_holes(length))]
