@@ -1,4 +1,4 @@
-"""Runs inside FreeCAD's own Python: opens the STEP and DXF files named and prints what it finds as JSON.
+"""Runs inside FreeCAD's own Python: opens the STEP, DXF and FCStd files named and prints what it finds as JSON.
 
 usage: python3 in_freecad.py FILE...
 
@@ -55,7 +55,37 @@ def dxf(path):
     }
 
 
+def document(path):
+    """Every place of each assembly with its part, and where it stands assembled and apart."""
+    held = FreeCAD.openDocument(path)
+    links = [o for o in held.Objects if o.TypeId == "App::Link"]
+    placed = [
+        {
+            "label": o.Label,
+            "part": o.LinkedObject.Label,
+            "scene": [p.Label for p in o.InListRecursive if p.TypeId == "App::Part" and p.Name.startswith("Scene")],
+            "volume": o.Shape.Volume,
+            "valid": o.Shape.isValid() and o.Shape.isClosed(),
+            "at": list(o.Placement.Base),
+        }
+        for o in links
+    ]
+    held.Review.set(held.Review.getCellFromAlias("explode"), "1")
+    held.recompute()
+    for one, link in zip(placed, links):
+        one["apart"] = list(link.Placement.Base)
+    sheets = {
+        o.Label: [[o.getContents(f"{c}{n}") for c in "AB"] for n in range(1, 400) if o.getContents(f"A{n}")]
+        for o in held.Objects
+        if o.TypeId == "Spreadsheet::Sheet"
+    }
+    marks = [[o.Label, list(o.Position)] for o in held.Objects if o.TypeId == "App::Annotation"]
+    FreeCAD.closeDocument(held.Name)
+    return {"placed": placed, "sheets": sheets, "marks": marks}
+
+
+READERS = {".step": step, ".dxf": dxf, ".FCStd": document}
 report = {"version": ".".join(FreeCAD.Version()[:3]), "files": {}}
 for name in sys.argv[1:]:
-    report["files"][name] = step(name) if name.endswith(".step") else dxf(name)
+    report["files"][name] = next(read for ending, read in READERS.items() if name.endswith(ending))(name)
 print("REVIEW " + json.dumps(report))

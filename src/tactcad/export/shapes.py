@@ -37,13 +37,19 @@ class Shapes:
         shown = for_pictures(part)
         return self.of(part) if shown is part else self._shape(shown, partial(_shape_bytes, shown))
 
+    def text_of(self, part: Part) -> bytes:
+        """The part's shape as the kernel's own text (BREP)."""
+        return self.cache.get_or_make(self._key(part), partial(self._built, part))
+
+    def _key(self, part: Part) -> str:
+        return f"shape {self.made_by} {digest(part)}"
+
     def _shape(self, part: Part, make: Callable[[], bytes]) -> TopoDS_Shape:
         if part.part_no not in self._known:
             from tactcad.solids.bytes import from_bytes
 
-            key = f"shape {self.made_by} {digest(part)}"
             # always through the text, so that a shape from the cache and one just built give equal files
-            self._known[part.part_no] = from_bytes(self.cache.get_or_make(key, make))
+            self._known[part.part_no] = from_bytes(self.cache.get_or_make(self._key(part), make))
         return self._known[part.part_no]
 
     def _built(self, part: Part) -> bytes:

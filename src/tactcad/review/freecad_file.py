@@ -1,0 +1,119 @@
+"""A design as FreeCAD's own document (FCStd), made by FreeCAD where it is installed, without a screen."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from tactcad.design.files import scratch_folder
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.export.shapes import Shapes
+from tactcad.scenes import make_scene
+
+from .finding_facts import finding_facts
+from .freecad_record import freecad_record, part_file
+from .scene_facts import scene_facts
+
+COMMANDS = ("freecad", "FreeCAD")
+SCRIPT = Path(__file__).with_name("peers") / "freecad_document.py"
+SECONDS = 600  # chosen: a large array is imported in seconds, a first start on a slow disk in a minute
+
+
+def program() -> str:
+    """FreeCAD's window program, which alone keeps colours. Raises CheckFailure where it is not installed."""
+    found = next(filter(None, map(shutil.which, COMMANDS)), None)
+    if found is None:
+        raise CheckFailure(
+            "FreeCAD is not installed, no document was written; on Debian or Ubuntu: apt-get install freecad "
+            "(0.20 or later), elsewhere see freecad.org"
+        )
+    return found
+
+
+def freecad_document(
+    design: Design, scene_names: Sequence[str], shapes: Shapes, say: Callable[[int, int, str], None]
+) -> bytes:
+    """The document.
+
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to hold; the first one is shown.
+    shapes
+        Makes solids, or takes them from its cache.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where FreeCAD is not installed, or ends without a document.
+    """
+    command = program()
+    scenes = tuple(make_scene(design, name) for name in scene_names)
+    parts = {part.part_no: part for scene in scenes for part in scene.parts}
+    total = len(parts) + 2
+    say(0, total, "checks")
+    findings = finding_facts(design, scenes, shapes, lambda *_: None)
+    facts = [scene_facts(design, scene) for scene in scenes]
+    record = freecad_record(design, facts, parts, findings)
+    with scratch_folder("freecad") as folder:
+        for n, part in enumerate(parts.values()):
+            say(n + 1, total, part.part_no)
+            (folder / part_file(n)).write_bytes(shapes.text_of(part))
+        (folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
+        say(total - 1, total, "FreeCAD")
+        data = _run(command, folder)
+    say(total, total, "done")
+    return data
+
+
+def _run(command: str, folder: Path) -> bytes:
+    """FreeCAD on the record of the folder."""
+    out = folder / "review.FCStd"
+    more = {"TACTCAD_RECORD": str(folder / "record.json"), "TACTCAD_OUT": str(out)}
+    (folder / "user.cfg").write_text(profile())
+    try:
+        run = subprocess.run(
+            [command, "-u", str(folder / "user.cfg"), str(SCRIPT)],
+            env=environment(folder) | more,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            check=False,
+            text=True,
+            errors="replace",
+            timeout=SECONDS,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise CheckFailure(f"FreeCAD could not be run: {error}") from error
+    if not out.is_file() or not (folder / "done").is_file():
+        said = [line for line in (run.stdout + run.stderr).splitlines() if "rror" in line]
+        raise CheckFailure("FreeCAD ended without a document" + (f": {said[-1]}" if said else ""))
+    return out.read_bytes()
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """Variables under which FreeCAD runs without a screen and with `folder` for its user's home."""
+    runtime = folder / "run"
+    runtime.mkdir(mode=0o700)
+    own = {"HOME": str(folder), "QT_QPA_PLATFORM": "offscreen", "XDG_RUNTIME_DIR": str(runtime)}
+    return {**os.environ, **own}
+
+
+def profile(*imports: str) -> str:
+    """A user's settings as FreeCAD keeps them: no start page, and groups of settings of its importers."""
+
+    def group(name: str, *inside: str) -> str:
+        return f'<FCParamGroup Name="{name}">{"".join(inside)}</FCParamGroup>'
+
+    general = group("General", '<FCText Name="AutoloadModule">PartWorkbench</FCText>')
+    settings = group("Mod", group("Import", *imports)) if imports else ""
+    tree = group("Root", group("BaseApp", group("Preferences", general, settings)))
+    return f'<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n<FCParameters>{tree}</FCParameters>\n'

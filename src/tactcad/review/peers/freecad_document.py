@@ -1,0 +1,162 @@
+"""Runs inside FreeCAD: makes a document from a record (JSON) and the parts' shapes (BREP files beside it).
+
+TACTCAD_RECORD names the record, TACTCAD_OUT the document to write. In the window program colours and what is
+hidden are kept too; FreeCAD's command line knows neither. Writes the empty file `done` beside the record.
+"""
+
+import json
+import os
+import sys
+
+for folder in ("/usr/lib/freecad/lib", "/usr/lib/freecad-python3/lib"):  # Debian's freecad-python3
+    sys.path.append(folder)
+import FreeCAD
+import Part
+
+EXPLODE = "Review.explode"  # the cell that every exploded place reads: 0 assembled, 1 apart
+
+
+def made(record, folder):
+    # E1 is E1 in every scene
+    FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Document").SetBool("DuplicateLabels", True)
+    document = FreeCAD.newDocument("Review")
+    document.Label = record["label"]
+    views = View(document)
+    review_sheet(document, record)
+    table(document, "Parameters", record["parameters"])
+    table(document, "Estimates", record["estimates"])
+    store = document.addObject("App::DocumentObjectGroup", "Parts")
+    parts = {}
+    for part in record["parts"]:
+        parts[part["part_no"]] = source(document, store, part, folder, views)
+    views.hide(store)
+    for n, scene in enumerate(record["scenes"]):
+        group = assembly(document, scene, parts, views)
+        if n:
+            views.hide(group)
+    document.recompute()
+    return document
+
+
+def review_sheet(document, record):
+    """Title, and the cell by which assemblies are taken apart."""
+    sheet = document.addObject("Spreadsheet::Sheet", "Review")
+    rows = [*record["about"], ("explode: 0 assembled, 1 apart", "")]
+    for n, (name, value) in enumerate(rows, 1):
+        sheet.set(f"A{n}", text(name))
+        sheet.set(f"B{n}", text(value))
+    sheet.set(f"B{len(rows)}", "0")
+    sheet.setAlias(f"B{len(rows)}", "explode")
+    sheet.setColumnWidth("A", 220)
+    sheet.setColumnWidth("B", 420)
+    document.recompute()  # expressions read the cell
+
+
+def table(document, name, rows):
+    """A spreadsheet of rows; the first is the heading."""
+    sheet = document.addObject("Spreadsheet::Sheet", name)
+    for n, row in enumerate(rows, 1):
+        for column, value in zip("ABCDEFGHIJKLMNOPQRSTUVWXYZ", row):
+            sheet.set(f"{column}{n}", text(value) if isinstance(value, str) else repr(value))
+    last = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"[len(rows[0]) - 1]
+    sheet.setStyle(f"A1:{last}1", "bold")
+    sheet.setColumnWidth("A", 220)
+
+
+def text(value):
+    """A cell's content that is shown as it stands: never a formula, whatever a design's text begins with."""
+    return "'" + str(value).replace("\n", " ")
+
+
+def source(document, store, part, folder, views):
+    """The one shape that all places of a part link to."""
+    shape = Part.Shape()
+    shape.read(os.path.join(folder, part["file"]))
+    made = document.addObject("Part::Feature", "Part")
+    made.Label = part["part_no"]
+    made.Shape = shape
+    for name, value in part["properties"]:
+        made.addProperty("App::PropertyString", name, "tactcad")
+        setattr(made, name, value)
+    store.addObject(made)
+    views.colour(made, part["colour"])
+    return made
+
+
+def assembly(document, scene, parts, views):
+    """A scene: sub-assemblies as groups, links under their designators, findings as labels at their place."""
+    whole = document.addObject("App::Part", "Scene")
+    whole.Label = scene["name"]
+    groups = {}
+    for placed in scene["placed"]:
+        group = whole
+        for depth in range(len(placed["under"])):
+            key = tuple(placed["under"][: depth + 1])
+            if key not in groups:
+                groups[key] = document.addObject("App::Part", "Unit")
+                groups[key].Label = key[-1]
+                group.addObject(groups[key])
+            group = groups[key]
+        group.addObject(link(document, placed, parts[placed["part_no"]]))
+    if scene["findings"]:
+        marks = document.addObject("App::DocumentObjectGroup", "Findings")
+        marks.Label = "Findings of " + scene["name"]
+        whole.addObject(marks)
+        for finding in scene["findings"]:
+            mark = document.addObject("App::Annotation", "Finding")
+            mark.Label = finding["label"]
+            mark.LabelText = [f"{finding['severity']}: {finding['check']}"]
+            mark.addProperty("App::PropertyString", "Message", "tactcad")
+            mark.Message = finding["message"]
+            mark.Position = FreeCAD.Vector(*finding["at"])
+            marks.addObject(mark)
+            views.mark(mark, finding["severity"])
+    return whole
+
+
+def link(document, placed, part):
+    one = document.addObject("App::Link", "Placed")
+    one.Label = placed["designator"]
+    one.LinkedObject = part
+    r, (x, y, z) = placed["rotation"], placed["origin"]
+    turn = FreeCAD.Matrix(*r[0], x, *r[1], y, *r[2], z, 0, 0, 0, 1)
+    one.Placement = FreeCAD.Placement(turn)
+    for axis, start, way in zip("xyz", placed["origin"], placed["way"]):
+        if way:
+            one.setExpression(f"Placement.Base.{axis}", f"{start!r} mm + {EXPLODE} * {way!r} mm")
+    return one
+
+
+class View:
+    """What is seen: kept by the window program alone."""
+
+    def __init__(self, document):
+        self.on = bool(FreeCAD.GuiUp)
+
+    def colour(self, made, colour):
+        if self.on:
+            made.ViewObject.ShapeColor = tuple(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+            made.ViewObject.Visibility = False
+
+    def hide(self, made):
+        if self.on:
+            made.ViewObject.Visibility = False
+
+    def mark(self, made, severity):
+        if self.on:
+            made.ViewObject.TextColor = (0.8, 0.1, 0.1) if severity == "fail" else (0.7, 0.4, 0.0)
+            made.ViewObject.FontSize = 14
+
+
+def main():
+    path = os.environ["TACTCAD_RECORD"]
+    with open(path, encoding="utf-8") as stream:
+        record = json.load(stream)
+    document = made(record, os.path.dirname(path))
+    document.saveAs(os.environ["TACTCAD_OUT"])
+    with open(os.path.join(os.path.dirname(path), "done"), "w", encoding="utf-8"):
+        pass  # the document is whole
+    os._exit(0)  # closing a window that was never shown crashes FreeCAD 0.20
+
+
+main()
