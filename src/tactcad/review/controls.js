@@ -85,6 +85,11 @@ class Controls {
     return el('div', {className: 'slider'}, el('span', {}, on, label), input, el('span', {}, said, el('label', {className: 'round'}, round, ' turn')));
   }
 
+  // Takes all cuts away.
+  uncut() {
+    for (const on of this.box.querySelectorAll('[id^=cut-][id$=-on]:checked')) on.click();
+  }
+
   // Where every part stands off its place: by the motion that is not at rest, and by the exploded view.
   offsets() {
     const found = new Map();

@@ -67,21 +67,31 @@ def element_facts(design: Design, scenes: tuple[Scene, ...]) -> tuple[ElementFac
     made = sensor(design, scenes)
     builds = made.built(BUILT)
     layout, why_not = Layout(design), ""
+    rows: list[ElementEstimate] = []
+    gentle: list[ElementEstimate] = []
     try:
         rows = estimate(layout, DEFAULT_RUNG)
+        # no strain is given above yield: what all elements are rated for is below it
+        gentle = estimate(layout, DEFAULT_RUNG, min(row.rated_force for row in rows))
     except CheckFailure as error:
-        rows, why_not = [], str(error)
+        why_not = str(error)
     built = {e.number: e for e in builds.elements}
     elements = {}
-    for place in layout.elements:
-        row = next((r for r in rows if r.number == place.number), None)
+    for n, place in enumerate(layout.elements):
+        row, low = (rows[n], gentle[n]) if gentle else (None, None)
         elements[place.designator] = {
             "row": place.row,
             "estimate": asdict(row) if row else None,
+            "gauge_per_newton": _per_newton(low.gauge_strain, low) if low else None,
+            "fillet_per_newton": _per_newton(low.peak_strain, low) if low else None,
             "built": asdict(built[place.number]) if place.number in built else None,
         }
     facts = ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, _fit(builds))
     return facts, made, made.stack()
+
+
+def _per_newton(strain: float | None, row: ElementEstimate) -> float | None:
+    return None if strain is None else strain / row.force
 
 
 def _pairs(rows: list[ElementEstimate]) -> list[PairFact]:
@@ -96,13 +106,7 @@ def _pair(m: ElementEstimate, r: ElementEstimate) -> PairFact:
     best = sqrt(r.stiffness * m.stiffness)
     condition = abs(float(condition_in_ratio(r.stiffness, m.stiffness, best)))
     return PairFact(
-        f"E{m.number}",
-        f"E{r.number}",
-        m.stiffness,
-        r.stiffness,
-        r.stiffness / m.stiffness,
-        best,
-        condition,
+        f"E{m.number}", f"E{r.number}", m.stiffness, r.stiffness, r.stiffness / m.stiffness, best, condition
     )
 
 

@@ -1,4 +1,4 @@
-"""Meshes of a page: every part tessellated once, all in one block of bytes with a table of what lies where."""
+"""Meshes of a page: every part tessellated once, all in one block with a table of what lies where."""
 
 from __future__ import annotations
 
@@ -43,7 +43,8 @@ def mesh_pack(
     parts: Iterable[Part], shapes: Shapes, say: Callable[[str], None] = lambda text: None
 ) -> MeshPack:
     """Tessellate the parts, or take their meshes from the cache; `say` gets each part's number before."""
-    block, table, boxes = b"", {}, {}
+    block, boxes = b"", {}
+    table: dict[str, dict[str, tuple[int, int]]] = {}
     for part in parts:
         say(part.part_no)
         data = _packed(part, shapes)

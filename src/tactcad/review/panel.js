@@ -131,7 +131,8 @@ class Panel {
     if (!facts) return [];
     const e = facts.estimate;
     const b = facts.built;
-    const micro = (strain) => (strain === null ? 'not given above yield' : `${figures(1e6 * strain)} \u00b5\u03b5`);
+    const micro = (perNewton, at) => (perNewton === null ? 'not estimated'
+      : `${figures(1e6 * perNewton * at.rated_force)} \u00b5\u03b5 at the rated force`);
     const within = (share) => (share === null ? '' : `, within ${percent(share)}`);
     const pairs = this.record.array.pairs.filter((p) => p.measuring === placed.designator || p.reference === placed.designator);
     const made = [];
@@ -139,8 +140,8 @@ class Panel {
       made.push(section('Estimate', list([
         ['Stiffness K', `${figures(e.stiffness)} N/mm${within(e.expected_error)}`],
         ['Rated force', `${figures(e.rated_force, 3)} N`], ['Rated deflection', `${figures(1e3 * e.rated_deflection, 3)} \u00b5m at most`],
-        [`Strain under the gauge at ${figures(e.force)} N`, micro(e.gauge_strain) + within(e.gauge_strain_error)],
-        ['Strain at the fillet', micro(e.peak_strain) + within(e.peak_strain_error)],
+        ['Strain under the gauge', micro(facts.gauge_per_newton, e) + within(e.gauge_strain_error)],
+        ['Strain at the fillet', micro(facts.fillet_per_newton, e) + within(e.peak_strain_error)],
         ['Yields at', `${figures(e.yield_force, 3)} N, ${figures(1e3 * e.yield_deflection, 3)} \u00b5m`],
         ['Goodman factor', e.goodman_factor === null ? '' : figures(e.goodman_factor, 3)], ['Arm, load arm', `${figures(e.arm)}, ${figures(e.load_arm)} mm`],
         ['By', `closed form, rung ${this.record.array.rung}; against refined solid elements`],
@@ -201,8 +202,7 @@ class Panel {
   sheet(part) {
     const sheet = this.record.sheets[part.part_no];
     if (!sheet) return [];
-    if (sheet.link) return [section('Sheet', el('p', {}, el('a', {href: sheet.link, target: '_blank', rel: 'noopener'}, sheet.link)))];
-    const picture = el('img', {className: 'sheet', alt: `Drawing sheet of ${part.part_no}`, src: pictureOf(sheet.svg)});
+    const picture = el('img', {className: 'sheet', alt: `Drawing sheet of ${part.part_no}`, src: pictureOf(sheet)});
     picture.addEventListener('click', () => picture.classList.toggle('large'));
     return [section('Sheet', picture)];
   }
@@ -234,12 +234,12 @@ class Panel {
     return [
       el('h2', {}, 'The array'),
       ...(whyNot ? [el('p', {}, whyNot)] : [section('Elements', table(['', 'arm', 'K, N/mm', 'within', 'rated, N', 'gauge, \u00b5\u03b5', 'yield, N'],
-        rows.map(([d, {estimate: e}]) => [this.link(d), figures(e.arm), figures(e.stiffness), e.expected_error === null ? '' : percent(e.expected_error),
-          figures(e.rated_force, 3), e.gauge_strain === null ? '' : figures(1e6 * e.gauge_strain), figures(e.yield_force, 3)]),
+        rows.map(([d, {estimate: e, gauge_per_newton: g}]) => [this.link(d), figures(e.arm), figures(e.stiffness), e.expected_error === null ? '' : percent(e.expected_error),
+          figures(e.rated_force, 3), g === null ? '' : figures(1e6 * g * e.rated_force), figures(e.yield_force, 3)]),
         ['', 'n', 'n', 'n', 'n', 'n', 'n'])),
       section('Pair by pair', pairs.length ? this.pairTable(pairs) : el('p', {}, 'All elements are equally stiff: no pair tells an object.'),
         el('p', {className: 'hint'}, 'An element measures with the stiffest one. Best for: the object, N/mm, that the pair finds best; '
-          + 'error x: its relative error there over that of the ratio of deflections.'))]),
+          + 'error x: its relative error there over that of the ratio of deflections. Gauge: strain at the rated force.'))]),
       section('Fit', list(Object.entries(fit.kept).map(([name, share]) => [`${name} parts`, `${percent(share)} of ${fit.count} arrays go together`])),
         ...(missed.length ? [table(['parts', 'missed', 'arrays'], missed, ['', '', 'n'])] : [])),
     ];

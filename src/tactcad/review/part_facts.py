@@ -11,6 +11,8 @@ from tactcad.parts.description import Extrusion, Part, Vector
 from tactcad.parts.limits import Characteristic
 from tactcad.parts.surface_pieces import Piece, pieces
 
+OF_ELEMENTS = "element: "  # what the names of the elements' variables begin with
+
 
 @dataclass(frozen=True)
 class LimitFact:
@@ -38,8 +40,9 @@ class GeometricFact:
 
 @dataclass(frozen=True)
 class FeatureFact:
-    """A piece of a named feature's surface, exact and in the part's frame (mm): a plane through `point` square
-    to `direction`, or a cylinder about the axis through `point` along `direction`. `middle` lies on it."""
+    """A piece of a named feature's surface, exact and in the part's frame (mm): a plane through `point`
+    square to `direction`, or a cylinder about the axis through `point` along `direction`. `middle` lies on
+    it."""
 
     name: str
     kind: str
@@ -112,7 +115,7 @@ def part_facts(part: Part, variables: dict[str, DimensionLimits], lines: Sequenc
         ),
         datums=tuple((d.letter, d.feature) for d in part.datums),
         features=tuple(_features(part)),
-        shares=tuple(_shares(part.part_no, variables, lines)),
+        shares=tuple(_shares(part, variables, lines)),
     )
 
 
@@ -123,7 +126,7 @@ def _limit(c: Characteristic) -> LimitFact:
 
 
 def _features(part: Part) -> Iterator[FeatureFact]:
-    """Every named feature's pieces, equal ones once; an extrusion's alone: what is turned has no such names."""
+    """Every named feature's pieces, equal ones once; an extrusion's alone."""
     if not isinstance(part.body, Extrusion):
         return
     for name in sorted(part.feature_names - {""}):
@@ -135,16 +138,24 @@ def _feature(name: str, piece: Piece) -> FeatureFact:
     return FeatureFact(name, kind, piece.point, piece.direction, piece.diameter, piece.middle)
 
 
+def _of_element(name: str, part: Part) -> tuple[tuple[str, str], ...]:
+    """The limit of an element that a variable is of: it names no part, being the same of every length."""
+    is_element = {"pad_face", "stop_land"} <= part.feature_names
+    own = name.removeprefix(OF_ELEMENTS)
+    found = is_element and own != name and own in {c.name for c in part.characteristics}
+    return ((part.part_no, own),) if found else ()
+
+
 def _shares(
-    part_no: str, variables: dict[str, DimensionLimits], lines: Iterable[StackLine]
+    part: Part, variables: dict[str, DimensionLimits], lines: Iterable[StackLine]
 ) -> Iterator[ShareFact]:
     """Requirements on which the part's limits have a share, the largest share first."""
     found = []
     for line in lines:
         limits: dict[str, float] = {}
         for c in line.contributors:
-            for number, name in variables[c.name].stated:
-                if number == part_no:
+            for number, name in (*variables[c.name].stated, *_of_element(c.name, part)):
+                if number == part.part_no:
                     limits[name] = max(limits.get(name, 0.0), c.share)
         if limits:
             r, ranked = line.requirement, sorted(limits.items(), key=lambda item: (-item[1], item[0]))

@@ -7,7 +7,7 @@ import gzip
 import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -41,20 +41,12 @@ POLICY = (
 )
 
 
-@dataclass(frozen=True)
-class Sheet:
-    """A part's drawing sheet: its SVG, or where it lies beside the page."""
-
-    svg: str = ""
-    link: str = ""
-
-
 def review_page(
     design: Design,
     scene_names: Sequence[str],
     shapes: Shapes,
     say: Callable[[int, int, str], None],
-    sheets: Mapping[str, Sheet],
+    sheets: Mapping[str, str],
 ) -> bytes:
     """The page (HTML, UTF-8), equal bytes for equal input.
 
@@ -69,7 +61,7 @@ def review_page(
     say
         Receives (done, total, text) as the work goes on.
     sheets
-        Drawing sheets by part number; a part without has none.
+        Drawing sheets (SVG) by part number.
 
     Raises
     ------
@@ -96,7 +88,11 @@ def review_page(
             for name in ("name", "title", "revision", "date", "author", "organisation")
         },
         "parts": [
-            {**asdict(part_facts(p, made.variables, lines)), "mesh": pack.table[p.part_no], "box": pack.boxes[p.part_no]}
+            {
+                **asdict(part_facts(p, made.variables, lines)),
+                "mesh": pack.table[p.part_no],
+                "box": pack.boxes[p.part_no],
+            }
             for p in parts
         ],
         "scenes": [asdict(scene_facts(design, scene)) for scene in scenes],
@@ -104,7 +100,7 @@ def review_page(
         "rating": design.rating.force,
         "strains": strains,
         "findings": [asdict(f) for f in findings],
-        "sheets": {number: asdict(sheet) for number, sheet in sheets.items()},
+        "sheets": dict(sheets),
     }
     say(total, total, "done")
     return assembled(f"{identity.title}, revision {identity.revision}", record, block, library)
@@ -146,9 +142,7 @@ def assembled(title: str, record: Mapping[str, Any], block: bytes, library: View
         The viewer.
     """
     folder = files(__package__)
-    script = "'use strict';\n" + "".join(
-        folder.joinpath(f"{name}.js").read_text("utf-8") for name in SCRIPTS
-    )
+    script = "'use strict';\n" + "".join(folder.joinpath(f"{name}.js").read_text("utf-8") for name in SCRIPTS)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     places = {
         "POLICY": POLICY.format(digest=digest),

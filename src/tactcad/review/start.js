@@ -45,6 +45,7 @@ async function start() {
   function showFinding(finding) {
     const who = finding.designators.filter((d) => panel.placed.has(d));
     const one = who[0] ?? null;
+    controls.uncut();
     if (who.length) tree.isolate(finding.scene ? [...panel.placed.keys()] : who);
     view.select(one);
     tree.select(one);
@@ -54,7 +55,7 @@ async function start() {
       place[2] = parts.get(panel.placed.get(one).part_no).box.reduce((sum, corner) => sum + corner[2], 0) / 2;
     }
     view.mark(place, finding.scene ? null : one);
-    if (place && one) view.frame(finding.scene ? place : view.toScene(place, panel.placed.get(one)), [plus(place, [0, 0, 0])], 0);
+    if (place && one) view.closeUp(finding.scene ? place : view.toScene(place, panel.placed.get(one)), one);
     byId('status').textContent = `${finding.severity}: ${finding.about}: ${finding.message}`;
   }
 

@@ -15,7 +15,7 @@ from tactcad.parts.element import element
 from tactcad.parts.hinge_section import design_alloy
 from tactcad.parts.layout import ElementPlace, Layout
 
-DENSITY = 2  # of the mesh: its peak lies within a percent of the converged one, at 2000 points a picture
+DENSITY = 4  # of the mesh; chosen: facets of a hundredth of a millimetre at the fillets, 3000 of them
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,7 @@ def strain_field(layout: Layout, place: ElementPlace) -> StrainField:
     shape = cut_element(contour, layout.clamp_edge, place.hinge_x - place.load_arm)
     alloy = design_alloy(layout.design)
     solution = solve_plane(
-        shape,
-        alloy.youngs_modulus,
-        alloy.poisson,
-        layout.design.sheet.thickness,
-        density=DENSITY,
-        whole=True,
+        shape, alloy.youngs_modulus, alloy.poisson, layout.design.sheet.thickness, density=DENSITY, whole=True
     )
     u = np.asarray(solution.displacement).reshape(2, -1)
     return StrainField(

@@ -155,6 +155,13 @@ class View {
     this.viewer.setCameraTarget(centre, false);
   }
 
+  // Centres a point of a designator, with a third of its length around it.
+  closeUp(point, designator) {
+    const [low, high] = this.box([designator]);
+    const reach = Math.max(...minus(high, low)) / 6;
+    this.frame(point, boxCorners(minus(point, [reach, reach, reach]), plus(point, [reach, reach, reach])), 0.9);
+  }
+
   // Cuts along axis 0 to 2 at a place (mm in the scene), keeping what lies below it or, turned round, above;
   // null: not at all.
   clip(axis, at, turnedRound) {

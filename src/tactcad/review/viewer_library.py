@@ -1,4 +1,4 @@
-"""The viewer in three dimensions that a page carries: three-cad-viewer (MIT), as the package ocp-viewer has it.
+"""The viewer in three dimensions that a page carries: three-cad-viewer (MIT), from the package ocp-viewer.
 
 It is read from the installed package and never imported: its server is not needed.
 """
