@@ -29,6 +29,7 @@ COMMANDS = {
     "check": "run every check on a design",
     "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
     "release": "run every check, and write one zip that a shop can quote from",
+    "review": "one offline page: the sensor in 3-D, with limits, findings, estimates and bill part by part",
     "golden": "run every check, show what changed, and write a design's golden geometry",
     "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
@@ -42,7 +43,7 @@ COMMANDS = {
 }
 
 # Commands refused at once where the kernel is not installed; others are when they first need it.
-NEED_KERNEL = ("export", "check", "release", "golden")
+NEED_KERNEL = ("export", "check", "release", "review", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 

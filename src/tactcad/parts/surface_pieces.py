@@ -85,6 +85,13 @@ class Wall:
         return 2 * self.segment.radius if isinstance(self.segment, Arc) else None
 
     @property
+    def middle(self) -> Vector:
+        """The point in the middle of it."""
+        s = self.segment
+        u, v = s.at(0.5)
+        return vector(p + self.depth / 2 * a for p, a in zip(self.frame.point(u, v), self.frame.axis))
+
+    @property
     def reach(self) -> float:
         """How far from its axis it is measured: a whole cylinder at its axis, a fillet at its surface, mm."""
         s = self.segment
@@ -111,6 +118,11 @@ class Floor:
     @property
     def direction(self) -> Vector:
         return self.frame.axis
+
+    @property
+    def middle(self) -> Vector:
+        """The point in the middle of what it is within, or where its frame stands."""
+        return self.frame.point(*self.within.centroid) if self.within else self.frame.at
 
 
 Piece = Wall | Floor

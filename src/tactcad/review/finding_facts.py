@@ -24,7 +24,7 @@ class FindingFact:
     about        as the check names it
     scene        that it belongs to, "" where to all that hold the part
     designators  of the parts that it is about; of a part number all of its
-    place        mm, in the scene's frame where there is a scene, else in the part's own; empty: the whole part
+    place        mm, in the scene's frame where there is a scene, else in the part's own; empty: all of it
     """
 
     check: str

@@ -11,9 +11,9 @@ except ImportError:  # OCP 7.9
     from OCP.TDF import TDF_LabelSequence
     from OCP.TopTools import TopTools_IndexedMapOfShape
 
-__all__ = ["TDF_LabelSequence", "TopTools_IndexedMapOfShape", "as_edge", "as_face", "as_wire"]
+__all__ = ["TDF_LabelSequence", "TopTools_IndexedMapOfShape", "as_edge", "as_face", "as_vertex", "as_wire"]
 
 # OCP 7.9 marks static functions by _s where OCP 8 does not.
-as_edge, as_face, as_wire = (
-    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind) for kind in ("Edge", "Face", "Wire")
+as_edge, as_face, as_vertex, as_wire = (
+    getattr(TopoDS, f"{kind}_s", None) or getattr(TopoDS, kind) for kind in ("Edge", "Face", "Vertex", "Wire")
 )

@@ -1,0 +1,77 @@
+"""tactcad review [DESIGN|EXPORT] [--scene NAME]... [--drawings] [--out FILE] [--json]"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+
+from .parser import add_json
+
+EXAMPLES = """\
+  tactcad review                                  review.html of hardware/macro-array.toml, all its scenes
+  tactcad review soft-tissue --out soft.html      another design, to a file of your choice
+  tactcad review my/design.toml --scene array     one scene only: sooner made
+  tactcad review macro-array --drawings           with the drawing sheet of every part made
+  tactcad review exports/macro-array              of an export, with the sheets that lie in it
+
+One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the
+exploded view by the guide's steps and the rigs' motions; a click on a part shows its number, material,
+mass, limits, findings, bill row, and of an element stiffness, strain, rated force and pairs. Every check
+runs."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    from tactcad.design.load import DEFAULT_DESIGN
+
+    parser.add_argument(
+        "design",
+        nargs="?",
+        default=DEFAULT_DESIGN,
+        metavar="DESIGN",
+        help=f"a path, a name in hardware/ (default {DEFAULT_DESIGN}), or an export's folder",
+    )
+    parser.add_argument(
+        "--scene", action="append", metavar="NAME", help="show this scene; may be repeated (default: all)"
+    )
+    parser.add_argument("--drawings", action="store_true", help="with the drawing sheet of every part made")
+    parser.add_argument("--out", metavar="FILE", default="review.html", help="page (default review.html)")
+    add_json(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.review.review_page import review_page
+    from tactcad.review.subject import drawn_sheets, shapes_of, subject
+    from tactcad.review.viewer_library import viewer_library
+    from tactcad.scenes import chosen_scenes, make_scene
+
+    from .progress import progress
+
+    started, say = time.perf_counter(), progress(sys.stderr)
+    seen = subject(args.design)
+    refuse_overwriting(args.out, seen.path)
+    names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
+    viewer_library()  # a missing one is said before any work
+    shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
+    if args.drawings:
+        scenes = [make_scene(seen.design, name) for name in names]
+        parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
+        sheets = drawn_sheets(seen.design, parts, shapes, say.step)
+    page = review_page(seen.design, names, shapes, say.step, sheets)
+    write_whole(args.out, page)
+    shapes.cache.trim()
+    record = {
+        "design": seen.design.name,
+        "revision": seen.design.design.revision,
+        "path": args.out,
+        "scenes": list(names),
+        "bytes": len(page),
+        "seconds": round(time.perf_counter() - started, 3),
+    }
+    if args.json:
+        print(json.dumps(record, indent=1))
+    else:
+        print(f"{args.out}: {', '.join(names)}; {len(page) / 1e6:.2f} MB")
+    return 0

@@ -1,0 +1,73 @@
+// The strain of a pressed element as colours, on the mesh of the finite elements, with its scale.
+const EXAGGERATED = 20;  // deflections in the picture: at the rated force a hinge gives way by a tenth of a millimetre
+
+// From blue (pressed) over grey to red (stretched): both ends differ in lightness too little for one to hide.
+function strainColour(share) {
+  const [low, middle, high] = [[33, 102, 172], [232, 232, 228], [178, 24, 43]];
+  const end = share < 0 ? low : high;
+  const s = Math.min(Math.abs(share), 1) ** 0.8;
+  return `rgb(${middle.map((m, k) => Math.round(m + (end[k] - m) * s)).join(' ')})`;
+}
+
+function strainPicture(field, estimate) {
+  if (!field) return el('p', {}, 'No finite elements of this part.');
+  if (field.why_not) return el('p', {}, field.why_not);
+  const rated = estimate?.rated_force ?? 1;
+  const canvas = el('canvas', {className: 'strain', width: 720, height: 360, role: 'img'});
+  const caption = el('p', {className: 'hint'});
+  const scale = el('canvas', {className: 'scale', width: 360, height: 14, 'aria-hidden': 'true'});
+  const ends = el('div', {className: 'ends'});
+  const force = el('input', {type: 'range', min: 0, max: rated, step: rated / 50, value: rated, 'aria-label': 'Force on the pad, N'});
+  const hinge = el('input', {type: 'checkbox', checked: true});
+  const most = field.strain.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
+  drawScale(scale);
+  const draw = () => {
+    const newton = Number(force.value);
+    drawStrain(canvas, field, newton, most * rated, hinge.checked);
+    const peak = figures(1e6 * most * newton, 3);
+    canvas.setAttribute('aria-label', `Strain along the arm at ${figures(newton, 3)} N: at most ${peak} microstrain`);
+    caption.textContent = `${figures(newton, 3)} N on the pad, at most ${peak} \u00b5\u03b5 along the arm. Plane-stress finite elements on the part\u2019s contour, `
+      + `held at the clamp edge, pressed at the load line, load arm ${figures(field.load_arm)} mm; ${field.quads.length / 4} facets; deflection drawn ${EXAGGERATED} times.`;
+  };
+  ends.append(...[-1, -0.5, 0, 0.5, 1].map((s) => el('span', {}, `${figures(1e6 * most * rated * s, 3)}`)));
+  force.addEventListener('input', draw);
+  hinge.addEventListener('change', draw);
+  draw();
+  return el('div', {}, canvas, scale, ends, el('label', {}, 'Force ', force), el('label', {}, hinge, ' the hinge alone'), caption);
+}
+
+function drawScale(canvas) {
+  const pen = canvas.getContext('2d');
+  for (let x = 0; x < canvas.width; x++) {
+    pen.fillStyle = strainColour(2 * x / (canvas.width - 1) - 1);
+    pen.fillRect(x, 0, 1, canvas.height);
+  }
+}
+
+function drawStrain(canvas, field, newton, full, hingeAlone) {
+  const {points, moved, strain, quads} = field;
+  const at = (n) => [0, 1].map((k) => points[2 * n + k] + EXAGGERATED * newton * moved[2 * n + k]);
+  const reach = 6 * field.hinge;
+  const seen = (n) => !hingeAlone || Math.abs(points[2 * n] - field.hinge_x) < reach;
+  const shown = [];
+  for (let q = 0; q < quads.length; q += 4) {
+    const corners = [...quads.subarray(q, q + 4)];
+    if (corners.every(seen)) shown.push(corners);
+  }
+  const all = shown.flat().map(at);
+  const [x0, x1] = [Math.min(...all.map((p) => p[0])), Math.max(...all.map((p) => p[0]))];
+  const [z0, z1] = [Math.min(...all.map((p) => p[1])), Math.max(...all.map((p) => p[1]))];
+  const size = 0.94 * Math.min(canvas.width / (x1 - x0), canvas.height / (z1 - z0));
+  const px = ([x, z]) => [canvas.width / 2 + size * (x - (x0 + x1) / 2), canvas.height / 2 - size * (z - (z0 + z1) / 2)];
+  const pen = canvas.getContext('2d');
+  pen.clearRect(0, 0, canvas.width, canvas.height);
+  for (const corners of shown) {
+    const mean = corners.reduce((sum, n) => sum + strain[n], 0) / 4 * newton;
+    pen.fillStyle = pen.strokeStyle = strainColour(full ? mean / full : 0);
+    pen.beginPath();
+    for (const n of corners) pen.lineTo(...px(at(n)));
+    pen.closePath();
+    pen.fill();
+    pen.stroke();
+  }
+}

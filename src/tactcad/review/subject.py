@@ -1,0 +1,123 @@
+"""What is reviewed: a design, or an export's folder, which says what design it was made from."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from tactcad.design.load import find, from_table
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.export.cache import Cache, default_root
+from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
+from tactcad.export.manifest import NAME, check_manifest, read_manifest
+from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS
+from tactcad.export.products import drawing_products, part_products
+from tactcad.export.shapes import Shapes
+from tactcad.parts.description import Part
+from tactcad.parts.designs import load
+
+# Tables whose keys are no field names: their dots belong to the key.
+FREE_KEYS = ("origin.", "stop.gaps.")
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A design that keeps its rules, the file or folder that it was read from, the scenes that an export
+    holds (None: all of the design's), and the sheets that lie there, SVG by part number."""
+
+    design: Design
+    path: Path
+    scenes: tuple[str, ...] | None
+    sheets: Mapping[str, str]
+
+
+def subject(source: str) -> Subject:
+    """What `source` names: a design (a path, or a name in hardware/), or an export's folder.
+
+    Raises InputError where it is neither, or the export is damaged or was made by another version.
+    """
+    if os.path.isdir(source):  # False also for texts that are not paths
+        return _exported(source, Path(source))
+    return Subject(load(source), find(source), None, {})
+
+
+def _exported(source: str, folder: Path) -> Subject:
+    if wrong := check_manifest(folder):
+        raise InputError(
+            source,
+            f"not a sound export: {wrong[0]}",
+            legal=f"a folder with {NAME}, as `tactcad export` writes",
+        )
+    manifest = read_manifest(folder)
+    before = inputs_from_json(manifest.inputs)
+    again = "export it again, or review the design file"
+    if before is None:
+        raise InputError(source, "its manifest does not say what it was made from", legal=again)
+    values = {k.removeprefix("design."): v for k, v in before.values.items() if k.startswith("design.")}
+    try:
+        design = from_table(_table(values))
+        differ = reasons(_only(before, values), inputs_of(design, ROOMS, before_libraries(before)))
+    except (InputError, LookupError, TypeError, AttributeError) as error:
+        raise InputError(source, f"made by another version of tactcad: {error}", legal=again) from None
+    if differ:
+        raise InputError(source, f"made by another version of tactcad: {differ[0]}", legal=again)
+    scenes = [v for k, v in before.values.items() if k.startswith("options.scenes[")]
+    drawn = [f for f in manifest.files if f.kind == "drawing" and f.part_no and f.path.endswith(".svg")]
+    sheets = {f.part_no: (folder / f.path).read_text("utf-8") for f in drawn}
+    return Subject(design, folder, tuple(scenes), sheets)
+
+
+def before_libraries(before: Inputs) -> list[str]:
+    """The libraries that an export depended on."""
+    return [name for name in before.libraries if name != "python"]
+
+
+def _only(before: Inputs, values: dict[str, Any]) -> Inputs:
+    return Inputs(values, before.sources, before.libraries)
+
+
+def _table(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The nested table of values by path, as TOML would give it; what is None was left out."""
+    table: dict[str, Any] = {}
+    for path, value in values.items():
+        if value is None:
+            continue
+        free = next((prefix for prefix in FREE_KEYS if path.startswith(prefix)), "")
+        words = [*filter(None, free.split(".")), path.removeprefix(free)] if free else path.split(".")
+        _set(table, words, value)
+    return table
+
+
+def _set(table: dict[str, Any], words: list[str], value: Any) -> None:
+    for word in words[:-1]:
+        table = table.setdefault(word, {})
+    name, *indices = words[-1].split("[")
+    if not indices:
+        table[name] = value
+        return
+    # "row_arms[0][1]": elements come in their order
+    rows = table.setdefault(name, [])
+    for _ in indices[:-1]:
+        index = int(indices[0].rstrip("]"))
+        rows += [[] for _ in range(index + 1 - len(rows))]
+        rows = rows[index]
+    rows.append(value)
+
+
+def shapes_of(design: Design, say: Callable[[str], None]) -> Shapes:
+    """Makes solids, or takes them from the cache that a full export fills; `say` hears of damaged entries."""
+    inputs = inputs_of(design, ROOMS, (*LIBRARIES, *DRAWN_WITH))
+    return Shapes(Cache(default_root(), say), digest((inputs.sources, inputs.libraries)))
+
+
+def drawn_sheets(
+    design: Design, parts: Sequence[Part], shapes: Shapes, say: Callable[[int, int, str], None]
+) -> dict[str, str]:
+    """The drawing sheet of every part made here, as SVG by part number."""
+    files = [product for part in parts for product in part_products(design, part, shapes)]
+    drawn = [p for p in drawing_products(design, parts, shapes, files, say) if p.path.endswith(".svg")]
+    return {p.part_no: shapes.cache.get_or_make(p.key, p.make).decode() for p in drawn}
