@@ -1,4 +1,5 @@
-"""Runs inside FreeCAD's own Python: opens the STEP, DXF and FCStd files named and prints what it finds as JSON.
+"""Runs inside FreeCAD's own Python: opens the STEP, DXF and FCStd files named, prints what it
+finds as JSON.
 
 usage: python3 in_freecad.py FILE...
 
@@ -63,7 +64,9 @@ def document(path):
         {
             "label": o.Label,
             "part": o.LinkedObject.Label,
-            "scene": [p.Label for p in o.InListRecursive if p.TypeId == "App::Part" and p.Name.startswith("Scene")],
+            "scene": [
+                p.Label for p in o.InListRecursive if p.TypeId == "App::Part" and p.Name.startswith("Scene")
+            ],
             "volume": o.Shape.Volume,
             "valid": o.Shape.isValid() and o.Shape.isClosed(),
             "at": list(o.Placement.Base),

@@ -1,6 +1,7 @@
 """make review: opens every exported STEP and DXF file in real FreeCAD, headless, and compares it with the
 bill of materials and the manifest; and every assembly in FreeCAD's window program, for the tree and the
-colours that a person sees. Installs nothing; says what is missing and how to get it.
+colours that a person sees; and FreeCAD's own document of each design. Installs nothing; says what is missing
+and how to get it.
 
 usage: python review.py exports/NAME...
 """
@@ -11,11 +12,16 @@ import json
 import re
 import subprocess
 import sys
+import tempfile
 from collections import Counter
 from math import isclose
 from pathlib import Path
 
+import document
 import window
+
+from tactcad.parts.designs import load
+from tactcad.scenes import make_scene
 
 INSIDE = Path(__file__).with_name("in_freecad.py")
 # Debian's freecad-python3 belongs to the system's Python, others bring a command of their own.
@@ -79,12 +85,37 @@ def review(freecad: list[str], folder: Path) -> list[str]:
                 wrong += window.tree_faults(f["path"], window.shown(program, folder / f["path"]), bill)
         else:
             wrong += cut_faults(f["path"], found, parts[f["part_no"]])
+    if program:
+        wrong += own_document_faults(freecad, folder, manifest["design"], parts)
     solids = sum(len(found.get("solids", ())) for found in report["files"].values())
     print(
         f"{folder}: FreeCAD {report['version']} opened {len(files)} files with {solids} solids, the trees "
         f"too, {len(wrong)} findings"
     )
     return wrong
+
+
+def own_document_faults(freecad: list[str], folder: Path, name: str, parts: dict[str, dict]) -> list[str]:
+    """FreeCAD's document of the design, made anew, against the export."""
+    bills = document.bills_of(folder)
+    with tempfile.TemporaryDirectory() as scratch:
+        path = Path(scratch) / f"{name}.FCStd"
+        chosen = [word for scene in bills for word in ("--scene", scene)]
+        made = subprocess.run(
+            [sys.executable, "-m", "tactcad", "review", str(folder), "--freecad", str(path), *chosen],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if made.returncode:
+            return [f"tactcad review --freecad: {made.stderr.strip().splitlines()[-1]}"]
+        report = open_files(freecad, [str(path)])
+        if report is None:
+            return [f"{path.name}: FreeCAD ended without a report"]
+        scenes = [make_scene(load(name), scene) for scene in bills]
+        want = {p.part_no: p.colour for scene in scenes for p in scene.parts}
+        found = report["files"][str(path)]
+        return document.document_faults(found, document.colours(path), bills, parts, want)
 
 
 def scene_faults(manifest: dict) -> list[str]:

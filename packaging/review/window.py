@@ -5,15 +5,15 @@ settings that docs/freecad.md tells to choose, in a profile of its own, without 
 from __future__ import annotations
 
 import json
-import os
 import re
-import shutil
 import subprocess
 import tempfile
 from pathlib import Path
 
+from tactcad.design.messages import CheckFailure
+from tactcad.review.freecad_file import environment, profile, program
+
 INSIDE = Path(__file__).with_name("in_freecad_window.py")
-COMMANDS = ("freecad", "FreeCAD")
 SECONDS = 300
 
 # Label in Edit > Preferences > Import-Export > STEP -> group and name in FreeCAD's settings, and the value to
@@ -27,45 +27,35 @@ SETTINGS = {
 UNCOLOURED = [0.8, 0.8, 0.8]  # what FreeCAD gives a shape without a colour
 
 
-def profile() -> str:
-    """A user's settings as FreeCAD keeps them: the four above, and no start page."""
-
-    def group(name: str, *inside: str) -> str:
-        return f'<FCParamGroup Name="{name}">{"".join(inside)}</FCParamGroup>'
+def settings() -> str:
+    """A user's settings as FreeCAD keeps them, with the four above."""
 
     def flags(folder: str) -> list[str]:
         return [
             f'<FCBool Name="{n}" Value="{int(on)}"/>' for where, n, on in SETTINGS.values() if where == folder
         ]
 
-    general = group("General", '<FCText Name="AutoloadModule">PartWorkbench</FCText>')
-    settings = group("Mod", group("Import", *flags(""), group("hSTEP", *flags("hSTEP"))))
-    tree = group("Root", group("BaseApp", group("Preferences", general, settings)))
-    return f'<?xml version="1.0" encoding="UTF-8" standalone="no" ?>\n<FCParameters>{tree}</FCParameters>\n'
+    return profile(*flags(""), f'<FCParamGroup Name="hSTEP">{"".join(flags("hSTEP"))}</FCParamGroup>')
 
 
 def command() -> str | None:
     """FreeCAD's window program, None where there is none."""
-    return next((found for name in COMMANDS if (found := shutil.which(name))), None)
+    try:
+        return program()
+    except CheckFailure:
+        return None
 
 
 def shown(program: str, path: Path) -> dict | None:
     """What the tree shows of an assembly; None where FreeCAD ended without telling."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "user.cfg").write_text(profile())
-        (folder / "run").mkdir(mode=0o700)
-        env = os.environ | {
-            "HOME": name,
-            "QT_QPA_PLATFORM": "offscreen",
-            "XDG_RUNTIME_DIR": str(folder / "run"),
-            "REVIEW_FILE": str(path.resolve()),
-            "REVIEW_OUT": str(folder / "out.json"),
-        }
+        (folder / "user.cfg").write_text(settings())
+        files = {"REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json")}
         try:
             subprocess.run(
                 [program, "-u", str(folder / "user.cfg"), str(INSIDE)],
-                env=env,
+                env=environment(folder) | files,
                 capture_output=True,
                 check=False,
                 timeout=SECONDS,

@@ -58,7 +58,7 @@ def test_the_guide_names_the_settings_and_their_values():
 
 
 def test_the_profile_holds_them():
-    found = {e.get("Name"): e.get("Value") for e in ElementTree.fromstring(window.profile()).iter("FCBool")}
+    found = {e.get("Name"): e.get("Value") for e in ElementTree.fromstring(window.settings()).iter("FCBool")}
     assert found == {name: str(int(on)) for _, name, on in window.SETTINGS.values()}
 
 

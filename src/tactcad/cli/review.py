@@ -1,4 +1,4 @@
-"""tactcad review [DESIGN|EXPORT] [--scene NAME]... [--drawings] [--out FILE] [--json]"""
+"""tactcad review [DESIGN|EXPORT] [--scene NAME]... [--drawings] [--out FILE] [--freecad FILE] [--json]"""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import argparse
 import json
 import sys
 import time
+
+from tactcad.design.messages import InputError
 
 from .parser import add_json
 
@@ -15,6 +17,7 @@ EXAMPLES = """\
   tactcad review my/design.toml --scene array     one scene only: sooner made
   tactcad review macro-array --drawings           with the drawing sheet of every part made
   tactcad review exports/macro-array              of an export, with the sheets that lie in it
+  tactcad review --freecad macro-array.FCStd      the same for FreeCAD, made by FreeCAD itself
 
 One file that opens in a browser, without server or network: scenes in three dimensions, with cuts, the
 exploded view by the guide's steps and the rigs' motions; a click on a part shows its number, material,
@@ -36,12 +39,16 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--scene", action="append", metavar="NAME", help="show this scene; may be repeated (default: all)"
     )
     parser.add_argument("--drawings", action="store_true", help="with the drawing sheet of every part made")
-    parser.add_argument("--out", metavar="FILE", default="review.html", help="page (default review.html)")
+    parser.add_argument("--out", metavar="FILE", help="page (default review.html)")
+    parser.add_argument(
+        "--freecad", metavar="FILE", help="FreeCAD's own document (.FCStd); no page then but with --out"
+    )
     add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.review.freecad_file import freecad_document, program
     from tactcad.review.review_page import review_page
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
     from tactcad.review.viewer_library import viewer_library
@@ -51,27 +58,39 @@ def run(args: argparse.Namespace) -> int:
 
     started, say = time.perf_counter(), progress(sys.stderr)
     seen = subject(args.design)
-    refuse_overwriting(args.out, seen.path)
+    out = args.out or (None if args.freecad else "review.html")
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
-    viewer_library()  # a missing one is said before any work
+    if args.freecad:
+        if not args.freecad.endswith(".FCStd"):
+            raise InputError("--freecad", "not a document of FreeCAD", value=args.freecad, legal="NAME.FCStd")
+        refuse_overwriting(args.freecad, seen.path, out, option="--freecad")
+        program()  # what is missing is said before any work
+    if out:
+        refuse_overwriting(out, seen.path)
+        viewer_library()
     shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
-    if args.drawings:
-        scenes = [make_scene(seen.design, name) for name in names]
-        parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
-        sheets = drawn_sheets(seen.design, parts, shapes, say.step)
-    page = review_page(seen.design, names, shapes, say.step, sheets)
-    write_whole(args.out, page)
+    made: dict[str, bytes] = {}
+    if args.freecad:
+        made[args.freecad] = freecad_document(seen.design, names, shapes, say.step)
+    if out:
+        if args.drawings:
+            scenes = [make_scene(seen.design, name) for name in names]
+            parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
+            sheets = drawn_sheets(seen.design, parts, shapes, say.step)
+        made[out] = review_page(seen.design, names, shapes, say.step, sheets)
+    for path, data in made.items():
+        write_whole(path, data)
     shapes.cache.trim()
     record = {
         "design": seen.design.name,
         "revision": seen.design.design.revision,
-        "path": args.out,
         "scenes": list(names),
-        "bytes": len(page),
+        "files": {path: len(data) for path, data in made.items()},
         "seconds": round(time.perf_counter() - started, 3),
     }
     if args.json:
         print(json.dumps(record, indent=1))
     else:
-        print(f"{args.out}: {', '.join(names)}; {len(page) / 1e6:.2f} MB")
+        for path, data in made.items():
+            print(f"{path}: {', '.join(names)}; {len(data) / 1e6:.2f} MB")
     return 0

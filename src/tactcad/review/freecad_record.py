@@ -1,4 +1,4 @@
-"""What FreeCAD's document is made from: parts with their shapes, scenes, tables and findings, as plain data."""
+"""What FreeCAD's document is made from: parts, scenes, tables and findings, as plain data."""
 
 from __future__ import annotations
 
@@ -43,7 +43,9 @@ def freecad_record(
     identity = design.design
     return {
         "label": f"{identity.name} {identity.revision}",
-        "about": [(name, getattr(identity, name)) for name in ("title", "name", "revision", "date", "author")],
+        "about": [
+            (name, getattr(identity, name)) for name in ("title", "name", "revision", "date", "author")
+        ],
         "parameters": [("field", "value", "unit", "meaning", "origin"), *parameter_rows(design)],
         "estimates": estimate_rows(design),
         "parts": [

@@ -4,9 +4,12 @@ TACTCAD_RECORD names the record, TACTCAD_OUT the document to write. In the windo
 hidden are kept too; FreeCAD's command line knows neither. Writes the empty file `done` beside the record.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import sys
+from typing import Any
 
 for folder in ("/usr/lib/freecad/lib", "/usr/lib/freecad-python3/lib"):  # Debian's freecad-python3
     sys.path.append(folder)
@@ -16,12 +19,12 @@ import Part
 EXPLODE = "Review.explode"  # the cell that every exploded place reads: 0 assembled, 1 apart
 
 
-def made(record, folder):
+def made(record: dict, folder: str) -> Any:
     # E1 is E1 in every scene
     FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Document").SetBool("DuplicateLabels", True)
     document = FreeCAD.newDocument("Review")
     document.Label = record["label"]
-    views = View(document)
+    views = View()
     review_sheet(document, record)
     table(document, "Parameters", record["parameters"])
     table(document, "Estimates", record["estimates"])
@@ -38,7 +41,7 @@ def made(record, folder):
     return document
 
 
-def review_sheet(document, record):
+def review_sheet(document: Any, record: dict) -> None:
     """Title, and the cell by which assemblies are taken apart."""
     sheet = document.addObject("Spreadsheet::Sheet", "Review")
     rows = [*record["about"], ("explode: 0 assembled, 1 apart", "")]
@@ -52,7 +55,7 @@ def review_sheet(document, record):
     document.recompute()  # expressions read the cell
 
 
-def table(document, name, rows):
+def table(document: Any, name: str, rows: list) -> None:
     """A spreadsheet of rows; the first is the heading."""
     sheet = document.addObject("Spreadsheet::Sheet", name)
     for n, row in enumerate(rows, 1):
@@ -63,12 +66,12 @@ def table(document, name, rows):
     sheet.setColumnWidth("A", 220)
 
 
-def text(value):
+def text(value: object) -> str:
     """A cell's content that is shown as it stands: never a formula, whatever a design's text begins with."""
     return "'" + str(value).replace("\n", " ")
 
 
-def source(document, store, part, folder, views):
+def source(document: Any, store: Any, part: dict, folder: str, views: View) -> Any:
     """The one shape that all places of a part link to."""
     shape = Part.Shape()
     shape.read(os.path.join(folder, part["file"]))
@@ -83,7 +86,7 @@ def source(document, store, part, folder, views):
     return made
 
 
-def assembly(document, scene, parts, views):
+def assembly(document: Any, scene: dict, parts: dict, views: View) -> Any:
     """A scene: sub-assemblies as groups, links under their designators, findings as labels at their place."""
     whole = document.addObject("App::Part", "Scene")
     whole.Label = scene["name"]
@@ -114,7 +117,7 @@ def assembly(document, scene, parts, views):
     return whole
 
 
-def link(document, placed, part):
+def link(document: Any, placed: dict, part: Any) -> Any:
     one = document.addObject("App::Link", "Placed")
     one.Label = placed["designator"]
     one.LinkedObject = part
@@ -130,25 +133,25 @@ def link(document, placed, part):
 class View:
     """What is seen: kept by the window program alone."""
 
-    def __init__(self, document):
+    def __init__(self) -> None:
         self.on = bool(FreeCAD.GuiUp)
 
-    def colour(self, made, colour):
+    def colour(self, made: Any, colour: str) -> None:
         if self.on:
             made.ViewObject.ShapeColor = tuple(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
             made.ViewObject.Visibility = False
 
-    def hide(self, made):
+    def hide(self, made: Any) -> None:
         if self.on:
             made.ViewObject.Visibility = False
 
-    def mark(self, made, severity):
+    def mark(self, made: Any, severity: str) -> None:
         if self.on:
             made.ViewObject.TextColor = (0.8, 0.1, 0.1) if severity == "fail" else (0.7, 0.4, 0.0)
             made.ViewObject.FontSize = 14
 
 
-def main():
+def main() -> None:
     path = os.environ["TACTCAD_RECORD"]
     with open(path, encoding="utf-8") as stream:
         record = json.load(stream)

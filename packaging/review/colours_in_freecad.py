@@ -1,0 +1,29 @@
+"""Runs inside FreeCAD's window program, without a screen: opens one document of tactcad's as a person would.
+
+Takes REVIEW_FILE and, for a picture of what is seen, REVIEW_PICTURE; writes the colour of every part to
+REVIEW_OUT as JSON.
+"""
+
+import json
+import os
+
+import FreeCAD
+import FreeCADGui
+
+document = FreeCAD.openDocument(os.environ["REVIEW_FILE"])
+parts = document.getObjectsByLabel("Parts")[0].Group
+
+
+def hexadecimal(colour):
+    return "#" + "".join(f"{round(255 * c):02x}" for c in colour[:3])
+
+
+found = {"colours": {part.Label: hexadecimal(part.ViewObject.ShapeColor) for part in parts}}
+if "REVIEW_PICTURE" in os.environ:
+    view = FreeCADGui.getDocument(document.Name).ActiveView
+    view.viewIsometric()
+    view.fitAll()
+    view.saveImage(os.environ["REVIEW_PICTURE"], 1400, 1000, "White")
+with open(os.environ["REVIEW_OUT"], "w") as out:
+    json.dump(found, out)
+os._exit(0)  # closing a window that was never shown crashes FreeCAD 0.20
