@@ -1,14 +1,13 @@
 """Runs inside FreeCAD's window program, without a screen: opens one document of tactcad's as a person would.
 
-Takes REVIEW_FILE and, for a picture of what is seen, REVIEW_PICTURE; writes the colour of every part to
-REVIEW_OUT as JSON.
+Takes REVIEW_FILE, writes the colour of every part to REVIEW_OUT as JSON.
 """
 
 import json
 import os
 
 import FreeCAD
-import FreeCADGui
+import FreeCADGui  # noqa: F401  the window has to be up
 
 document = FreeCAD.openDocument(os.environ["REVIEW_FILE"])
 parts = document.getObjectsByLabel("Parts")[0].Group
@@ -19,11 +18,6 @@ def hexadecimal(colour):
 
 
 found = {"colours": {part.Label: hexadecimal(part.ViewObject.ShapeColor) for part in parts}}
-if "REVIEW_PICTURE" in os.environ:
-    view = FreeCADGui.getDocument(document.Name).ActiveView
-    view.viewIsometric()
-    view.fitAll()
-    view.saveImage(os.environ["REVIEW_PICTURE"], 1400, 1000, "White")
 with open(os.environ["REVIEW_OUT"], "w") as out:
     json.dump(found, out)
 os._exit(0)  # closing a window that was never shown crashes FreeCAD 0.20

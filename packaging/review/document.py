@@ -18,15 +18,12 @@ AGREES = 1e-6  # share of a volume
 SECONDS = 300
 
 
-def colours(path: Path, picture: Path | None = None) -> dict | None:
-    """Colour of every part as the window program shows it, and a picture; None where it ended without
-    telling."""
+def colours(path: Path) -> dict | None:
+    """Colour of every part as the window program shows it; None where it ended without telling."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "user.cfg").write_text(profile())
         files = {"REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json")}
-        if picture:
-            files["REVIEW_PICTURE"] = str(picture.resolve())
         try:
             subprocess.run(
                 [program(), "-u", str(folder / "user.cfg"), str(INSIDE)],

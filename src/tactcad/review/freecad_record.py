@@ -135,6 +135,7 @@ def _scene(scene: SceneFacts, findings: Sequence[FindingFact]) -> dict[str, Any]
         "findings": [
             {"label": f"{finding.severity}: {name}", "severity": finding.severity, "check": finding.check}
             | {"message": f"{finding.about}: {finding.message}", "at": _where(finding, at.get(name))}
+            | {"way": at[name].way if name in at else (0.0, 0.0, 0.0)}
             for finding in findings
             if finding.scene in ("", scene.name)
             for name in _about(finding, at)

@@ -112,6 +112,7 @@ def assembly(document: Any, scene: dict, parts: dict, views: View) -> Any:
             mark.addProperty("App::PropertyString", "Message", "tactcad")
             mark.Message = finding["message"]
             mark.Position = FreeCAD.Vector(*finding["at"])
+            exploded(mark, "Position", finding, "")
             marks.addObject(mark)
             views.mark(mark, finding["severity"])
     return whole
@@ -124,10 +125,15 @@ def link(document: Any, placed: dict, part: Any) -> Any:
     r, (x, y, z) = placed["rotation"], placed["origin"]
     turn = FreeCAD.Matrix(*r[0], x, *r[1], y, *r[2], z, 0, 0, 0, 1)
     one.Placement = FreeCAD.Placement(turn)
-    for axis, start, way in zip("xyz", placed["origin"], placed["way"]):
-        if way:
-            one.setExpression(f"Placement.Base.{axis}", f"{start!r} mm + {EXPLODE} * {way!r} mm")
+    exploded(one, "Placement.Base", {"at": placed["origin"], "way": placed["way"]}, " mm")
     return one
+
+
+def exploded(one: Any, place: str, item: dict, unit: str) -> None:
+    """Let the place go its way as the cell says."""
+    for axis, start, way in zip("xyz", item["at"], item["way"]):
+        if way:
+            one.setExpression(f"{place}.{axis}", f"{start!r}{unit} + {EXPLODE} * {way!r}{unit}")
 
 
 class View:
@@ -149,6 +155,7 @@ class View:
         if self.on:
             made.ViewObject.TextColor = (0.8, 0.1, 0.1) if severity == "fail" else (0.7, 0.4, 0.0)
             made.ViewObject.FontSize = 14
+            made.ViewObject.Visibility = severity == "fail"  # flags are many: the space bar shows them
 
 
 def main() -> None:
