@@ -27,6 +27,7 @@ ROOMS = (
     "fit",
     "bench",
     "synthesis",
+    "review",
     "cli",
 )
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}

@@ -1,0 +1,1 @@
+"""Reviewing a design: what changed, and what it means."""
