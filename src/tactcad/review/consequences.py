@@ -176,15 +176,20 @@ class _Each:
 
 def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
     """What the sides' records tell, without causes."""
-    if not all("array" in side.record["scenes"] for side in (old, new)):
-        return Meaning(untold=(*untold, "consequences: not both sides hold the array's bill of materials"))
-    return Meaning(together=_difference(old, new, None), untold=tuple(untold))
+    found = _difference(old, new, None)
+    if found is None:
+        untold = (*untold, "consequences: not both sides tell the array's parts and bill of materials")
+    return Meaning(together=found, untold=tuple(untold))
 
 
-def _difference(old: Side, new: Side, design: Design | None) -> SensorEffect:
-    """Of two records, of one design where it is given."""
-    before, after = (recorded_state(record, design) for record in comparable(old, new))
-    return effect(before, after, by_name(before, after))
+def _difference(old: Side, new: Side, design: Design | None) -> SensorEffect | None:
+    """Of two records, of one design where it is given; None where one of them does not hold what that
+    takes."""
+    try:
+        before, after = (recorded_state(record, design) for record in comparable(old, new))
+        return effect(before, after, by_name(before, after))
+    except (LookupError, TypeError, AttributeError):  # a file may hold less than this code writes
+        return None
 
 
 def _of_code(old: Side, new: Side, before: Reviewed) -> list[Consequence]:

@@ -12,7 +12,7 @@ from tactcad.export.difference import Change
 from tactcad.export.sides import Side, not_compared
 
 from .consequences import Consequence, Meaning
-from .effect import FIGURES, SensorEffect, ChangedFigure
+from .effect import FIGURES, ChangedFigure, SensorEffect
 
 # Of each list in a Markdown summary; together at most MOST_LINES.
 MOST_LINES, MOST_CAUSES, MOST_TURNED, MOST_NOTES, MOST_NAMES = 60, 24, 8, 4, 8
@@ -23,7 +23,7 @@ COLUMNS = (*FIGURES.values(), "yield", "mass", "cut length")
 def lines(meaning: Meaning) -> Iterator[str]:
     """For the terminal: each cause, largest consequence first, with what it means below it."""
     if meaning.consequences:
-        yield "what changed, by its consequence:"
+        yield "causes, largest consequence first:"
     for c in meaning.consequences:
         yield f"  {c.what}"
         yield from (f"      {said}" for said in (*_how(c), *_said(c.effect, title=c.kind == "title block")))
@@ -70,7 +70,11 @@ def markdown(old: Side, new: Side, changes: Sequence[Change], meaning: Meaning) 
     told += _some([f"- Not compared: {_code(text)}." for text in untold], MOST_NOTES, "not compared")
     if not changes and not meaning.consequences:
         told.append("No difference.")
-    return "\n".join(told).rstrip() + "\n"
+    while told and not told[-1]:
+        told.pop()
+    if len(told) > MOST_LINES:
+        told[MOST_LINES - 1 :] = [f"- … and {len(told) - MOST_LINES + 1} more lines."]
+    return "\n".join(told) + "\n"
 
 
 def html(meaning: Meaning) -> Iterator[str]:
