@@ -23,10 +23,12 @@ class Compared:
 
 
 def _geometry(c: Compared) -> bool:
+    """A part, a placement or a line of a bill."""
     return any(change.path[0] in ("parts", "scenes") for change in c.changes)
 
 
 def _stiffness(c: Compared) -> bool:
+    """K of an element."""
     for side in (c.old, c.new):
         if "elements" not in side.record and not c.meaning.checked:
             raise InputError("--fail-on", f"{side.source} holds no stiffness", value="stiffness")
@@ -34,6 +36,7 @@ def _stiffness(c: Compared) -> bool:
 
 
 def _checks(c: Compared) -> bool:
+    """A check or rule fails that did not."""
     if not c.meaning.checked:
         legal = "sides that hold a design which keeps its rules"
         raise InputError("--fail-on", "nothing to check on both sides", value="checks", legal=legal)
@@ -46,15 +49,15 @@ def _revision(c: Compared) -> bool:
     return same_letter and any(effect.parts_revised for effect in c.meaning.effects)
 
 
-KINDS: dict[str, tuple[str, Callable[[Compared], bool]]] = {
-    "changes": ("anything differs", lambda c: bool(c.changes)),
-    "geometry": ("a part, a placement or a bill differs", _geometry),
-    "stiffness": ("K of an element differs", _stiffness),
-    "checks": ("a check or rule fails that did not", _checks),
-    "revision": ("a part has other content under the same number and revision letter", _revision),
+KINDS: dict[str, Callable[[Compared], bool]] = {
+    "changes": lambda c: bool(c.changes),
+    "geometry": _geometry,
+    "stiffness": _stiffness,
+    "checks": _checks,
+    "revision": _revision,
 }
 
 
 def held(kinds: Collection[str], compared: Compared) -> list[str]:
     """Those of the kinds that the comparison holds. Raises InputError where the sides do not tell."""
-    return [kind for kind in kinds if KINDS[kind][1](compared)]
+    return [kind for kind in kinds if KINDS[kind](compared)]

@@ -107,10 +107,11 @@ def _made(part: Record, line: Record) -> MadePart:
 @dataclass(frozen=True)
 class Reviewed:
     """A design that keeps its rules, by the present code; `known` keeps findings of parts that designs
-    share."""
+    share, `told` is its record of geometry where that was made already."""
 
     design: Design
     known: dict[str, tuple[Part, list[Finding]]] = field(default_factory=dict, repr=False)
+    told: Record | None = None
 
     @cached_property
     def scenes(self) -> Sequence[Scene]:
@@ -124,7 +125,7 @@ class Reviewed:
     @cached_property
     def record(self) -> Record:
         """Of geometry."""
-        return geometry(self.design)
+        return geometry(self.design) if self.told is None else self.told
 
     @cached_property
     def state(self) -> SensorState:
@@ -169,7 +170,10 @@ class Reviewed:
                 report.run("moving weight", check_moving_weight, design, scene)
         shop = load_shop(DEFAULT)
         of_parts = [f for part in self.parts.values() for f in self._about(part, shop)]
-        missing = [Finding("scene", "flag", line.split(":")[0], (), 0, 0, line) for line in left_out(design)]
+        missing = [
+            Finding("scene", "flag", scene, (), 0, 0, why)
+            for scene, why in (line.split(": ", 1) for line in left_out(design))
+        ]
         return [*report.findings, *of_parts, *missing]
 
     def _about(self, part: Part, shop: Shop) -> list[Finding]:
