@@ -1,61 +1,140 @@
-"""tactcad diff A B [--json] [--html FILE]"""
+"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html FILE] [--markdown FILE] [--fail-on KIND]..."""
 
 from __future__ import annotations
 
 import argparse
 import json
+import sys
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from .parser import add_json
+
+if TYPE_CHECKING:
+    from tactcad.export.difference import Change
+    from tactcad.export.sides import Side
+    from tactcad.review.consequences import Meaning
 
 EXAMPLES = """\
   tactcad diff exports/golden/macro-array.json macro-array     what changed since the committed geometry
   tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
   tactcad diff macro-array my/design.toml --json               two designs, as JSON
+  tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design, each by its code
+  tactcad diff main . macro-array --present-code               since main's text, by the present code alone
+  tactcad diff origin/main HEAD macro-array --markdown changes.md --fail-on checks --fail-on revision
+                                                               for a pull request
 
-A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json).
-What only one of them tells is left out, and said. The exit status is 0 whether anything changed or not."""
+A and B are each a design (a path or a name in hardware/), an export's folder, or a golden file (.json); with
+DESIGN they are git revisions, or '.' for the files as they stand. A revision's own code runs in a worktree of
+it, in your own repository only; where it does not run, its committed golden file stands for it.
+First stands what each change of the design means by itself, by the present code, largest consequence first:
+K, rated force, signal, stop gap, yield, mass, cut, parts, sheets, bill, and checks that turned.
+What only one of them tells is left out, and said. The exit status is 0 whether anything changed or not, but
+1 where --fail-on is met."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("old", metavar="A", help="design, export's folder or golden file")
+    # what --fail-on takes; tactcad.review.gating, which has them, loads numpy
+    kinds = ("changes", "geometry", "stiffness", "checks", "revision")
+    parser.add_argument("old", metavar="A", help="design, export's folder or golden file; or revision")
     parser.add_argument("new", metavar="B", help="the same, what it became")
+    parser.add_argument("design", metavar="DESIGN", nargs="?", help="A and B are git revisions of it")
+    parser.add_argument(
+        "--present-code",
+        action="store_true",
+        help="read revisions' designs by the present code, run no other",
+    )
     add_json(parser)
     parser.add_argument(
         "--html", metavar="FILE", help="also write one offline page with contours laid over each other"
     )
+    parser.add_argument(
+        "--markdown", metavar="FILE", help="also write a summary of at most 60 lines for a pull request"
+    )
+    parser.add_argument(
+        "--fail-on",
+        action="append",
+        default=[],
+        choices=kinds,
+        metavar="KIND",
+        help="exit status 1 where there are changes at all (changes), other parts, places or bills "
+        "(geometry), another K (stiffness), a failure of checks or rules that was not (checks), or other "
+        "content under the same part number and revision letter (revision); may be repeated",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.design.files import refuse_overwriting, write_whole
-    from tactcad.export.sides import compare_sides, named, not_compared, read_side
+    from tactcad.design.files import write_whole
+    from tactcad.export.sides import compare_sides
+    from tactcad.review.consequences import meaning
+    from tactcad.review.gating import Compared, held
+    from tactcad.review.summary import html, markdown
 
-    if args.html:
-        refuse_overwriting(args.html, named(args.old), named(args.new), option="--html")
-    old, new = read_side(args.old), read_side(args.new)
+    old, new = _sides(args)
     changes = compare_sides(old, new)
-    left_out = not_compared(old, new)
+    meant = meaning(old, new)
+    met = held(args.fail_on, Compared(old, new, changes, meant))
     if args.html:
         from tactcad.export.difference_page import page
 
-        write_whole(args.html, page(old, new, changes))
+        write_whole(args.html, page(old, new, changes, html(meant)))
+    if args.markdown:
+        write_whole(args.markdown, markdown(old, new, changes, meant).encode())
     if args.json:
-        sides = {
-            name: {"source": side.source, "kind": side.kind, "design": side.design, "revision": side.revision}
-            for name, side in (("old", old), ("new", new))
-        }
-        record = {
-            **sides,
-            "identical": not changes,
-            "not_compared": left_out,
-            "changes": [asdict(c) for c in changes],
-        }
-        print(json.dumps(record, indent=1))
-        return 0
+        print(json.dumps(_record(old, new, changes, meant), indent=1))
+    else:
+        _print(old, new, changes, meant)
+    for kind in met:
+        print(f"tactcad: --fail-on {kind} is met", file=sys.stderr)
+    return 1 if met else 0
+
+
+def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
+    from tactcad.design.files import refuse_overwriting
+    from tactcad.design.messages import InputError
+    from tactcad.export.sides import named, read_side
+    from tactcad.review.revisions import design_file, revision_sides
+
+    if args.present_code and args.design is None:
+        raise InputError("--present-code", "goes with revisions only", legal="A B DESIGN")
+    read = [named(args.old), named(args.new)] if args.design is None else [design_file(args.design)]
+    outs = {"--html": args.html, "--markdown": args.markdown}
+    for option, out in outs.items():
+        if out:
+            refuse_overwriting(out, *read, option=option)
+    if args.html and args.html == args.markdown:
+        raise InputError("--markdown", "the page is written there", value=args.markdown, legal="another file")
+    if args.design is None:
+        return read_side(args.old), read_side(args.new)
+    return revision_sides(args.old, args.new, args.design, args.present_code)
+
+
+def _record(old: Side, new: Side, changes: list[Change], meant: Meaning) -> dict:
+    from tactcad.export.sides import not_compared
+    from tactcad.review.summary import as_record
+
+    sides = {
+        name: {"source": side.source, "kind": side.kind, "design": side.design, "revision": side.revision}
+        for name, side in (("old", old), ("new", new))
+    }
+    return {
+        **sides,
+        "identical": not changes,
+        "not_compared": not_compared(old, new),
+        "changes": [asdict(c) for c in changes],
+        "meaning": as_record(meant),
+    }
+
+
+def _print(old: Side, new: Side, changes: list[Change], meant: Meaning) -> None:
+    from tactcad.export.sides import not_compared
+    from tactcad.review.summary import lines
+
+    for line in lines(meant):
+        print(line)
     for change in changes:
         print(change)
-    for text in left_out:
+    for text in (*not_compared(old, new), *meant.untold):
         print(f"not compared: {text}")
     if not changes:
         print(f"no difference: {old.source} and {new.source}")
-    return 0

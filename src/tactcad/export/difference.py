@@ -133,7 +133,7 @@ def shown(value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, float):
         return f"{value:.9g}"
-    return "none" if value is None else str(value) or '""'
+    return "none" if value is None else str(value).replace("\n", "\\n") or '""'
 
 
 def _drawn(contours: list | None) -> str:

@@ -31,6 +31,7 @@ th{{border-bottom:2px solid #6a737d}}
 col.kind{{width:90px}} col.remark{{width:150px}} col.path{{width:32%}}
 td.old{{color:#8a3d00}} td.new{{color:#00527f}}
 .added .kind{{color:#00527f;font-weight:600}} .removed .kind{{color:#8a3d00;font-weight:600}}
+table.meaning th.cause{{width:30%}} tr.said td{{color:#4a525b;font-size:13px;padding-left:28px}}
 .pair{{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap}}
 .pair figure{{flex:1 1 420px;margin:8px 0;min-width:0;max-width:720px}}
 figure svg,figure img{{width:100%;height:auto;display:block;border:1px solid #d9dee3;background:#fff}}
@@ -48,12 +49,13 @@ LEAST_WINDOW = 0.015  # of the part's larger side, for the enlarged view
 BEYOND = 6.0  # the enlarged view shows this many times the distance on each side
 
 
-def page(old: Side, new: Side, changes: Sequence[Change]) -> bytes:
-    """The page's bytes; it loads nothing from anywhere."""
+def page(old: Side, new: Side, changes: Sequence[Change], first: Iterable[str] = ()) -> bytes:
+    """The page's bytes; it loads nothing from anywhere. `first` is HTML that stands above the changes."""
     body = [
         f"<h1>{escape(new.design)}: what changed</h1>",
         f"<p>From <b>{escape(_name(old))}</b> to <b>{escape(_name(new))}</b>: {_counted(changes)}.</p>",
         *(f'<p class="note">Not compared: {escape(text)}.</p>' for text in not_compared(old, new)),
+        *first,
         *_tables(changes),
         *_overlays(old, new, changes),
         *_pictures(old, new),

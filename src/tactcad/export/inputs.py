@@ -121,6 +121,31 @@ def flattened(value: object, path: str = "") -> dict[str, Any]:
     return {k: v for name, child in children.items() for k, v in flattened(child, join + name).items()}
 
 
+def nested(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables that TOML would give for `flattened` values of a design; what is None is left out."""
+    tables: dict[str, Any] = {}
+    for path, value in values.items():
+        if value is None:
+            continue
+        # a source's name has dots, and so have arm lengths
+        dots = 1 if path.startswith("origin.") else 2 if path.startswith("stop.gaps.") else -1
+        head, *above, last = path.split(".", dots)
+        node = tables.setdefault(head, {})
+        for name in above:
+            node = node.setdefault(name, {})
+        name, *places = last.replace("]", "").split("[") if dots < 0 else (last,)
+        if not places:
+            node[name] = value
+            continue
+        row = node.setdefault(name, [])
+        for _ in places[1:]:
+            if int(places[0]) == len(row):
+                row.append([])
+            row = row[-1]
+        row.append(value)
+    return tables
+
+
 @dataclass(frozen=True)
 class Inputs:
     """What one export was made from: values by path, source digests by room, versions by library."""

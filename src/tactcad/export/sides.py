@@ -1,22 +1,27 @@
-"""The two sides of `tactcad diff`: a design, an export's folder or a golden file, as a record of geometry."""
+"""The two sides of `tactcad diff`: a design, an export's folder, a golden file or a revision, as a record of
+geometry."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from tactcad.design.files import read_json
-from tactcad.design.load import find
+from tactcad.design.files import read_json, read_text
+from tactcad.design.load import MOST_BYTES as MOST_TEXT
+from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
-from tactcad.parts.designs import load
+from tactcad.design.toml_text import parse_toml
+from tactcad.parts.rules import refuse_broken
 
 from .difference import Change, differences
 from .dxf import read_dxf
 from .geometry import Record, bill_line, contour_record, geometry
 from .golden_file import MOST_BYTES, read_golden
-from .inputs import flattened, inputs_from_json
+from .inputs import flattened, inputs_from_json, nested
 from .manifest import NAME, Manifest, check_manifest, read_manifest
 
 # What an export's files say of a part; holes, placements and stiffness are in none of them.
@@ -39,16 +44,24 @@ FROM_SHAPE = ("area_mm2", "centre_mm", "box_mm")
 class Side:
     """One side: what was named and what it is, its record, and for an export its folder.
 
-    `values` are the design's fields by path, None where the side does not tell them (a golden file).
+    values    the design's fields by path, None where the side does not tell them (a golden file)
+    table     the design as TOML gives it, None where the side does not tell it
+    own_code  the record is by the code of a revision, not by the present one
+    of_other  what that code makes of the design on the other side; None where it was not asked, or refuses it
+    untold    what could not be compared on this side's account, one clause each
     """
 
     source: str
-    kind: Literal["design", "export", "golden"]
+    kind: Literal["design", "export", "golden", "revision"]
     design: str
     revision: str
     record: Record
     values: dict[str, Any] | None = None
     folder: Path | None = None
+    table: dict[str, Any] | None = None
+    own_code: bool = False
+    of_other: Record | None = None
+    untold: tuple[str, ...] = ()
 
     def pictures(self) -> dict[str, bytes]:
         """An export's pictures by path."""
@@ -77,9 +90,27 @@ def read_side(source: str) -> Side:
         record = read_golden(path)
         sections = {name: record[name] for name in ("parts", "scenes", "elements")}
         return Side(source, "golden", record["design"], record["revision"], sections)
-    design = load(source)
+    path = find(source)
+    return design_side(source, "design", parse_toml(read_text(path, MOST_TEXT, "a design file"), str(path)))
+
+
+def design_side(
+    source: str, kind: Literal["design", "revision"], table: dict[str, Any], untold: tuple[str, ...] = ()
+) -> Side:
+    """The side of a design, given as TOML gives it, by the present code. Raises InputError where it is none,
+    or breaks a rule."""
+    design = from_table(table)
+    refuse_broken(design)
+    identity = design.design
     return Side(
-        source, "design", design.name, design.design.revision, geometry(design), _values(flattened(design))
+        source,
+        kind,
+        identity.name,
+        identity.revision,
+        geometry(design),
+        design_values(flattened(design)),
+        table=table,
+        untold=untold,
     )
 
 
@@ -101,18 +132,24 @@ def _export(source: str, folder: Path) -> Side:
     )
     try:
         record = {"parts": _exported_parts(folder, manifest), "scenes": _exported_bills(folder, manifest)}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        table = values and nested(values)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise InputError(source, f"not a sound export: {error}") from None
     return Side(
-        source, "export", manifest.design, manifest.revision, record, values and _values(values), folder
+        source,
+        "export",
+        manifest.design,
+        manifest.revision,
+        record,
+        values and design_values(values),
+        folder,
+        table,
     )
 
 
-def _values(fields: dict[str, Any]) -> dict[str, Any]:
-    """A design's fields without the sources of its values, and without what stands at the head of every
-    side."""
-    head = ("design.name", "design.revision")
-    return {path: v for path, v in fields.items() if not path.startswith("origin.") and path not in head}
+def design_values(fields: dict[str, Any]) -> dict[str, Any]:
+    """A design's fields without what stands at the head of every side."""
+    return {path: v for path, v in fields.items() if path not in ("design.name", "design.revision")}
 
 
 def _exported_parts(folder: Path, manifest: Manifest) -> Record:
@@ -147,19 +184,24 @@ def _exported_bills(folder: Path, manifest: Manifest) -> Record:
 def compare_sides(old: Side, new: Side) -> list[Change]:
     """What changed, as far as both sides record it: names, the design's values, then the geometry."""
     records = []
-    for side in (old, new):
-        record = {
-            **side.record,
-            "parts": {number: dict(part) for number, part in side.record["parts"].items()},
-        }
-        if "export" in (old.kind, new.kind):
-            record = _as_exported(record)
+    for side, record in zip((old, new), comparable(old, new)):
         head: Record = {"design": side.design, "revision": side.revision}
         if old.values is not None and new.values is not None:
             head["values"] = side.values
         records.append({**head, **record})
-    _drop_unknown(*records)
     return differences(*records)
+
+
+def comparable(old: Side, new: Side) -> tuple[Record, Record]:
+    """The sides' records as far as both tell the same of a part, a scene and an element."""
+    before, after = (deepcopy(side.record) for side in (old, new))
+    if "export" in (old.kind, new.kind):
+        before, after = _as_exported(before), _as_exported(after)
+    if old.own_code or new.own_code:  # another code may record more, or less
+        for tables in zip(_rows(before), _rows(after)):
+            _drop_uncommon(*tables)
+    _drop_unknown(before, after)
+    return before, after
 
 
 def not_compared(old: Side, new: Side) -> list[str]:
@@ -169,7 +211,7 @@ def not_compared(old: Side, new: Side) -> list[str]:
         missing.append("a golden file holds no design values")
     if "export" in (old.kind, new.kind) and old.kind != new.kind:
         missing.append("an export holds no hole list, no placements and no stiffness")
-    return missing
+    return [*missing, *dict.fromkeys((*old.untold, *new.untold))]
 
 
 def _as_exported(record: Record) -> Record:
@@ -182,6 +224,28 @@ def _as_exported(record: Record) -> Record:
         "parts": parts,
         "scenes": {name: {"bom": scene["bom"]} for name, scene in record["scenes"].items()},
     }
+
+
+def _rows(record: Record) -> Iterator[dict[Any, Record]]:
+    """Tables whose rows have the same fields: parts, elements, what every scene lists, a part's features."""
+    parts, scenes = record["parts"].values(), record["scenes"].values()
+    yield record["parts"]
+    yield record.get("elements", {})
+    for name in ("holes", "pockets", "limits"):
+        yield {(n, row): part[name][row] for n, part in enumerate(parts) for row in part.get(name, {})}
+    for name in ("placed", "bom"):
+        yield {(n, row): scene[name][row] for n, scene in enumerate(scenes) for row in scene.get(name, {})}
+
+
+def _drop_uncommon(old: dict[Any, Record], new: dict[Any, Record]) -> None:
+    """Take out fields that no row of the other table has; a table without rows tells nothing of them."""
+    known = [{name for row in table.values() for name in row} for table in (old, new)]
+    if not all(known):
+        return
+    for table in (old, new):
+        for row in table.values():
+            for name in row.keys() - (known[0] & known[1]):
+                del row[name]
 
 
 def _drop_unknown(old: Record, new: Record) -> None:

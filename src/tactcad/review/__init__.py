@@ -1,1 +1,1 @@
-"""One page that shows a design in three dimensions, with every fact a reviewer asks for."""
+"""Reviewing a design: all its facts as a page and in FreeCAD; what changed, and what that means."""

@@ -1,0 +1,231 @@
+"""What each change of a design means: every cause alone, ordered by what it does to the sensor.
+
+By the present code and in closed form. A cause is made alone in the old design; where that is refused, it is
+taken back alone in the new one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import log, prod
+from typing import Any, Literal
+
+from tactcad.design.load import from_table
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.design.tree import Design
+from tactcad.export.geometry import Record
+from tactcad.export.sides import Side, comparable
+from tactcad.parts.rules import refuse_broken
+
+from .causes import Cause, Table, causes
+from .effect import SensorEffect, by_name, effect, reviewed_effect
+from .sensor_state import Reviewed, recorded_state
+
+How = Literal["alone", "taken back", "together only", "code"]
+# What the causes do together beyond what each does alone, as a share of K; chosen: a tenth of what 5 um of a
+# hinge of 0.25 mm do.
+INTERACTION = 0.005
+
+
+@dataclass(frozen=True)
+class Consequence:
+    """One cause and what it means.
+
+    what   the cause in words
+    how    `alone` made in the old design; `taken back` from the new one; `together only`: refused either way,
+           `why`; `code`: other code, the same design
+    """
+
+    what: str
+    kind: str
+    how: How
+    effect: SensorEffect
+    why: str = ""
+
+    @property
+    def weight(self) -> tuple[float, ...]:
+        """What stands above what: failures, what cannot be told, K and rated force and yield, the other
+        figures of elements, mass and cut, parts, and the rest; each by its largest relative change."""
+        e = self.effect
+        share = abs(e.yield_share.new - e.yield_share.old) if e.yield_share else 0.0
+        array = [abs(f.change) for f in (e.mass, e.cut_length) if f]
+        return (
+            float(e.now_fails),
+            float(self.how == "together only"),
+            max(share, e.largest("stiffness", "rated_force")),
+            float(len(e.elements_added) + len(e.elements_removed)),
+            e.largest("signal_per_force", "stop_gap"),
+            max(array, default=0.0),
+            float(len(e.parts_added) + len(e.parts_removed) + len(e.parts_revised)),
+            float(len(e.now)),
+            float(self.kind != "note"),
+        )
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """Consequences of all that changed, largest first.
+
+    together      all causes at once; None where the sides' records do not tell
+    checked       whether `together` says what checks say: both sides tell their design
+    interactions  where the causes do more or less together than one by one, one line for each element
+    untold        why there are no consequences of causes, one line each
+    """
+
+    consequences: tuple[Consequence, ...] = ()
+    together: SensorEffect | None = None
+    checked: bool = False
+    interactions: tuple[str, ...] = ()
+    untold: tuple[str, ...] = ()
+
+    @property
+    def effects(self) -> tuple[SensorEffect, ...]:
+        """Of the whole: of the design, and of the code where that differs."""
+        code = [c.effect for c in self.consequences if c.how == "code"]
+        return (self.together, *code) if self.together is not None else tuple(code)
+
+
+def meaning(old: Side, new: Side) -> Meaning:
+    """What the change from one side to the other means.
+
+    Sides that tell no design (golden files) are compared by what they record; so is what the code of a
+    revision makes of the same design as the present code.
+    """
+    designs = [_loaded(side) for side in (old, new)]
+    untold = tuple(d for d in designs if isinstance(d, str))
+    if old.table is None or new.table is None or untold:
+        return _recorded(old, new, untold)
+    before, after = (
+        Reviewed(d, told=_made_here(side)) for d, side in zip(designs, (old, new)) if isinstance(d, Design)
+    )
+    code = _of_code(old, new, before)
+    if before.design == after.design:
+        return Meaning(tuple(code), SensorEffect(), True)
+    build = _other_arrays(before.design, after.design)
+    together = reviewed_effect(before, after, build)
+    found = causes(old.table, new.table)
+    each = _Each(old.table, new.table, before, after, together)
+    told = [each.of(cause, len(found) == 1) for cause in found]
+    ranked = sorted([*code, *told], key=lambda c: c.weight, reverse=True)
+    return Meaning(tuple(ranked), together, True, tuple(_interactions(told, together)))
+
+
+def _loaded(side: Side) -> Design | str | None:
+    """The side's design by the present code, None where it tells none; why it is refused."""
+    if side.table is None:
+        return None
+    try:
+        return _kept(side.table)
+    except InputError as error:
+        return f"the present code refuses the design of {side.source}: {error}"
+
+
+def _made_here(side: Side) -> Record | None:
+    """A record that the present code made of the whole design."""
+    return side.record if side.kind in ("design", "revision") and not side.own_code else None
+
+
+def _kept(table: Table) -> Design:
+    """A design that keeps its rules. Raises InputError where it does not."""
+    design = from_table(table)
+    refuse_broken(design)
+    return design
+
+
+def _other_arrays(old: Design, new: Design) -> bool:
+    """Whether virtual arrays may come out otherwise: more differs than names, sources and the read-out."""
+
+    def rest(design: Design) -> dict[str, Any]:
+        return {k: v for k, v in vars(design).items() if k not in ("design", "origin", "readout")}
+
+    return rest(old) != rest(new)
+
+
+@dataclass(frozen=True)
+class _Each:
+    """The causes one by one, between these designs."""
+
+    old: Table
+    new: Table
+    before: Reviewed
+    after: Reviewed
+    together: SensorEffect
+
+    def of(self, cause: Cause, only: bool) -> Consequence:
+        """The consequence of one cause; of the `only` value that changed it is that of all together."""
+        said = str(cause)
+        if cause.kind == "note":
+            return Consequence(said, cause.kind, "alone", SensorEffect())
+        if cause.kind == "title block":
+            sheets = (*self.after.state.made, *(f"assembly {name}" for name in self.after.state.scenes))
+            return Consequence(said, cause.kind, "alone", SensorEffect(sheets=sheets))
+        if only:
+            return Consequence(said, cause.kind, "alone", self.together)
+        refused = ""
+        ways: tuple[tuple[How, Callable[[], SensorEffect]], ...] = (
+            ("alone", lambda: self._effect(self.before, self._reviewed(cause.applied(self.old)))),
+            ("taken back", lambda: self._effect(self._reviewed(cause.reverted(self.new)), self.after)),
+        )
+        for how, way in ways:
+            try:
+                return Consequence(said, cause.kind, how, way(), refused)
+            except (InputError, CheckFailure) as error:
+                refused = refused or str(error)
+        return Consequence(said, cause.kind, "together only", SensorEffect(), refused)
+
+    def _effect(self, old: Reviewed, new: Reviewed) -> SensorEffect:
+        """Arrays are built for one cause only where they come out otherwise for all."""
+        return reviewed_effect(old, new, self.together.yield_share is not None)
+
+    def _reviewed(self, table: Table) -> Reviewed:
+        return Reviewed(_kept(table), self.before.known)
+
+
+def _recorded(old: Side, new: Side, untold: Sequence[str]) -> Meaning:
+    """What the sides' records tell, without causes."""
+    found = _difference(old, new, None)
+    if found is None:
+        untold = (*untold, "consequences: not both sides tell the array's parts and bill of materials")
+    return Meaning(together=found, untold=tuple(untold))
+
+
+def _difference(old: Side, new: Side, design: Design | None) -> SensorEffect | None:
+    """Of two records, of one design where it is given; None where one of them does not hold what that
+    takes."""
+    try:
+        before, after = (recorded_state(record, design) for record in comparable(old, new))
+        return effect(before, after, by_name(before, after))
+    except (LookupError, TypeError, AttributeError):  # a file may hold less than this code writes
+        return None
+
+
+def _of_code(old: Side, new: Side, before: Reviewed) -> list[Consequence]:
+    """What the code of the new side makes of the old side's design otherwise than the code of the old one."""
+    made = new.of_other if new.own_code else before.record
+    if not (old.own_code or new.own_code) or made is None:
+        return []
+    found = _difference(old, replace(new, record=made), before.design)
+    ways = [side.source.rsplit(":", 1)[0] if side.own_code else "the present one" for side in (old, new)]
+    return [Consequence(f"code: {ways[0]} -> {ways[1]}", "code", "code", found)] if found else []
+
+
+def _interactions(told: Sequence[Consequence], together: SensorEffect) -> list[str]:
+    """Elements whose K the causes change together otherwise than one after the other."""
+    lines = []
+    for element in together.elements:
+        if element.stiffness is None:
+            continue
+        singles = [
+            e.stiffness.new / e.stiffness.old
+            for c in told
+            for e in c.effect.elements
+            if e.stiffness and (e.new == element.new if c.how == "taken back" else e.old == element.old)
+        ]
+        whole, product = element.stiffness.new / element.stiffness.old, prod(singles)
+        if abs(log(whole / product)) > INTERACTION:
+            lines.append(
+                f"{element.new}: K {100 * (product - 1):+.3g} % by the causes one by one, "
+                f"{100 * (whole - 1):+.3g} % together"
+            )
+    return lines
