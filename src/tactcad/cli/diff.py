@@ -1,4 +1,4 @@
-"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html FILE] [--markdown FILE] [--fail-on KIND]..."""
+"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html|--markdown|--freecad FILE] [--fail-on KIND]"""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ EXAMPLES = """\
   tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
   tactcad diff macro-array my/design.toml --json               two designs, as JSON
   tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design, each by its code
+  tactcad diff HEAD . macro-array --freecad changes.FCStd      what changed since the commit, in FreeCAD
   tactcad diff main . macro-array --present-code               since main's text, by the present code alone
   tactcad diff origin/main HEAD macro-array --markdown changes.md --fail-on checks --fail-on revision
                                                                for a pull request
@@ -52,6 +53,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--markdown", metavar="FILE", help="also write a summary of at most 60 lines for a pull request"
     )
     parser.add_argument(
+        "--freecad",
+        metavar="FILE",
+        help="also write a document of FreeCAD (.FCStd) with added, removed and kept material in colours",
+    )
+    parser.add_argument(
         "--fail-on",
         action="append",
         default=[],
@@ -80,6 +86,8 @@ def run(args: argparse.Namespace) -> int:
         write_whole(args.html, page(old, new, changes, html(meant)))
     if args.markdown:
         write_whole(args.markdown, markdown(old, new, changes, meant).encode())
+    if args.freecad:
+        _write_freecad(args.freecad, old, new, meant)
     if args.json:
         print(json.dumps(_record(old, new, changes, meant), indent=1))
     else:
@@ -93,20 +101,38 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
     from tactcad.design.files import refuse_overwriting
     from tactcad.design.messages import InputError
     from tactcad.export.sides import named, read_side
+    from tactcad.review.freecad_file import refuse_no_document
     from tactcad.review.revisions import design_file, revision_sides
 
     if args.present_code and args.design is None:
         raise InputError("--present-code", "goes with revisions only", legal="A B DESIGN")
     read = [named(args.old), named(args.new)] if args.design is None else [design_file(args.design)]
-    outs = {"--html": args.html, "--markdown": args.markdown}
+    outs = {"--html": args.html, "--markdown": args.markdown, "--freecad": args.freecad}
     for option, out in outs.items():
         if out:
             refuse_overwriting(out, *read, option=option)
+    if args.freecad:
+        refuse_no_document(args.freecad)
     if args.html and args.html == args.markdown:
         raise InputError("--markdown", "the page is written there", value=args.markdown, legal="another file")
     if args.design is None:
         return read_side(args.old), read_side(args.new)
     return revision_sides(args.old, args.new, args.design, args.present_code)
+
+
+def _write_freecad(out: str, old: Side, new: Side, meant: Meaning) -> None:
+    from tactcad.design.files import write_whole
+    from tactcad.review.consequences import kept_designs
+    from tactcad.review.freecad_changes import freecad_changes
+    from tactcad.review.subject import shapes_of
+    from tactcad.review.summary import rows
+
+    from .progress import progress
+
+    say = progress(sys.stderr)
+    before, after = kept_designs(old, new)
+    shapes = shapes_of(before, say.line), shapes_of(after, say.line)
+    write_whole(out, freecad_changes((before, after), shapes, rows(meant), say.step))
 
 
 def _record(old: Side, new: Side, changes: list[Change], meant: Meaning) -> dict:

@@ -7,8 +7,6 @@ import json
 import sys
 import time
 
-from tactcad.design.messages import InputError
-
 from .parser import add_json
 
 EXAMPLES = """\
@@ -48,7 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
-    from tactcad.review.freecad_file import freecad_document, program
+    from tactcad.review.freecad_file import freecad_document, refuse_no_document
     from tactcad.review.review_page import review_page
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
     from tactcad.review.viewer_library import viewer_library
@@ -61,10 +59,8 @@ def run(args: argparse.Namespace) -> int:
     out = args.out or (None if args.freecad else "review.html")
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
     if args.freecad:
-        if not args.freecad.endswith(".FCStd"):
-            raise InputError("--freecad", "not a document of FreeCAD", value=args.freecad, legal="NAME.FCStd")
         refuse_overwriting(args.freecad, seen.path, out, option="--freecad")
-        program()  # what is missing is said before any work
+        refuse_no_document(args.freecad)
     if out:
         refuse_overwriting(out, seen.path)
         viewer_library()

@@ -111,6 +111,16 @@ def meaning(old: Side, new: Side) -> Meaning:
     return Meaning(tuple(ranked), together, True, tuple(_interactions(told, together)))
 
 
+def kept_designs(old: Side, new: Side) -> tuple[Design, Design]:
+    """Both sides' designs by the present code. Raises InputError where one tells none, or breaks a rule."""
+    for side in (old, new):
+        if side.table is None:
+            raise InputError(
+                side.source, "does not tell its design", legal="a design, an export or a revision"
+            )
+    return _kept(old.table or {}), _kept(new.table or {})
+
+
 def _loaded(side: Side) -> Design | str | None:
     """The side's design by the present code, None where it tells none; why it is refused."""
     if side.table is None:

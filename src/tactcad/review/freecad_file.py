@@ -6,17 +6,18 @@ import json
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from tactcad.design.files import scratch_folder
-from tactcad.design.messages import CheckFailure
+from tactcad.design.messages import CheckFailure, InputError
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
 from tactcad.scenes import make_scene
 
 from .finding_facts import finding_facts
-from .freecad_record import freecad_record, part_file
+from .freecad_record import freecad_record
 from .scene_facts import scene_facts
 
 COMMANDS = ("freecad", "FreeCAD")
@@ -33,6 +34,16 @@ def program() -> str:
             "(0.20 or later), elsewhere see freecad.org"
         )
     return found
+
+
+def refuse_no_document(out: str) -> None:
+    """What keeps a document from being made at `out`, before any work.
+
+    Raises InputError where it is no document's name, CheckFailure where FreeCAD is not installed.
+    """
+    if not out.endswith(".FCStd"):
+        raise InputError("--freecad", "not a document of FreeCAD", value=out, legal="NAME.FCStd")
+    program()
 
 
 def freecad_document(
@@ -59,24 +70,46 @@ def freecad_document(
     command = program()
     scenes = tuple(make_scene(design, name) for name in scene_names)
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
-    total = len(parts) + 2
+    total = len(parts) + 1
     say(0, total, "checks")
     findings = finding_facts(design, scenes, shapes, lambda *_: None)
     facts = [scene_facts(design, scene) for scene in scenes]
     record = freecad_record(design, facts, parts, findings)
+    texts = (shapes.text_of(part) for part in parts.values())
+    return made_by_freecad(command, record, texts, lambda n, what: say(n, total, what))
+
+
+def made_by_freecad(
+    command: str, record: Mapping[str, Any], texts: Iterable[bytes], say: Callable[[int, str], None]
+) -> bytes:
+    """The document of a record.
+
+    Parameters
+    ----------
+    command
+        As `program` found it.
+    record
+        As `peers/freecad_document.py` reads it.
+    texts
+        The shapes of its parts (BREP), in their order.
+    say
+        Receives (done, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where FreeCAD ends without a document.
+    """
     with scratch_folder("freecad") as folder:
-        for n, part in enumerate(parts.values()):
-            say(n + 1, total, part.part_no)
-            (folder / part_file(n)).write_bytes(shapes.text_of(part))
+        for n, (part, text) in enumerate(zip(record["parts"], texts, strict=True)):
+            say(n + 1, part["part_no"])
+            (folder / part["file"]).write_bytes(text)
         (folder / "record.json").write_text(json.dumps(record), encoding="utf-8")
-        say(total - 1, total, "FreeCAD")
-        data = _run(command, folder)
-    say(total, total, "done")
-    return data
+        say(len(record["parts"]) + 1, "FreeCAD")
+        return _run(command, folder)
 
 
 def _run(command: str, folder: Path) -> bytes:
-    """FreeCAD on the record of the folder."""
     out = folder / "review.FCStd"
     more = {"TACTCAD_RECORD": str(folder / "record.json"), "TACTCAD_OUT": str(out)}
     (folder / "user.cfg").write_text(profile())

@@ -46,13 +46,16 @@ def freecad_record(
         "about": [
             (name, getattr(identity, name)) for name in ("title", "name", "revision", "date", "author")
         ],
-        "parameters": [("field", "value", "unit", "meaning", "origin"), *parameter_rows(design)],
-        "estimates": estimate_rows(design),
+        "tables": {
+            "Parameters": [("field", "value", "unit", "meaning", "origin"), *parameter_rows(design)],
+            "Estimates": estimate_rows(design),
+        },
         "parts": [
             {
                 "part_no": p.part_no,
                 "file": part_file(n),
                 "colour": p.colour,
+                "transparency": 0,
                 "properties": _properties(p, identity.revision),
             }
             for n, p in enumerate(parts.values())

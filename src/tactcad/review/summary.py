@@ -77,6 +77,15 @@ def markdown(old: Side, new: Side, changes: Sequence[Change], meaning: Meaning) 
     return "\n".join(told) + "\n"
 
 
+def rows(meaning: Meaning) -> list[tuple[str, ...]]:
+    """The consequences as a table: a heading, then a row for each cause."""
+    told = [
+        (c.what, *_cells(c.effect), "; ".join(_words(c.effect, c.kind == "title block")))
+        for c in meaning.consequences
+    ]
+    return [("cause, by its consequence", *COLUMNS, "besides"), *told]
+
+
 def html(meaning: Meaning) -> Iterator[str]:
     """The consequences as a section of the page of differences."""
     if not meaning.consequences and not meaning.together:

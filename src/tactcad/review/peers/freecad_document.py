@@ -26,8 +26,8 @@ def made(record: dict, folder: str) -> Any:
     document.Label = record["label"]
     views = View()
     review_sheet(document, record)
-    table(document, "Parameters", record["parameters"])
-    table(document, "Estimates", record["estimates"])
+    for name, rows in record["tables"].items():
+        table(document, name, rows)
     store = document.addObject("App::DocumentObjectGroup", "Parts")
     parts = {}
     for part in record["parts"]:
@@ -82,7 +82,7 @@ def source(document: Any, store: Any, part: dict, folder: str, views: View) -> A
         made.addProperty("App::PropertyString", name, "tactcad")
         setattr(made, name, value)
     store.addObject(made)
-    views.colour(made, part["colour"])
+    views.colour(made, part["colour"], part["transparency"])
     return made
 
 
@@ -142,8 +142,9 @@ class View:
     def __init__(self) -> None:
         self.on = bool(FreeCAD.GuiUp)
 
-    def colour(self, made: Any, colour: str) -> None:
+    def colour(self, made: Any, colour: str, transparency: int) -> None:
         if self.on:
+            made.ViewObject.Transparency = transparency
             made.ViewObject.ShapeColor = tuple(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
             made.ViewObject.Visibility = False
 

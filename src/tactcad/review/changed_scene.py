@@ -1,0 +1,131 @@
+"""A scene before and after a change, in pieces: material that stayed, came, and went."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from tactcad.design.tree import Design
+from tactcad.export.shapes import Shapes
+from tactcad.parts.description import Part, Vector, vector
+from tactcad.scenes.scene import Placement, Rotation, Scene, rotation
+
+from .effect import same_elements
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+PieceKind = Literal["same", "kept", "added", "removed"]
+CLOSE = 1e-9  # mm, and of directions: places that agree so far are one
+
+
+@dataclass(frozen=True)
+class ScenePiece:
+    """Material of one placed part: all of it where it is the `same`, else what was kept, added or removed.
+
+    `shape` is in the frame that `origin` (mm) and `rotation` place. `whole` says that the kernel could not
+    tell kept from changed material, and the piece is the whole part before or after.
+    """
+
+    designator: str
+    part_no: str
+    kind: PieceKind
+    shape: TopoDS_Shape
+    origin: Vector
+    rotation: Rotation
+    whole: bool = False
+
+
+def changed_scene(
+    designs: tuple[Design, Design], scenes: tuple[Scene, Scene], shapes: tuple[Shapes, Shapes]
+) -> list[ScenePiece]:
+    """Every piece of the scene, before and after; loads the kernel.
+
+    Parameters
+    ----------
+    designs, scenes, shapes
+        Each of before and after. The shapes' makers must be two: equal numbers may mean other parts.
+    """
+    from tactcad.solids.changed import Material, changed
+    from tactcad.solids.place import placed_shape
+
+    known: dict[tuple[object, ...], Material] = {}
+
+    def pieces(a: Placement | None, b: Placement | None) -> Iterator[ScenePiece]:
+        if a and b and _solid(a.part) == _solid(b.part) and _same_place(a, b):
+            yield _piece(b, "same", shapes[1].of(b.part))
+        elif a and b:
+            origin, turn = _relative(a, b)
+            key = (_solid(a.part), _solid(b.part), origin, turn)
+            if key not in known:
+                moved = placed_shape(shapes[0].of(a.part), origin, turn)
+                known[key] = changed(moved, shapes[1].of(b.part))
+            m = known[key]
+            kinds: tuple[tuple[PieceKind, TopoDS_Shape | None], ...] = (
+                ("kept", m.kept),
+                ("removed", m.removed),
+                ("added", m.added),
+            )
+            yield from (_piece(b, kind, shape, m.whole) for kind, shape in kinds if shape is not None)
+        elif a:
+            yield _piece(a, "removed", shapes[0].of(a.part))
+        elif b:
+            yield _piece(b, "added", shapes[1].of(b.part))
+
+    return [piece for a, b in _pairs(designs, scenes) for piece in pieces(a, b)]
+
+
+def _piece(p: Placement, kind: PieceKind, shape: TopoDS_Shape, whole: bool = False) -> ScenePiece:
+    return ScenePiece(p.designator, p.part.part_no, kind, shape, p.origin, p.rotation, whole)
+
+
+def _solid(part: Part) -> tuple[object, ...]:
+    """What its shape follows from."""
+    return (part.body, part.features)
+
+
+def _pairs(
+    designs: tuple[Design, Design], scenes: tuple[Scene, Scene]
+) -> list[tuple[Placement | None, Placement | None]]:
+    """What each placement became: elements by their order in their row, then what stayed as it is under
+    whatever designator, the rest by designator."""
+    before, after = ({p.designator: p for p in scene.placements} for scene in scenes)
+    pairs: list[tuple[Placement | None, Placement | None]] = []
+
+    def take(a: str | None, b: str | None) -> None:
+        pairs.append((before.pop(a) if a else None, after.pop(b) if b else None))
+
+    for a, b in same_elements(*designs):
+        if (a is None or a in before) and (b is None or b in after):
+            take(a, b)
+    for a in list(before):
+        same = [b for b in after if _solid(before[a].part) == _solid(after[b].part)]
+        if found := next((b for b in same if _same_place(before[a], after[b])), None):
+            take(a, found)
+    for name in list(before):
+        take(name, name if name in after else None)
+    for name in list(after):
+        take(None, name)
+    return pairs
+
+
+def _same_place(a: Placement, b: Placement) -> bool:
+    return bool(
+        np.allclose(a.origin, b.origin, rtol=0.0, atol=CLOSE)
+        and np.allclose(a.rotation, b.rotation, rtol=0.0, atol=CLOSE)
+    )
+
+
+def _relative(a: Placement, b: Placement) -> tuple[Vector, Rotation]:
+    """Where a stands in b's frame; to a millionth of a millimetre, so that equal places are equal."""
+    turn = np.asarray(b.rotation, float).T
+    at = turn @ (np.asarray(a.origin, float) - np.asarray(b.origin, float))
+    turned = turn @ np.asarray(a.rotation, float)
+    return _rounded(at), rotation([_rounded(row) for row in turned])
+
+
+def _rounded(values: Sequence[float] | np.ndarray) -> Vector:
+    return vector(round(float(v), 6) + 0.0 for v in values)
