@@ -43,6 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.review.review_page import review_page
+    from tactcad.review.review_record import review_record
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
     from tactcad.review.viewer_library import viewer_library
     from tactcad.scenes import chosen_scenes, make_scene
@@ -53,13 +54,13 @@ def run(args: argparse.Namespace) -> int:
     seen = subject(args.design)
     refuse_overwriting(args.out, seen.path)
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
-    viewer_library()  # a missing one is said before any work
+    library = viewer_library()  # a missing one is said before any work
     shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
     if args.drawings:
         scenes = [make_scene(seen.design, name) for name in names]
         parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
         sheets = drawn_sheets(seen.design, parts, shapes, say.step)
-    page = review_page(seen.design, names, shapes, say.step, sheets)
+    page = review_page(*review_record(seen.design, names, shapes, say.step, sheets), library)
     write_whole(args.out, page)
     shapes.cache.trim()
     record = {
