@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+from pathlib import Path
 
 from .parser import add_json
 
@@ -42,6 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.design.messages import InputError
     from tactcad.review.review_page import review_page
     from tactcad.review.review_record import review_record
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
@@ -53,6 +55,11 @@ def run(args: argparse.Namespace) -> int:
     started, say = time.perf_counter(), progress(sys.stderr)
     seen = subject(args.design)
     refuse_overwriting(args.out, seen.path)
+    folder = Path(args.out).parent
+    if not folder.is_dir():  # said before any work
+        raise InputError(
+            "--out", "no such folder", value=str(folder), legal="a file in a folder that is there"
+        )
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
     library = viewer_library()  # a missing one is said before any work
     shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
