@@ -39,8 +39,9 @@ golden: environment ## take up every design's geometry in exports/golden/, where
 
 EXPORTS = $(DESIGNS:hardware/%.toml=exports/%)
 
-review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD, compare with bill and manifest
+review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD; exports/NAME-review.html to look at
 	@status=0; \
+	for folder in $(EXPORTS); do $(BIN)/tactcad review $$folder --out $$folder-review.html || status=1; done; \
 	$(BIN)/python packaging/review/in_ezdxf.py $(EXPORTS) || status=1; \
 	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
 	exit $$status

@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import time
+from pathlib import Path
 
 from .parser import add_json
 
@@ -46,8 +47,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
+    from tactcad.design.messages import InputError
     from tactcad.review.freecad_file import freecad_document, refuse_no_document
     from tactcad.review.review_page import review_page
+    from tactcad.review.review_record import review_record
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
     from tactcad.review.viewer_library import viewer_library
     from tactcad.scenes import chosen_scenes, make_scene
@@ -57,23 +60,27 @@ def run(args: argparse.Namespace) -> int:
     started, say = time.perf_counter(), progress(sys.stderr)
     seen = subject(args.design)
     out = args.out or (None if args.freecad else "review.html")
+    for option, path in (("--out", out), ("--freecad", args.freecad)):
+        if path:
+            refuse_overwriting(path, seen.path, option=option)
+            folder = Path(path).parent
+            if not folder.is_dir():  # said before any work
+                legal = "a file in a folder that is there"
+                raise InputError(option, "no such folder", value=str(folder), legal=legal)
     names = chosen_scenes(seen.design, args.scene or (list(seen.scenes) if seen.scenes else None))
     if args.freecad:
-        refuse_overwriting(args.freecad, seen.path, out, option="--freecad")
         refuse_no_document(args.freecad)
-    if out:
-        refuse_overwriting(out, seen.path)
-        viewer_library()
+    library = viewer_library() if out else None  # a missing one is said before any work
     shapes, sheets = shapes_of(seen.design, say.line), dict(seen.sheets)
     made: dict[str, bytes] = {}
     if args.freecad:
         made[args.freecad] = freecad_document(seen.design, names, shapes, say.step)
-    if out:
+    if out and library:
         if args.drawings:
             scenes = [make_scene(seen.design, name) for name in names]
             parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
             sheets = drawn_sheets(seen.design, parts, shapes, say.step)
-        made[out] = review_page(seen.design, names, shapes, say.step, sheets)
+        made[out] = review_page(*review_record(seen.design, names, shapes, say.step, sheets), library)
     for path, data in made.items():
         write_whole(path, data)
     shapes.cache.trim()

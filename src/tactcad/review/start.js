@@ -52,7 +52,8 @@ async function start() {
     if (one) view.fit(finding.scene ? [one] : who, 0.6);
     const place = finding.place.length ? [...finding.place, ...[0, 0, 0].slice(finding.place.length)] : null;
     if (place && one && !finding.scene && finding.place.length === 2) {
-      place[2] = parts.get(panel.placed.get(one).part_no).box.reduce((sum, corner) => sum + corner[2], 0) / 2;
+      // on the profile: on the face that is seen
+      place[2] = view.nearer(parts.get(panel.placed.get(one).part_no).box.map((corner) => corner[2]), panel.placed.get(one));
     }
     view.mark(place, finding.scene ? null : one);
     if (place && one) view.closeUp(finding.scene ? place : view.toScene(place, panel.placed.get(one)), one);

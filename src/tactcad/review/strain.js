@@ -1,5 +1,5 @@
 // The strain of a pressed element as colours, on the mesh of the finite elements, with its scale.
-const EXAGGERATED = 20;  // deflections in the picture: at the rated force a hinge gives way by a tenth of a millimetre
+const EXAGGERATED = 5;  // deflections in the picture: at the rated force a tip gives way by a tenth of a millimetre
 
 // From blue (pressed) over grey to red (stretched): both ends differ in lightness too little for one to hide.
 function strainColour(share) {
@@ -47,17 +47,14 @@ function drawScale(canvas) {
 function drawStrain(canvas, field, newton, full, hingeAlone) {
   const {points, moved, strain, quads} = field;
   const at = (n) => [0, 1].map((k) => points[2 * n + k] + EXAGGERATED * newton * moved[2 * n + k]);
-  const reach = 6 * field.hinge;
-  const seen = (n) => !hingeAlone || Math.abs(points[2 * n] - field.hinge_x) < reach;
+  const near = (n) => !hingeAlone || Math.hypot(points[2 * n] - field.hinge_x, points[2 * n + 1]) < 4 * field.hinge;
   const shown = [];
-  for (let q = 0; q < quads.length; q += 4) {
-    const corners = [...quads.subarray(q, q + 4)];
-    if (corners.every(seen)) shown.push(corners);
-  }
-  const all = shown.flat().map(at);
+  for (let q = 0; q < quads.length; q += 4) shown.push([...quads.subarray(q, q + 4)]);
+  // the window is laid around these; what lies beyond it is cut off by the canvas
+  const all = [...Array(strain.length).keys()].filter(near).map(at);
   const [x0, x1] = [Math.min(...all.map((p) => p[0])), Math.max(...all.map((p) => p[0]))];
   const [z0, z1] = [Math.min(...all.map((p) => p[1])), Math.max(...all.map((p) => p[1]))];
-  const size = 0.94 * Math.min(canvas.width / (x1 - x0), canvas.height / (z1 - z0));
+  const size = 0.9 * Math.min(canvas.width / (x1 - x0), canvas.height / (z1 - z0));
   const px = ([x, z]) => [canvas.width / 2 + size * (x - (x0 + x1) / 2), canvas.height / 2 - size * (z - (z0 + z1) / 2)];
   const pen = canvas.getContext('2d');
   pen.clearRect(0, 0, canvas.width, canvas.height);

@@ -87,7 +87,8 @@ class View {
     this.offsets = offsets;
     for (const p of this.scene.placed) this.group(p.designator).position.set(...this.origin(p));
     this.viewer.idPicker?.setDirty();
-    this.clipped();
+    if (this.clips.some((c) => c !== null)) this.clipped();
+    else this.draw();
   }
 
   // Shows all but these designators.
@@ -125,12 +126,19 @@ class View {
     return [(p.x + 1) / 2 * width, (1 - p.y) / 2 * height];
   }
 
+  // Of heights along a part's own z the one that is nearer to the eye.
+  nearer(heights, placed) {
+    const e = this.viewer.camera.getCamera().matrixWorld.elements;
+    const depth = (z) => dot(turned(placed.rotation, [0, 0, z]), [e[8], e[9], e[10]]);
+    return heights.reduce((best, z) => (depth(z) > depth(best) ? z : best));
+  }
+
   toScene(point, placed) {
     return plus(turned(placed.rotation, point), this.origin(placed));
   }
 
   lookFrom(direction) {
-    this.viewer.presetCamera(direction, 1);
+    this.together(() => this.viewer.presetCamera(direction, 1));
     this.fit();
   }
 
@@ -151,8 +159,10 @@ class View {
     const [right, up] = [[e[0], e[1], e[2]], [e[4], e[5], e[6]]];
     const reach = (axis) => Math.max(...around.map((p) => Math.abs(dot(minus(p, centre), axis))), 1e-3);
     const zoom = share * Math.min(camera.right / reach(right), camera.top / reach(up));
-    this.viewer.setCameraZoom(Math.min(zoom, 400), false);
-    this.viewer.setCameraTarget(centre, false);
+    this.together(() => {
+      this.viewer.setCameraZoom(Math.min(zoom, 400), false);
+      this.viewer.setCameraTarget(centre, false);
+    });
   }
 
   // Centres a point of a designator, with a third of its length around it.
@@ -170,6 +180,10 @@ class View {
   }
 
   clipped() {
+    this.together(() => this.cut());
+  }
+
+  cut() {
     const any = this.clips.some((c) => c !== null);
     const {clipping, nestedGroup} = this.viewer.rendered;
     if (any) {
@@ -188,11 +202,27 @@ class View {
       const far = 1e4;
       this.viewer.setClipNormal(axis, normal, c ? -way * (c.at - clipping.center[axis]) : far, false);
     });
-    this.draw();
   }
 
+  // Draws once before the next frame, however often it is asked for.
   draw() {
-    this.viewer.update(true, false);
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.viewer.update(true, false);
+    });
+  }
+
+  // The viewer's calls draw each; these draw once.
+  together(calls) {
+    this.viewer._suppressUpdate = true;
+    try {
+      calls();
+    } finally {
+      this.viewer._suppressUpdate = false;
+    }
+    this.draw();
   }
 
   fitted() {
@@ -203,7 +233,7 @@ class View {
 
   // The picture as it is, for printing.
   picture() {
-    this.draw();
+    this.viewer.update(true, false);
     return this.viewer.renderer.domElement.toDataURL('image/png');
   }
 

@@ -1,0 +1,99 @@
+"""Everything that a page shows, as plain data, with the block of arrays that it points into."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from tactcad import __version__
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.export.shapes import Shapes
+from tactcad.parts.element import element_number
+from tactcad.parts.layout import Layout
+from tactcad.scenes import make_scene
+
+from .element_facts import element_facts
+from .finding_facts import finding_facts
+from .mesh_pack import MeshPack, mesh_pack
+from .part_facts import part_facts
+from .scene_facts import scene_facts
+from .strain_field import strain_field
+
+SCHEMA = "tactcad-review-1"
+IDENTITY = ("name", "title", "revision", "date", "author", "organisation")
+
+
+def review_record(
+    design: Design,
+    scene_names: Sequence[str],
+    shapes: Shapes,
+    say: Callable[[int, int, str], None],
+    sheets: Mapping[str, str],
+) -> tuple[dict[str, Any], bytes]:
+    """The record and the block, equal for equal input.
+
+    Parameters
+    ----------
+    design
+        Must keep its rules.
+    scene_names
+        The scenes to show, the first one first.
+    shapes
+        Makes solids, or takes them from its cache.
+    say
+        Receives (done, total, text) as the work goes on.
+    sheets
+        Drawing sheets (SVG) by part number.
+    """
+    scenes = tuple(make_scene(design, name) for name in scene_names)
+    parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
+    total = len(parts) + 2
+    say(0, total, "estimates and virtual builds")
+    elements, made, lines = element_facts(design, scenes)
+    done = iter(range(1, total))
+    pack = mesh_pack(parts, shapes, lambda part_no: say(next(done), total, part_no))
+    say(total - 1, total, "checks")
+    findings = finding_facts(design, scenes, shapes, lambda *_: None)
+    strains, block = _strains(design, pack)
+    record = {
+        "schema": SCHEMA,
+        "tactcad": __version__,
+        "design": {name: getattr(design.design, name) for name in IDENTITY},
+        "parts": [
+            asdict(part_facts(part, made.variables, lines))
+            | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
+            for part in parts
+        ],
+        "scenes": [asdict(scene_facts(design, scene)) for scene in scenes],
+        "array": asdict(elements),
+        "strains": strains,
+        "findings": [asdict(f) for f in findings],
+        "sheets": dict(sheets),
+    }
+    say(total, total, "done")
+    return record, block
+
+
+def _strains(design: Design, pack: MeshPack) -> tuple[dict[str, Any], bytes]:
+    """By element part number the strain field's arrays in the block, which it continues."""
+    layout, block = Layout(design), pack.block
+    table: dict[str, Any] = {}
+    for place in layout.elements:
+        number = element_number(design, place)
+        if number in table:
+            continue
+        try:
+            field = strain_field(layout, place)
+        except CheckFailure as error:
+            table[number] = {"why_not": str(error)}
+            continue
+        table[number] = {"load_arm": place.load_arm, "hinge_x": place.hinge_x, "hinge": place.hinge.t}
+        for name, kind in (("points", "<f4"), ("moved", "<f4"), ("strain", "<f4"), ("quads", "<u4")):
+            array = np.ascontiguousarray(getattr(field, name), kind)
+            table[number][name] = (len(block), int(array.size))
+            block += array.tobytes()
+    return table, block

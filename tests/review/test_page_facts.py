@@ -1,0 +1,203 @@
+"""What the page says of parts, elements, scenes and findings, without a kernel."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from math import sqrt
+from pathlib import Path
+
+import numpy as np
+import pytest
+from variants import HARDWARE
+
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.inputs import flattened
+from tactcad.fem.face_strain import face_strain
+from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.shape import cut_element
+from tactcad.lab.array_estimate import estimate
+from tactcad.parts.element import element
+from tactcad.parts.finding import Finding
+from tactcad.parts.hinge_section import design_alloy
+from tactcad.parts.layout import Layout
+from tactcad.review import finding_facts, viewer_library
+from tactcad.review.element_facts import element_facts
+from tactcad.review.part_facts import part_facts
+from tactcad.review.scene_facts import scene_facts
+from tactcad.review.strain_field import strain_along, strain_field
+from tactcad.review.subject import _table
+from tactcad.scenes import make_scene
+
+WRITTEN = tomllib.loads((HARDWARE / "macro-array.toml").read_text("utf-8"))
+
+
+@pytest.fixture(scope="module")
+def facts(macro, macro_scene):
+    """Of the array's elements, with the sensor and its stack."""
+    return element_facts(macro, (macro_scene,))
+
+
+@pytest.fixture(scope="module")
+def parts(facts, macro_scene):
+    _, made, lines = facts
+    return {p.part_no: part_facts(p, made.variables, lines) for p in macro_scene.parts}
+
+
+def distance(part, first: str, second: str) -> float:
+    """Between the planes of two features by their points and the first one's normal, mm."""
+    a, b = (next(f for f in part.features if f.name == name) for name in (first, second))
+    assert a.kind == b.kind == "plane"
+    return abs(float(np.dot(a.direction, np.subtract(b.point, a.point))))
+
+
+def test_limits_and_features_are_the_design_files_values(parts):
+    part = parts["macro-array-element-a4mm"]
+    wanted, limits = WRITTEN["element"], {c.name: c for c in part.limits}
+    assert limits["hinge thickness"].nominal == wanted["hinge_thickness"] == 0.25
+    assert limits["arm length"].nominal == WRITTEN["array"]["row_arms"][0][0]
+    assert distance(part, "slot_floor", "flat_face") == pytest.approx(wanted["hinge_thickness"], abs=1e-12)
+    assert distance(part, "slot_arm_wall", "slot_body_wall") == pytest.approx(
+        wanted["hinge_length"], abs=1e-12
+    )
+    assert distance(part, "face z=0", "face z=thickness") == WRITTEN["sheet"]["thickness"]
+    hole = next(f for f in part.features if f.name == "dowel_hole")
+    limit = limits["dowel hole diameter"]
+    assert hole.kind == "cylinder" and limit.lower <= hole.diameter <= limit.upper
+    assert limit.lower == WRITTEN["holes"]["dowel_hole"]
+    # a feature's middle lies on its surface
+    beside = np.subtract(hole.middle, hole.point)
+    assert np.linalg.norm(beside[:2]) == pytest.approx(hole.diameter / 2, abs=1e-12)
+
+
+def test_mass_is_density_times_volume(parts):
+    part = parts["macro-array-spacer"]
+    assert part.mass_g == pytest.approx(part.volume_mm3 * WRITTEN["material"]["density"] * 1e-6, rel=1e-12)
+
+
+def test_what_the_sensor_needs_of_an_element(parts, facts):
+    """The hinge decides when the stop closes; its share is the stack's."""
+    shares = {s.requirement: s for s in parts["macro-array-element-a4mm"].shares}
+    assert shares and all(0 < s.share <= 1 for s in shares.values())
+    (line,) = (x for x in facts[2] if x.requirement.name == "pads coplanar")
+    own = {c.name: c.share for c in line.contributors}
+    for name, share in shares["pads coplanar"].limits:
+        assert share == own[f"element: {name}"]
+    assert parts["ISO8734-3x30-pin"].shares == ()
+
+
+def test_pairs_are_formed_with_the_stiffest_element(facts, macro):
+    elements, _, _ = facts
+    rows = estimate(Layout(macro), "solid")
+    K = {f"E{r.number}": r.stiffness for r in rows}
+    assert {d: e["estimate"]["stiffness"] for d, e in elements.elements.items()} == K
+    stiffest = max(K.values())
+    assert {p.measuring for p in elements.pairs} == {d for d in K if K[d] < stiffest}
+    for p in elements.pairs:
+        assert (p.K_r, p.K_m) == (stiffest, K[p.measuring]) and p.ratio == p.K_r / p.K_m
+        # R = (K_r + x)/(K_m + x): dln x/dln R by differences, and no other object is found better
+        errors = [_error(p.K_r, p.K_m, p.best_for * f) for f in (0.9, 1.0, 1.1)]
+        assert errors[1] == pytest.approx(p.condition, rel=1e-5) and errors[1] == min(errors)
+        assert p.condition == pytest.approx((sqrt(p.K_r) + sqrt(p.K_m)) ** 2 / (p.K_r - p.K_m), rel=1e-9)
+
+
+def _error(K_r: float, K_m: float, x: float) -> float:
+    def ratio(x: float) -> float:
+        return (K_r + x) / (K_m + x)
+
+    h = 1e-5
+    return abs(2 * h / np.log(ratio(x * np.exp(h)) / ratio(x * np.exp(-h))))
+
+
+def test_strain_per_newton_is_that_of_any_elastic_force(facts, macro):
+    elements, _, _ = facts
+    for row in estimate(Layout(macro), "solid", 0.3):
+        own = elements.elements[f"E{row.number}"]
+        assert own["gauge_per_newton"] * 0.3 == pytest.approx(row.gauge_strain, rel=1e-12)
+
+
+def test_the_strain_picture_agrees_with_the_faces_strain(macro):
+    """Nodes on the flat face against the readings along it, which are taken from the displacements there."""
+    layout = Layout(macro)
+    place = layout.elements[1]
+    field = strain_field(layout, place)
+    shape = cut_element(
+        element(layout, place).extrusion.outer, layout.clamp_edge, place.hinge_x - place.load_arm
+    )
+    alloy = design_alloy(macro)
+    fine = solve_plane(shape, alloy.youngs_modulus, alloy.poisson, 3.0, density=6)
+    read = face_strain(fine, "flat")
+    on_face = (np.abs(field.points[:, 1]) < 1e-6) & (np.abs(field.points[:, 0] - place.hinge_x) < 0.4)
+    assert on_face.sum() > 10
+    assert field.strain[on_face].max() == pytest.approx(read.peak, rel=0.02)  # tension: pressed away
+    assert field.strain.min() == pytest.approx(-face_strain(fine, "slot").peak, rel=0.05)
+    # the pad moves away from the object by 1/K per newton
+    tip = field.points[:, 0] == field.points[:, 0].min()
+    assert field.moved[tip, 1].mean() == pytest.approx(fine.compliance, rel=0.02)
+    assert strain_along(fine).shape == fine.space.nodes.shape[1:]
+
+
+def test_a_scene_tells_places_steps_ways_and_bill(macro):
+    scene = make_scene(macro, "grasping")
+    told = scene_facts(macro, scene)
+    assert [p.designator for p in told.placed] == [p.designator for p in scene.placements]
+    for p in told.placed:
+        assert p.designator in scene.steps[p.step].designators
+    under = {p.designator: p.under for p in told.placed}
+    assert under["E1"] == ("vertical axis", "array") and under["SA1"] == ("cart with holder and sample",)
+    # the sample leaves by its step's way; of a fanned step nothing by more than the whole way
+    ways = {p.designator: p.way for p in told.placed}
+    assert ways["SA1"] == scene.steps[told.placed[list(under).index("SA1")].step].explode
+    assert sum(r["qty"] for r in told.bill if r["has_solid"]) == len(scene.placements)
+    rests = {m.name: m.rest for m in told.motions}
+    assert rests == {
+        "array down to the sample": 1.0,
+        "cart rolls under the lifted array": None,
+        "cart rolls with the array on the sample": 0.5,
+    }
+
+
+def test_findings_are_told_with_their_parts(macro_scene):
+    def told(part: str, check: str = "hinge", subject: str = "x", place=(1.0, 2.0)):
+        record = vars(Finding("c", "flag", part, place, 0, 0, "m"))
+        return finding_facts._fact(check, subject, record, [macro_scene])
+
+    alike = tuple(
+        p.designator for p in macro_scene.placements if p.part.part_no == "macro-array-element-a6mm"
+    )
+    assert told("macro-array-element-a6mm").designators == alike and len(alike) == 2
+    assert told("E2 (macro-array-element-a7mm)").designators == ("E2",)
+    assert told("macro-array").designators == ()
+    assert told("E2", "interference", "array").scene == "array"
+    assert told("E2", "motion", "array").place == ()
+
+
+def test_a_design_is_read_back_from_an_exports_values(macro):
+    from tactcad.design.load import from_table
+    from tactcad.parts.designs import load
+
+    for name in ("macro-array", "soft-tissue", "smallest-bearing", "double-sample"):
+        design = load(name)
+        assert from_table(_table(flattened(design))) == design
+    with_gaps = replace(macro, stop=replace(macro.stop, gaps={4.0: 0.08, 7.5: 0.1}))
+    assert _table(flattened(with_gaps))["stop"]["gaps"] == {"4.0": 0.08, "7.5": 0.1}
+
+
+def test_a_missing_viewer_is_said_with_the_remedy(monkeypatch, tmp_path):
+    monkeypatch.setattr(viewer_library, "find_spec", lambda name: None)
+    with pytest.raises(CheckFailure, match=r"pip install 'tactcad\[review\]'"):
+        viewer_library.viewer_library()
+
+
+def test_the_installed_viewer_is_whole():
+    found = viewer_library.viewer_library()
+    assert found.version.startswith("5.") and b"export {" in found.script[-600:] and "tcv_" in found.style
+
+
+def test_what_is_no_export_is_refused(tmp_path: Path):
+    from tactcad.review.subject import subject
+
+    with pytest.raises(InputError, match="not a sound export"):
+        subject(str(tmp_path))
+    with pytest.raises(InputError, match="no design of that name"):
+        subject("no-such-design")
