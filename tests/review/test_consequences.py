@@ -278,14 +278,15 @@ def test_a_hinge_stands_above_a_moved_chamfer_and_a_note_below():
             SMALL,
             ('title" = "chosen: what it is', 'title" = "chosen: its name'),
             ("pad_height = 2.0", "pad_height = 2.0\ncorner_radius = 0.4"),
-            ("[calibration]", "[clamp]\nend_plate_margin = 0.6\n[calibration]"),
+            ("[calibration]", "[gauge]\nfactor = 1.5\n[clamp]\nend_plate_margin = 0.6\n[calibration]"),
             ("hinge_thickness = 0.25", "hinge_thickness = 0.255"),
         ),
     )
     order = [c.what.split(":")[0] for c in meant.consequences]
-    assert order[0] == "element.hinge_thickness"
+    # a gauge reads 29 % less, but K, rated force and yield count before the other figures
+    assert order[:2] == ["element.hinge_thickness", "gauge.factor"]
     assert order[-1] == "origin.design.title"
-    assert set(order[1:-1]) == {"element.corner_radius", "clamp.end_plate_margin"}
+    assert set(order[2:-1]) == {"element.corner_radius", "clamp.end_plate_margin"}
     assert meant.interactions == ()  # a corner does nothing to K
 
 

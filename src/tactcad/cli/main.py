@@ -31,7 +31,7 @@ COMMANDS = {
     "release": "run every check, and write one zip that a shop can quote from",
     "review": "one offline page: the sensor in 3-D, with limits, findings, estimates and bill part by part",
     "golden": "run every check, show what changed, and write a design's golden geometry",
-    "diff": "what changed between two designs, exports or golden files: text, JSON, or a page with pictures",
+    "diff": "what changed between two designs, git revisions, exports or golden files, and what it means",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
     "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
     "fit": "make the finite-element samples and fit the closed forms' constants on them",
