@@ -132,7 +132,7 @@ def test_wheels_by_another_way(macro):
 
 def test_the_rollers_seat_by_hand(lines):
     """2 m6 is 2.002 to 2.008; the seat's radius is 1.005 to 1.015."""
-    enters, middle = lines["roller enters its seat"], lines["roller in the tip's middle"]
+    enters, middle = lines["roller enters its seat"], lines["roller in its seat's middle"]
     assert (enters.worst_low, enters.worst_high) == pytest.approx((2.01 - 2.008, 2.03 - 2.002))
     assert (middle.worst_low, middle.worst_high) == pytest.approx((1.005 - 1.004, 1.015 - 1.001))
 

@@ -65,6 +65,13 @@ WITNESSES = {
         ({"element.override.3.hinge_thickness": 2.7}, "element.override.3.hinge_thickness"),
         ({**TWO_SIDED, "element.hinge_thickness": 2.2}, "element.fillet_radius"),
     ],
+    "hinge_outlasts_its_tolerance": [
+        ({"tolerance.hinge_thickness": 0.1}, "tolerance.hinge_thickness"),
+        (
+            {"tolerance.hinge_thickness": 0.05, "element.override.3.hinge_thickness": 0.19},
+            "tolerance.hinge_thickness",
+        ),
+    ],
     "fillets_fit_slot": [
         ({"element.fillet_radius": 0.441}, "element.fillet_radius"),
         ({"element.hinge_length": 0.59}, "element.fillet_radius"),
@@ -165,7 +172,8 @@ WITNESSES = {
     "stop_gap_above_tolerance": [
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
         ({"stop.gaps": {"4": 0.005}}, "stop.tolerance"),
-        ({"tolerance.pad_height": 0.1}, "stop.tolerance"),
+        ({"tolerance.pad_height": 0.1}, "tolerance.pad_height"),
+        ({"tolerance.ledge": 0.06}, "tolerance.ledge"),
         ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 7.0}, "rating.overload_force"),
         # a short arm beside a long one: 88 mm of body turn its hinge round on the closed stop
         ({"rating.overload_force": 15.0, "array.row_arms": [[90, 4], [90, 4]]}, "rating.overload_force"),
@@ -176,6 +184,7 @@ WITNESSES = {
         ({"holes.screw_offsets": [4.1, 15.0], "clamp.end_plate_margin": 1.0}, "holes.screw_offsets"),
         ({"holes.height": 4.0, "clamp.end_plate_bottom": 0.0}, "holes.height"),
         ({"holes.dowel_hole": 3.0}, "holes.dowel_hole"),
+        ({"holes.dowel_hole": 3.009}, "holes.dowel_hole"),
         ({"holes.dowel_hole": 3.2}, "holes.dowel_hole"),
         ({"clamp.dowel": "2.5"}, "holes.dowel_hole"),
         ({"holes.web": 2.0}, "element.rear_height"),

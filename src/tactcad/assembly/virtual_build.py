@@ -88,7 +88,8 @@ class Sensor:
 
     def missed(self, arrays: Assembled, count: int) -> dict[str, Array]:
         """By requirement, which of `count` arrays miss it."""
-        bad = {r.name: r.margin(r.value(arrays)).min(axis=1) < -ROUNDING for r in self.requirements}
+        # what has no value, as a hinge that is cut through, is missed too
+        bad = {r.name: ~(r.margin(r.value(arrays)).min(axis=1) >= -ROUNDING) for r in self.requirements}
         return {name: np.broadcast_to(which, (count,)) for name, which in bad.items()}
 
     def _all(
@@ -125,11 +126,11 @@ class Sensor:
         worst = max(failed, key=lambda name: failed[name])
         (line,) = self.stack(worst)
         most = line.contributors[0] if line.contributors else None
+        missed = f"{line.shortfall:.3g} {line.requirement.unit}".rstrip()
         return (
             f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "
             f"{builds.seed}) meet all requirements; needed: {100 * LEAST_YIELD:g} %. Most often missed: "
-            f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {line.shortfall:.3g} "
-            f"{line.requirement.unit})"
+            f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {missed})"
             + (f"; largest contributor: {most.name}, {100 * most.share:.0f} %" if most else "")
         )
 
