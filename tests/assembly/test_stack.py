@@ -137,6 +137,16 @@ def test_the_rollers_seat_by_hand(lines):
     assert (middle.worst_low, middle.worst_high) == pytest.approx((1.005 - 1.004, 1.015 - 1.001))
 
 
+def test_what_does_not_vary_has_no_spread(macro):
+    """With all parts at one size the drawn arrays differ by rounding only: their spread is 0, not 1e-19."""
+    fixed = {
+        n: DimensionLimits(n, (v.upper + v.lower) / 2, (v.upper + v.lower) / 2)
+        for n, v in macro.variables.items()
+    }
+    for line in stack(macro.layout, fixed, list(macro.requirements), 50):
+        assert line.sigma == 0.0, line.requirement.name
+
+
 def test_no_two_requirements_share_a_name(macro):
     names = [r.name for r in macro.requirements]
     assert len({*names}) == len(names)

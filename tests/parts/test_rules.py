@@ -265,6 +265,34 @@ def test_the_witness_breaks_its_rule_alone(rule, n):
     assert not re.search(r"\d\.\d{8}", text), "shows digits that nobody wrote"
 
 
+TOO_WIDE = {
+    "stop.tolerance": [{}, {"tolerance.ledge": 0.02}, {"clamp.hold_down_pitch": DROP}],
+    "tolerance.ledge": [{}, {"stop.tolerance": 0.012}, {"array.row_arms": [[6, 7], [8, 8]]}],
+    "tolerance.pad_height": [{}, {"clamp.hold_down_pitch": DROP}],
+}
+
+
+@pytest.mark.parametrize(
+    ("path", "others"), [(path, other) for path, cases in TOO_WIDE.items() for other in cases]
+)
+def test_the_legal_tolerance_of_a_stop_is_accepted_and_slightly_more_is_not(path, others):
+    """Bisected from outside: what the rules accept just below what they say, and no more."""
+
+    def found(value):
+        design = variant({**others, path: value})
+        return [b for b in broken_rules(design) if b.check == "stop_gap_above_tolerance"]
+
+    (wrong,) = found(0.1)
+    assert wrong.part == path
+    legal = float(re.fullmatch(r"at most ([\d.]+) mm", wrong.limit)[1])
+    assert found(legal) == []
+    low, high = 0.001, 0.1
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        low, high = (low, middle) if found(middle) else (middle, high)
+    assert legal <= low + 1e-6 < legal + 1.01e-4
+
+
 @pytest.mark.parametrize("name", names())
 def test_the_shipped_designs_keep_every_rule(name):
     assert broken_rules(load(name)) == []

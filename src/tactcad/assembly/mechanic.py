@@ -272,10 +272,11 @@ class Assembled:
         s, known, d = self.section, self.stiffness, self.layout.design
         K = np.where(np.isnan(known), ladder.evaluate(s, "section").stiffness, known)
         load, give = d.rating.overload_force, self.layout.stop_give
-        closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)
-        forwards = closing + stress_share(s, K, self.arm, give) * (load - closing)
-        backwards = back_share(s, K, self.arm, give) * (load - closing)
-        stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
+        with np.errstate(invalid="ignore"):  # of a hinge that is cut through: not a number
+            closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)
+            forwards = closing + stress_share(s, K, self.arm, give) * (load - closing)
+            backwards = back_share(s, K, self.arm, give) * (load - closing)
+            stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
         return stress / d.material.yield_strength
 
 
