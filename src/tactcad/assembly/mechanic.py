@@ -24,6 +24,7 @@ from tactcad.parts.stop_gap import stop_gap
 from .contacts import nearest_pose, resting_plane
 from .variables import Array, Deviations
 
+CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
 # Variables of elements, by the field of HingeSection that each sets.
 HINGE = {
     "element: hinge thickness": "hinge_thickness",
@@ -267,17 +268,18 @@ class Assembled:
         """Stress at each fillet under the overload force, its stop closed, over the yield strength.
 
         Where the estimator does not reach a hinge, its stiffness is the section's integral, as for the drawn
-        gaps.
+        gaps; where its limits leave no hinge or sheet, CUT.
         """
         s, known, d = self.section, self.stiffness, self.layout.design
         K = np.where(np.isnan(known), ladder.evaluate(s, "section").stiffness, known)
         load, give = d.rating.overload_force, self.layout.stop_give
-        with np.errstate(invalid="ignore"):  # of a hinge that is cut through: not a number
+        with np.errstate(invalid="ignore", divide="ignore"):
             closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)
             forwards = closing + stress_share(s, K, self.arm, give) * (load - closing)
             backwards = back_share(s, K, self.arm, give) * (load - closing)
             stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
-        return stress / d.material.yield_strength
+        share = stress / d.material.yield_strength
+        return np.where(share < CUT, share, CUT)  # not a number where there is no hinge
 
 
 PAD = "element: pad height over the dowel hole's centre"

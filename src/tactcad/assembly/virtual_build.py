@@ -88,8 +88,7 @@ class Sensor:
 
     def missed(self, arrays: Assembled, count: int) -> dict[str, Array]:
         """By requirement, which of `count` arrays miss it."""
-        # what has no value, as a hinge that is cut through, is missed too
-        bad = {r.name: ~(r.margin(r.value(arrays)).min(axis=1) >= -ROUNDING) for r in self.requirements}
+        bad = {r.name: r.margin(r.value(arrays)).min(axis=1) < -ROUNDING for r in self.requirements}
         return {name: np.broadcast_to(which, (count,)) for name, which in bad.items()}
 
     def _all(
