@@ -191,7 +191,7 @@ class Assembled:
     @cached_property
     def tips(self) -> Array:
         """How far each tip is off along x, away from the middle, mm."""
-        place = self.made["element: place in its dowel's play, share"] * self.play / 2
+        place = self.made["element: place in its dowel hole's play, share"] * self.play / 2
         return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
 
     @property
