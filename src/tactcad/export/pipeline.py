@@ -189,7 +189,7 @@ def _rebuild(
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
-    products += stack_products(design, scenes, shapes)
+    products += stack_products(design, options.scenes, shapes)
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
