@@ -48,7 +48,7 @@ def part_inspection_bytes(
     Parameters
     ----------
     design, parts
-        The design, and the parts of its scenes.
+        The design, and the parts to list: of its scenes, or of some.
     variables, lines
         Its variables, and the stack of every requirement.
     """
@@ -57,6 +57,8 @@ def part_inspection_bytes(
     writer.writerow(COLUMNS)
     known, identity = {p.part_no: p for p in parts}, design.design
     for (part_no, name), (share, requirement) in ranked(variables, lines):
+        if part_no not in known:
+            continue
         limits = _limits(known[part_no], name)
         row = (identity.name, identity.revision, part_no, name, *limits[:3], UNIT, "", "", *limits[3:])
         writer.writerow((*row, requirement, f"{share:.3f}"))

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
+from dataclasses import Field, fields, replace
 from math import ceil, floor, hypot, pi, sqrt, tan
 
-from tactcad.design.tree import Design
+from tactcad.design.tree import Design, Stop, Tolerance
 
 from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
 from ..stop_gap import land_room, seat, stop_gap, stop_limit
 from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
 from ..stop_plate import STOP_PLATE_FLAT
-from ..wire_passes import WIRE_TOLERANCE
 from .rule import at_least, at_most, rule, wrong
 
 # Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
 # push without lifting, and is the least that a 0.15 mm misplaced plate still finds.
 LEAST_SEAT = 0.5
+USUAL = {
+    "stop.tolerance": Stop().tolerance,
+    "tolerance.ledge": Tolerance().ledge,
+    "tolerance.pad_height": Tolerance().pad_height,
+}
 TENTH = 1e-4  # mm: legal tolerances are stated to a tenth of a micrometre
 
 
@@ -189,7 +193,8 @@ def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
             continue
         taken = _taken_by_tolerances(layout)
         legal = {path: _largest_tolerance(d, path) for path in taken}
-        held = [path for path in taken if legal[path] >= WIRE_TOLERANCE["4 or more passes"]]
+        # where a usual tolerance would do it is not the overload that leaves no gap
+        held = [path for path in taken if legal[path] >= USUAL[path]]
         if not held and 0 < overload < d.rating.overload_force:
             what = f"no stop keeps the hinge of element {p.number} within its rated deflection"
             yield wrong("rating.overload_force", what, d.rating.overload_force, f"at most {overload:.4g} N")
@@ -215,7 +220,8 @@ def _taken_by_tolerances(layout: Layout) -> list[str]:
 def _largest_tolerance(design: Design, path: str) -> float:
     """Largest value of a tolerance (mm, a multiple of TENTH) that alone leaves every derived gap open; 0
     where none does."""
-    low, high = ceil(_least(design, path) / TENTH), ceil(_tolerance(design, path) / TENTH)
+    least, now = _field(design, path).metadata["spec"].low, _tolerance(design, path)
+    low, high = ceil(least / TENTH), ceil(now / TENTH)
     given = design.stop.gaps or {}
 
     def open_at(tenths: int) -> bool:
@@ -235,11 +241,9 @@ def _tolerance(design: Design, path: str) -> float:
     return getattr(getattr(design, section), name)
 
 
-def _least(design: Design, path: str) -> float:
-    """The least value that the field may have, mm."""
+def _field(design: Design, path: str) -> Field:
     section, name = path.split(".")
-    field = next(f for f in fields(getattr(design, section)) if f.name == name)
-    return field.metadata["spec"].low
+    return next(f for f in fields(getattr(design, section)) if f.name == name)
 
 
 def _with_tolerance(design: Design, path: str, value: float) -> Design:
