@@ -332,17 +332,17 @@ def test_a_cause_that_is_refused_alone_is_taken_back_alone():
 
 
 def test_yield_and_the_check_of_it_turn(monkeypatch):
-    """Tighter dowel holes: some pins no longer enter; counted as `tactcad build` counts."""
+    """Fillets left loose: some hinges yield before their stop closes; counted as `tactcad build` counts."""
     monkeypatch.setattr("tactcad.review.sensor_state.COUNT", 200)
-    tight = ("[gauge]", "[holes]\ndowel_hole = 3.008\n[gauge]")
-    old, new = edited(SOFT), edited(SOFT, tight, ("pad_height = 1.6", "pad_height = 1.65"))
+    loose = ("[gauge]", "[tolerance]\nfillet_radius = 0.2\n[gauge]")
+    old, new = edited(SOFT), edited(SOFT, loose, ("pad_height = 1.6", "pad_height = 1.65"))
     _, meant = compared(old, new)
-    hole, pad = meant.consequences  # first: it makes a check fail
-    assert hole.what.startswith("holes.dowel_hole") and hole.effect.now_fails
-    shares = [sensor(from_table(tomllib.loads(text))).built(200).share for text in (old, edited(SOFT, tight))]
-    assert [hole.effect.yield_share.old, hole.effect.yield_share.new] == shares
+    fillet, pad = meant.consequences  # first: it makes a check fail
+    assert fillet.what.startswith("tolerance.fillet_radius") and fillet.effect.now_fails
+    shares = [sensor(from_table(tomllib.loads(text))).built(200).share for text in (old, edited(SOFT, loose))]
+    assert [fillet.effect.yield_share.old, fillet.effect.yield_share.new] == shares
     assert shares[0] > 0.995 > shares[1]
-    assert any("virtual arrays" in text for text in hole.effect.now)
+    assert any("virtual arrays" in text for text in fillet.effect.now)
     assert pad.effect.yield_share is None and not pad.effect.now_fails
 
 
