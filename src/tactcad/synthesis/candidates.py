@@ -286,11 +286,12 @@ class Candidates:
         ratios to the hinge's thickness, so the ends are where thickness and all else part most."""
         s, t = self.section, self.stand.base.tolerance
         inside = np.ones(len(self.arm), bool)
-        for sign in (-1.0, 1.0):
+        for sign, layer in ((-1.0, t.recast_layer), (1.0, 0.0)):
             off = {p: getattr(s, p) - sign * getattr(t, name) for name, p in as_built.DIMENSIONS.items()}
             off["hinge_thickness"] = s.hinge_thickness + sign * t.hinge_thickness
-            off["fillet_radius"] = np.minimum(off["fillet_radius"], off["hinge_length"] / 2.0)
-            inside &= (validity.reasons(s.with_(**off), ladder.DEFAULT_RUNG) == "").all(axis=1)
+            left = as_built.without_layer(s.with_(**off), layer)
+            left = left.with_(fillet_radius=np.minimum(left.fillet_radius, left.hinge_length / 2.0))
+            inside &= (validity.reasons(left, ladder.DEFAULT_RUNG) == "").all(axis=1)
         return inside
 
     @cached_property

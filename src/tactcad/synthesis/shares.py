@@ -19,7 +19,7 @@ from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.section import Array
 
 from .interval import coupled_estimate, information, motion, weights
-from .knowledge import Knowledge, elements
+from .knowledge import Knowledge, as_made, elements
 from .made_arrays import MadeSensor
 
 SEED = 20261124
@@ -27,7 +27,7 @@ COUNT = 2048
 SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
 LEAST = 5e-4  # shares below are not listed
 OF_ELEMENTS = ("element: ", "sheet: ")
-READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, PADS = (
+READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, LAYER, CLAMP, PADS = (
     "noise of readings",
     "contact's place along the arm",
     "calibration's noise and scatter",
@@ -35,6 +35,8 @@ READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, PADS = (
     "thickness as measured",
     "load cell's limits",
     f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's",
+    "recast layer",
+    "turn of the clamp",
     "pad heights",
 )
 
@@ -67,7 +69,8 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
             name: rng.standard_normal((count, n, 2)) for name in (READINGS, CONTACT, *_of_belief(sensor))
         }
         alike = {name: rng.uniform(-1.0, 1.0, count) for name in (CELL, COUPLING)}
-        return {**parts, **causes, **alike}
+        soft = dict(zip((LAYER, CLAMP), sensor.softening(count, "normal", rng)))
+        return {**parts, **causes, **alike, **soft}
 
     middle = made(others, 1, "normal", rng, only=())
     estimate = _estimator(sensor, {k: np.broadcast_to(v, (count, v.shape[1])) for k, v in middle.items()})
@@ -94,7 +97,8 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
 
     def estimate(causes: dict[str, Array]) -> Array:
         parts = {k: v for k, v in causes.items() if k.startswith(OF_ELEMENTS)}
-        true = elements(Assembled(sensor.layout, {**rest, **parts}).section, sensor.design)
+        section = Assembled(sensor.layout, {**rest, **parts}).section
+        true = as_made(section, sensor.design, causes[LAYER], causes[CLAMP])
         known = sensor.known(true)
         m = motion(true, ones, np.asarray(x), grip.force, grip.loads)
         by_noise, _, weighed = weights(m, true, known, ones, np.asarray(x), noise)
