@@ -26,9 +26,9 @@ from tactcad.parts.stop_gap import STEP_MM, land_room, seat
 
 from .interval import bounds, motion
 from .knowledge import Elements, elements, knowledge, reading_noise
-from .target import Target
+from .target import ARM, THICKNESS, Target
 
-ARM, THICKNESS, SLOT, RADIUS = 0.1, 0.005, 0.02, 0.01  # mm, steps
+SLOT, RADIUS = 0.02, 0.01  # mm, steps
 LEAST_STEPS = 4  # of a calibration: one more than a line needs
 PLAIN = 6.0  # mm, an arm that stands for any where arms do not matter
 POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
@@ -148,11 +148,12 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
     own = d.material if alloy == d.material.alloy else SheetMaterial(alloy, *_values(alloy))
     spread = d.tolerance.youngs_modulus if own is d.material else ALLOYS[alloy].spread["youngs_modulus"]
     rows = tuple((PLAIN,) for _ in range(target.room.rows))
+    across = max(target.room.pitch, d.array.row_pitch) if target.room.rows > 1 else d.array.row_pitch
     return replace(
         d,
         material=own,
         sheet=replace(d.sheet, thickness=sheet),
-        array=replace(d.array, pitch=pitch, spacer=round(pitch - sheet, 6), row_arms=rows),
+        array=replace(d.array, pitch=pitch, row_pitch=across, spacer=round(pitch - sheet, 6), row_arms=rows),
         element=replace(d.element, override={}),
         tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
         rating=replace(d.rating, overload_force=target.grasp.overload),

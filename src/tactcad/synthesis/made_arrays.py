@@ -211,8 +211,8 @@ class MadeSensor:
         k, v = known.place
         runs = self.target.known.runs
         of_k, of_v = known.of_k - k * k, known.of_v - v * v
-        first = np.sqrt(of_k)
-        along = (known.cross - k * v) / first
+        first = np.sqrt(np.maximum(of_k, 0.0))
+        along = np.divide(known.cross - k * v, first, out=np.zeros_like(first), where=first > 0.0)
         z = np.sqrt(runs) * rng.standard_normal((2, runs, *e.stiffness.shape))
         err = np.stack([first * z[0], along * z[0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[1]])
         mean = err.mean(axis=1)

@@ -137,6 +137,6 @@ def _errors(known: Knowledge, z: Array) -> tuple[Array, Array]:
     """Errors of ln K and ln K_v by a calibration from independent standard normal numbers, with their
     covariance; the contact's place apart."""
     of_k, of_v = known.of_k - known.place[0] ** 2, known.of_v - known.place[1] ** 2
-    k = np.sqrt(of_k)
-    along = (known.cross - known.place[0] * known.place[1]) / k
+    k = np.sqrt(np.maximum(of_k, 0.0))
+    along = np.divide(known.cross - known.place[0] * known.place[1], k, out=np.zeros_like(k), where=k > 0.0)
     return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[..., 1]

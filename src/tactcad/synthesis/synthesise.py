@@ -195,43 +195,38 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
     within
         Relative, by how much more search might change the answer.
     """
-    asked = target.target.half_width
     looked, best = 0, None
-    for margin in (
-        MARGINS if asked is not None and target.target.least in ("room", "cut", "kinds") else (1.0,)
-    ):
-        found = []
-        for stand in _in_order(target):
-            one = search(stand, goal_of(target, margin), within=within)
-            looked += one.evaluations
-            found.append(one)
-            if (
-                target.target.least == "tolerance"
-                and asked
-                and one.accepted
-                and one.half_width <= asked / 100
-            ):
-                break
+    for margin, some in _tries(target):
+        found = [search(stand, goal_of(target, margin), within=within) for stand in some]
+        looked += sum(one.evaluations for one in found)
         chosen = min(found, key=lambda f: (not f.accepted, f.goal))
-        if target.target.least == "tolerance" and asked and found[-1].half_width <= asked / 100:
-            chosen = found[-1]
         made, wanted = _made(target, chosen, arrays)
         met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
         this = Synthesis(target, chosen, wanted, made, met)
-        if best is None or (met, made.share) > (best.met, best.made.share):
+        if best is None or _worth(this) > _worth(best):
             best = this
-        if met or not chosen.accepted:
+        if met or (not chosen.accepted and target.target.least != "tolerance"):
             break
     assert best is not None
     return replace(best, evaluations=looked)
 
 
-def _in_order(target: Target) -> list[Stand]:
-    """Stands, the loosest hinge tolerance first where that is to be found."""
-    order = stands(target)
-    if target.target.least == "tolerance":
-        order.sort(key=lambda s: -s.base.tolerance.hinge_thickness)
-    return order
+def _worth(got: Synthesis) -> tuple[bool, bool, float, float]:
+    return got.met, got.found.accepted, got.made.share, -got.found.half_width
+
+
+def _tries(target: Target) -> list[tuple[float, list[Stand]]]:
+    """What is searched until the target is met: margins between wanted and nominal half-width, and stands."""
+    everything, least = stands(target), target.target.least
+    if target.target.half_width is not None and least in ("room", "cut", "kinds"):
+        return [(margin, everything) for margin in MARGINS]
+    if target.target.half_width is None or least != "tolerance":
+        return [(1.0, everything)]
+    loosest_first = sorted(set(target.stock.hinge_tolerances), reverse=True)
+    return [
+        (1.0, [s for s in everything if s.base.tolerance.hinge_thickness == tolerance])
+        for tolerance in loosest_first
+    ]
 
 
 def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:

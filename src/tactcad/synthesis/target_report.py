@@ -15,6 +15,7 @@ from tactcad.paper.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panel
 from tactcad.parts.layout import Layout
 
 from .interval import LEVEL
+from .realise import dealt
 from .shares import SLIGHT
 from .synthesise import CURVE, PAPERS_RATIO, Synthesis
 from .target import Target
@@ -99,7 +100,8 @@ def _pairs(got: Synthesis) -> list[tuple[int, int]]:
 
 def _elements(got: Synthesis) -> list[dict[str, Any]]:
     s = got.sensor
-    forces = dict(zip(got.found.candidate.arm[0].round(6), got.found.candidate.largest_force[0]))
+    c = got.found.candidate
+    kinds = [kind for row in dealt(c) for kind in row]
     rows = []
     for i, place in enumerate(Layout(got.found.design).elements):
         rows.append(
@@ -111,7 +113,7 @@ def _elements(got: Synthesis) -> list[dict[str, Any]]:
                 "stiffness": float(s.drawn.stiffness[i]),
                 "stiffness_by_solid_elements": got.solid[i] if got.solid else None,
                 "signal_V_per_mm": float(s.drawn.signal[i]),
-                "largest_force": float(forces.get(round(place.arm, 6), np.nan)),
+                "largest_force": float(c.largest_force[0, kinds[i]]),
             }
         )
     return rows
