@@ -24,6 +24,7 @@ from tactcad.mechanics.section import Array
 from tactcad.mechanics.stop import tip_compliance
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import stop_gap
 from tactcad.scenes import make_scene
 
 from .candidates import POINTS
@@ -145,6 +146,20 @@ class MadeSensor:
         t = self.design.tolerance
         share = np.abs(within_limits(rng.standard_normal((2, count, 1)), distribution))
         return t.recast_layer * share[0], t.clamp_compliance * share[1]
+
+    @property
+    def cannot_bear(self) -> str:
+        """Why the array as drawn does not bear the target's forces; "" where it does."""
+        e, grip = self.drawn, self.target.grasp
+        forces = [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points]
+        largest = np.max(forces, axis=0)
+        gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
+        arm = np.array([p.arm for p in self.layout.elements])
+        if (largest * tip_compliance(e.section, e.stiffness, arm) > gaps).any():
+            return "a stop closes under the largest force"
+        yields = strength.yield_force_where_known(e.section, design_alloy(self.design))
+        beyond = (largest > yields / self.design.rating.yield_factor).any()
+        return "a hinge is beyond its rated force" if beyond else ""
 
     @property
     def calibrated(self) -> bool:

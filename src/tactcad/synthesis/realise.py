@@ -69,10 +69,10 @@ def realised(c: Candidates) -> Design:
     return replace(made, origin={path: text for path, text in made.origin.items() if path in known})
 
 
-def origins(base: Design, made: Design, limits: str) -> dict[str, str]:
+def origins(base: Design, made: Design, binding: str) -> dict[str, str]:
     """Where every value that differs from the base design's is from, by its path."""
     before, after = paths(base), paths(made)
-    told = {path: f"synthesised from a target, on {base.name}; binding: {limits}" for path in SEARCHED}
+    told = {path: f"synthesised from a target, on {base.name}; {binding}" for path in SEARCHED}
     told |= {
         "design.name": "chosen: the target's",
         "design.title": "chosen: the target's",
@@ -89,7 +89,7 @@ def origins(base: Design, made: Design, limits: str) -> dict[str, str]:
     }
     told |= {path: "chosen: of the target's stock" for path in after if path.startswith("material.")}
     changed = {path for path, value in after.items() if before.get(path) != value}
-    always = {"design.name", "design.title", "design.revision"}
+    always = {"design.name", "design.title", "design.revision", *SEARCHED}
     by_element = "synthesised: the other kind of element, as element.hinge_thickness"
     return {p: told.get(p, by_element) for p, v in after.items() if v is not None and p in changed | always}
 

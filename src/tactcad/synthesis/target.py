@@ -47,7 +47,11 @@ class Wish:
     name: str = given(_spec(Identity, "name"))
     title: str = given(_spec(Identity, "title"), "Array from a target")
     base: str = given(
-        TextLine(r"[^\x00-\x1f]{1,200}", "a named design or a path", "design whose other values are kept"),
+        TextLine(
+            r"[^\x00-\x1f]{1,200}",
+            "a named design, or a path from the target file's folder",
+            "design whose other values are kept",
+        ),
         DEFAULT_DESIGN,
     )
     half_width: float | None = given(
@@ -226,11 +230,12 @@ def read_target(path: str | Path) -> Target:
     InputError
         The file is missing or no target, a value is not legal, or two contradict each other.
     """
-    return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
+    return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path), Path(path).parent)
 
 
-def parse_target(text: str, where: str) -> Target:
-    """A target from TOML text; `where` names the text in messages. Raises as `read_target`."""
+def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
+    """A target from TOML text; `where` names the text in messages, and `target.base` as a path is one from
+    `folder`. Raises as `read_target`."""
     table = parse_toml(text, where)
     for name, value in table.items():
         if name not in (*TABLES, "origin"):
@@ -241,7 +246,7 @@ def parse_target(text: str, where: str) -> Target:
         if name not in table:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
     values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
-    base = read(values["target"].base)
+    base = _base(values["target"].base, folder)
     stock = values["stock"]
     values["stock"] = Stock(
         stock.sheets or (base.sheet.thickness,),
@@ -251,6 +256,15 @@ def parse_target(text: str, where: str) -> Target:
     target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values))
     _refuse_contradictions(target)
     return target
+
+
+def _base(name: str, folder: Path) -> Design:
+    try:
+        return read(folder / name if "/" in name or name.endswith(".toml") else name)
+    except InputError as error:
+        if error.where == "DESIGN":
+            raise InputError("target.base", error.what, value=name, legal=error.legal) from error
+        raise InputError("target.base", str(error), value=name) from error
 
 
 def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
