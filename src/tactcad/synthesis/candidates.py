@@ -74,6 +74,11 @@ class Stand:
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
         return np.array([0.0, *(_with_rows(self.base, n).carrier_size[1] for n in range(1, most + 1))])
 
+    @property
+    def in_a_row(self) -> int:
+        """Elements of the longer row of the largest array asked for; more miss room.elements alone."""
+        return ceil(self.target.room.elements[1] / self.target.room.rows)
+
     @cached_property
     def most(self) -> int:
         """Elements that the room takes."""
@@ -268,7 +273,7 @@ class Candidates:
             "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
-            "room.width": self.width / room.width - 1.0,
+            "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
             "room.height": np.full(len(length), s.height / room.height - 1.0),
             "calibration": np.where(
@@ -308,17 +313,16 @@ class Candidates:
         some = [validity.reasons(s, ladder.DEFAULT_RUNG)[0] for s in (self.section, *self.at_limits)]
         return tuple(dict.fromkeys(str(why) for row in some for why in row if why))
 
-    @cached_property
-    def width(self) -> Array:
-        """Of the carrier along the rows, mm."""
-        a_row = np.ceil(self.total / self.stand.target.room.rows).astype(int)
-        return self.stand.widths[np.minimum(a_row, len(self.stand.widths) - 1)]
+    @property
+    def in_a_row(self) -> NDArray[np.int_]:
+        """Elements of the longer row."""
+        return np.ceil(self.total / self.stand.target.room.rows).astype(int)
 
     @cached_property
     def area(self) -> Array:
         """Of the carrier, mm2."""
         length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + self.stand.beyond_slot)
-        return length * self.width
+        return length * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
 
     @cached_property
     def cut(self) -> Array:
