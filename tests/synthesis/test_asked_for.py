@@ -65,14 +65,13 @@ def test_largest_forces_are_those_of_the_element_not_of_its_arm():
     assert told == pytest.approx(largest.tolist(), rel=1e-3)
 
 
-@pytest.mark.parametrize("pitch", [4.0, 8.0])
-def test_rows_are_as_far_apart_as_pads_along_them(pitch):
-    got = quick(small(("pitch = 4", f"pitch = {pitch}")))
+def test_rows_are_as_far_apart_as_pads_along_them():
+    pitch = 8.0
+    got = quick(small(("pitch = 4", "pitch = 8")))
     array = got.found.design.array
     assert array.row_pitch >= pitch and array.pitch >= pitch
-    if got.found.accepted:
-        made = parse(design_text(got.design), "written")
-        assert made.array == array and not broken_rules(made)
+    made = parse(design_text(got.design), "written")
+    assert got.found.accepted and made.array == array and not broken_rules(made)
 
 
 def test_a_pitch_that_no_design_file_can_say_is_refused_at_reading():
@@ -85,7 +84,7 @@ def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     (stand,) = stands(target)
     wide = replace(stand, base=replace(stand.base, array=replace(stand.base.array, pitch=50.0, spacer=47.0)))
     assert refusals(wide.base) == {"array.spacer"}
-    best = search(stand, lambda c: c.half_width, within=0.05).row
+    best = quick(target, 0.5).found.row
     wide.__dict__["limits"] = (best, best + 1.0)
     got = search(wide, lambda c: c.half_width, within=0.05)
     assert not got.accepted and "array.spacer" in got.refused
@@ -127,8 +126,6 @@ def test_the_loosest_tolerance_that_meets_the_target_is_found_also_where_a_loose
     target = small(least, ("[elements]", '[known]\nhow = "drawn"\n[elements]'))
     loose = target.with_("stock.hinge_tolerances", (0.02,))
     wanted = 100.01 * quick(loose, 0.2).found.half_width
-    alone = quick(loose.with_("target.half_width", wanted), 0.2)
-    assert alone.found.accepted and 100.0 * alone.found.half_width < wanted and not alone.met
     both = target.with_("stock.hinge_tolerances", (0.002, 0.02)).with_("target.half_width", wanted)
     got = quick(both, 0.2)
     assert got.met and got.found.design.tolerance.hinge_thickness == 0.002
