@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -113,6 +114,17 @@ def test_what_needs_no_kernel_works_in_an_empty_folder(installed, empty, command
     assert not list(empty.iterdir())
 
 
+def test_it_brings_all_of_the_review_page(wheel):
+    own = {
+        p.name
+        for p in (ROOT / "src/tactcad/review").iterdir()
+        if p.suffix in (".js", ".css", ".html", ".txt")
+    }
+    with zipfile.ZipFile(wheel) as archive:
+        shipped = {Path(name).name for name in archive.namelist() if name.startswith("tactcad/review/")}
+    assert len(own) > 8 and own <= shipped
+
+
 def test_a_new_design_is_written_and_estimated(installed, empty):
     assert run(installed / "tactcad", "new", "my-sensor.toml", cwd=empty).returncode == 0
     done = run(installed / "tactcad", "estimate", "my-sensor.toml", cwd=empty)
@@ -131,7 +143,7 @@ def test_cut_files_need_no_kernel(installed, empty):
     assert done.stdout == "EOF\n", done.stderr
 
 
-@pytest.mark.parametrize("command", ["export", "check", "release"])
+@pytest.mark.parametrize("command", ["export", "check", "release", "review"])
 def test_what_needs_the_kernel_says_what_to_install(installed, empty, command):
     done = run(installed / "tactcad", *command.split(), cwd=empty)
     assert done.returncode == 1

@@ -127,7 +127,8 @@ def test_the_panel_says_what_the_descriptions_say(fresh, macro_scene):
 
 def test_a_click_in_the_picture_picks_the_part_there(fresh):
     fresh.page.click("#open-cover")
-    fresh.page.click("[data-designator=E4] > .row > .alone", force=True)
+    fresh.page.hover("[data-designator=E4] > .row")
+    fresh.page.click("[data-designator=E4] > .row > .alone")
     box = fresh.page.locator("#canvas canvas").first.bounding_box()
     seen = (fresh.picture().max(axis=2) < 250).nonzero()
     row, column = int(np.median(seen[0])), int(np.median(seen[1]))

@@ -19,7 +19,7 @@ async function start() {
     view.mark(null);
     panel.select(designator);
   };
-  const tree = new Tree(byId('tree'), parts, {select, hide: (hidden) => view.hide(hidden)});
+  const tree = new Tree(byId('tree'), parts, {select, hide: (hidden) => view.hide(hidden), fit: () => view.fit()});
   const controls = new Controls(byId('controls'), {
     moved: (fit) => {
       view.place(controls.offsets());
@@ -89,6 +89,7 @@ async function start() {
     const open = byId('open-cover').getAttribute('aria-pressed') !== 'true';
     byId('open-cover').setAttribute('aria-pressed', String(open));
     tree.hide(open ? scene.cover : []);
+    view.fit();
   });
   view.onPick = (designator) => select(designator);
   view.onDraw = () => {

@@ -85,7 +85,7 @@ class Tree {
       Enter: () => (item.dataset.designator ? this.on.select(item.dataset.designator) : this.open(item, expanded !== 'true')),
       ' ': () => this.toggle(item, !this.under(item).every((d) => !this.hidden.has(d))),
       i: () => this.isolate(this.under(item)),
-      a: () => this.hide([]),
+      a: () => this.isolate([...this.items.keys()]),
     };
     if (!(event.key in acts)) return;
     event.preventDefault();
@@ -113,6 +113,7 @@ class Tree {
   isolate(designators) {
     const kept = new Set(designators);
     this.hide([...this.items.keys()].filter((d) => !kept.has(d)));
+    this.on.fit();
   }
 
   hide(hidden) {
