@@ -57,7 +57,7 @@ class View {
     const [low, high] = this.rest;
     const shared = {version: 3, loc: [[0, 0, 0], [0, 0, 0, 1]], normal_len: 0};
     const parts = scene.placed.map((p, n) => ({
-      ...shared, id: `/s/${n}`, name: `${n}`, type: 'shapes', subtype: 'solid', state: [1, 1], alpha: 1,
+      ...shared, id: `/s/${n}`, name: `${n}`, type: 'shapes', subtype: 'solid', state: [1, 1], alpha: this.parts.get(p.part_no).alpha ?? 1,
       color: this.parts.get(p.part_no).colour, renderback: false, texture: null, accuracy: null, bb: null,
       loc: [p.origin, quaternion(p.rotation)], shape: this.meshes.get(p.part_no),
     }));
