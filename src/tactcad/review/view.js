@@ -50,7 +50,15 @@ class View {
       up: 'Z', control: 'orbit', ortho: true, axes: false, collapse: 1, clipObjectColors: true,
     });
     this.viewer.setPickHandler(false);  // clicks are this page's
+    for (const p of scene.placed) this.setBehind(this.group(p.designator), this.parts.get(p.part_no).behind ?? 0);
     this.lookFrom('iso');
+  }
+
+  // Of faces in one place the one that is less far behind (steps of the depth buffer) is seen.
+  setBehind(group, steps) {
+    group.traverse(({material}) => {
+      if (material?.polygonOffset) material.polygonOffsetUnits += steps;
+    });
   }
 
   shapes(scene) {
