@@ -53,6 +53,7 @@ class Draw:
         """An end of a range is drawn once in `ends` draws."""
         self.random, self.ends = Random(seed), ends
         self.table: dict[str, Any] = {}
+        self.most: dict[str, float] = {}  # by path, of numbers that `rest` chooses
 
     def choose_fasteners(self) -> None:
         screw, dowel = (
@@ -97,7 +98,7 @@ class Draw:
         """Every number of a section that was not chosen yet, over its whole range."""
         for path in LEGAL:
             if path.startswith(f"{section}.") and path not in self.table:
-                self.number(path)
+                self.number(path, high=self.most.get(path))
 
 
 def sound_table(seed: int, row_lengths: tuple[int, ...], rigs: bool = False) -> dict[str, Any]:
@@ -121,6 +122,8 @@ def sound_table(seed: int, row_lengths: tuple[int, ...], rigs: bool = False) -> 
     _arms(d, rows)
     _loads(d)
     _clamp(d)
+    thinnest = min(t for path, t in d.table.items() if path.endswith(".hinge_thickness"))
+    d.most = {"tolerance.hinge_thickness": thinnest / 4}
     for section in ("gauge", "readout", "tolerance", "rating"):
         d.rest(section)
     if rigs:
@@ -296,7 +299,7 @@ def _clamp(d: Draw) -> None:
 
     # holes in the rear bodies
     upper = d.number("holes.dowel_hole_upper", high=0.05)
-    pin = dowel + M6_UPPER[d.table["clamp.dowel"]]
+    pin = dowel + M6_UPPER[d.table["clamp.dowel"]] + 0.002  # what a plug gauge tells from none
     hole = d.number("holes.dowel_hole", pin, pin + 0.05)
     widest = max(m.clearance, hole + upper)
     layers = ceil(3 / floor(d.table["array.pitch"] / LEAD + 1e-9))

@@ -132,9 +132,19 @@ def test_wheels_by_another_way(macro):
 
 def test_the_rollers_seat_by_hand(lines):
     """2 m6 is 2.002 to 2.008; the seat's radius is 1.005 to 1.015."""
-    enters, middle = lines["roller enters its seat"], lines["roller in the tip's middle"]
+    enters, middle = lines["roller enters its seat"], lines["roller in its seat's middle"]
     assert (enters.worst_low, enters.worst_high) == pytest.approx((2.01 - 2.008, 2.03 - 2.002))
     assert (middle.worst_low, middle.worst_high) == pytest.approx((1.005 - 1.004, 1.015 - 1.001))
+
+
+def test_what_does_not_vary_has_no_spread(macro):
+    """With all parts at one size the drawn arrays differ by rounding only: their spread is 0, not 1e-19."""
+    fixed = {
+        n: DimensionLimits(n, (v.upper + v.lower) / 2, (v.upper + v.lower) / 2)
+        for n, v in macro.variables.items()
+    }
+    for line in stack(macro.layout, fixed, list(macro.requirements), 50):
+        assert line.sigma == 0.0, line.requirement.name
 
 
 def test_no_two_requirements_share_a_name(macro):

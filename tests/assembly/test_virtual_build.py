@@ -6,15 +6,21 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
+from variants import variant
 
 from tactcad.assembly.mechanic import PAD, Assembled
 from tactcad.assembly.variables import STACK_LENGTH, variable
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
 from tactcad.assembly.virtual_shop import made
 from tactcad.checks.goes_together import check_assembly
+from tactcad.design.messages import InputError
 from tactcad.mechanics import ladder
+from tactcad.mechanics.strength import yield_force
 from tactcad.parts.designs import load
-from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.hinge_section import design_alloy, hinge_section
+from tactcad.parts.overload import overloads
+from tactcad.parts.rules import refuse_broken
+from tactcad.parts.stop_gap import seat
 
 UNITS = np.array([1e3, 1e4, 1e4])  # um and tenths of a milliradian, so that all numbers are near one
 SHIPPED = ("macro-array", "soft-tissue", "double-sample", "smallest-bearing")
@@ -51,6 +57,8 @@ BEFORE = {
         "end plates: dowel holes along z", -0.3, 0.3, "pads square to the carrier"),
     "ledge over the pad by general tolerance": (
         "element: ledge over the pad face", -0.2, 0.2, "stop closes within the rated deflection"),
+    "hinges as thick as it happens": (
+        "element: hinge thickness", -0.15, 0.15, "stop keeps the hinge from yielding, as made"),
     "H7 holes for pressed pins": (
         "end plate, tapped: dowel hole diameter", 0.0, 0.010, "pins hold in the tapped end plate"),
     "a stack as long as its sheets make it": (
@@ -68,6 +76,43 @@ def test_a_loose_limit_keeps_arrays_from_going_together(macro, what):
     assert builds.failures[builds.worse][requirement] > 3
     why = worse.refusal(builds)
     assert requirement in why and name in why
+
+
+def test_a_hinge_whose_stop_never_closes_bears_the_overload_alone():
+    """Under a force that does not close it: that force over the hinge's own yield force."""
+    own = sensor(variant({"rating.overload_force": 0.5}))
+    zero = {n: np.zeros((1, v.pieces)) for n, v in own.variables.items()}
+    a = Assembled(own.layout, zero)
+    assert a.closing_force.min() > 0.5
+    alone = 0.5 / yield_force(a.section, design_alloy(own.layout.design))
+    assert a.yield_shares == pytest.approx(alone, rel=1e-12)
+
+
+def test_hinges_on_their_closed_stops_are_stressed_as_the_overload_table_says(macro):
+    """All parts as drawn, gaps as wide as limits make them: what tests/fem holds against finite elements."""
+    zero = {n: np.zeros((1, v.pieces)) for n, v in macro.variables.items()}
+    wider = macro.layout.design.stop.tolerance + seat(macro.layout)
+    zero["element: stop gap"] = np.full((1, len(macro.layout.elements)), wider)
+    share = [1.0 / state.yield_factor for state in overloads(macro.layout)]
+    assert Assembled(macro.layout, zero).yield_shares[0] == pytest.approx(share, rel=1e-9)
+
+
+def test_a_cut_hinge_is_a_missed_array(macro):
+    name = "element: hinge thickness"
+    cut = variable(name, -0.3, -0.3, macro.variables[name].pieces)
+    builds = replace(macro, variables={**macro.variables, name: cut}).built(20)
+    assert builds.share == 0.0
+    assert builds.failures[builds.worse]["stop keeps the hinge from yielding, as made"] == 20
+
+
+def test_the_least_dowel_hole_that_rules_accept_keeps_its_play():
+    """3 m6 is 3.008 at most: 3.010 leaves the 0.002 asked for, at worst."""
+    with pytest.raises(InputError, match=r"holes.dowel_hole.*at least 3\.01 mm"):
+        refuse_broken(variant({"holes.dowel_hole": 3.0099}))
+    least = variant({"holes.dowel_hole": 3.01})
+    refuse_broken(least)
+    (line,) = sensor(least).stack("pins enter the elements")
+    assert line.worst_low == pytest.approx(0.002) and line.kept == 1.0
 
 
 def test_a_refusal_is_confirmed_by_the_worst_case(macro):

@@ -27,6 +27,18 @@ def test_the_same_seed_says_the_same(capsys):
     assert said[0] == said[1] and "normal" in said[0] and "largest contributor" in said[0]
 
 
+def test_the_tables_columns_stand_under_each_other(capsys):
+    main(["build", "macro-array", "--count", "20"])
+    lines = capsys.readouterr().out.splitlines()
+    head = next(n for n, line in enumerate(lines) if line.startswith("  requirement"))
+    end = lines[head].index("nominal") + len("nominal")
+    rows = lines[head + 1 : next(n for n, line in enumerate(lines) if line.startswith("  element  K"))]
+    assert len(rows) > 50
+    for row in rows:
+        float(row[:end].split()[-1])  # a number ends under the head's last letter
+        assert row[end] == " " and row[end - 10] == " "
+
+
 @pytest.mark.parametrize(
     ("options", "what"),
     [(["--count", "0"], "--count"), (["--count", "x"], "--count"), (["--seed", "-1"], "--seed")],

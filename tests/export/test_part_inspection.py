@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 
 import pytest
 
@@ -48,6 +49,30 @@ def test_the_order_is_the_stacks(made):
     assert shares == sorted(shares, reverse=True) and 0.0 <= shares[-1] and shares[0] <= 1.0
     own = {line.requirement.name: {f"{c.share:.3f}" for c in line.contributors} for line in lines}
     assert all(r["share"] in own[r["requirement"]] for r in rows)
+
+
+def test_a_shop_can_read_where_and_with_what(made):
+    """No feature names of the model; every row has an instrument that reads to a tenth of the limits, or
+    gauges at both limits."""
+    _, _, _, rows = made
+    for r in rows:
+        assert not re.search(r"z=|_|face z", r["where"] + r["how"])
+        lower, upper = float(r["lower"]), float(r["upper"])
+        if r["how"].startswith("plug gauges"):
+            assert re.findall(r"\d\.\d+|\d+", r["how"]) == [f"{lower:g}", f"{upper:g}"]
+        else:
+            reads = float(re.search(r", ([\d.]+) or better", r["how"])[1])
+            assert reads <= (upper - lower) / 10 + 1e-9 or reads == 0.0005
+    (spacer,) = [r for r in rows if r["part_no"].endswith("-spacer") and r["characteristic"] == "thickness"]
+    assert "less what the elements' sheet measures, +-0.01" in spacer["where"]
+
+
+def test_the_spacers_row_says_what_its_sheet_and_the_guide_say(made):
+    design, parts, _, rows = made
+    said = f"{design.array.pitch:g} less what the elements' sheet measures, +-0.01"
+    assert sum(said in note for note in parts[f"{design.name}-spacer"].notes) == 1
+    (text,) = [s.text for s in make_scene(design, "array").steps if s.title == "Stack"]
+    assert f"each is {design.array.pitch:g} mm less what the elements' sheet measures, +-0.01" in text
 
 
 def test_every_part_on_which_the_array_depends_is_in_it(made):

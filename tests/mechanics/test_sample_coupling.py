@@ -47,6 +47,17 @@ def test_shares_run_on_smoothly_where_the_sum_ends():
         assert near == pytest.approx(far, abs=1e-3)
 
 
+def test_far_shares_of_long_rows_fade_as_one_over_distance():
+    """Distances of which some, scaled back to where the sum ends, are an ulp beyond that: rows of pads 4.5, 5
+    and 2.5 mm apart, two rows 4 mm apart. Along a line from the loaded pad a share goes as 1/r."""
+    for pitch, count in ((4.5, 50), (5.0, 45), (2.5, 89)):
+        along = pitch * np.arange(count - 2, count + 3)
+        for across in (0.0, 4.0):
+            far = sc.influence(np.full(len(along), across), along, 2.0, 3.0, np.inf, 0.5)
+            farther = sc.influence(np.full(len(along), 2 * across), 2 * along, 2.0, 3.0, np.inf, 0.5)
+            assert farther == pytest.approx(far / 2.0, rel=1e-9) and (far > 0.0).all()
+
+
 @pytest.mark.parametrize("c, poisson", [(0.3, 0.2), (1.0, 0.3), (1.5, 0.49), (3.0, 0.4)])
 def test_layer_factor_against_the_equations_of_elasticity(c, poisson):
     """One wave of normal load on a layer of height 1, u = U(z) sin cx, w = W(z) cos cx, solved as a

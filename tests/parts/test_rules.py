@@ -65,6 +65,13 @@ WITNESSES = {
         ({"element.override.3.hinge_thickness": 2.7}, "element.override.3.hinge_thickness"),
         ({**TWO_SIDED, "element.hinge_thickness": 2.2}, "element.fillet_radius"),
     ],
+    "hinge_outlasts_its_tolerance": [
+        ({"tolerance.hinge_thickness": 0.1}, "tolerance.hinge_thickness"),
+        (
+            {"tolerance.hinge_thickness": 0.05, "element.override.3.hinge_thickness": 0.19},
+            "tolerance.hinge_thickness",
+        ),
+    ],
     "fillets_fit_slot": [
         ({"element.fillet_radius": 0.441}, "element.fillet_radius"),
         ({"element.hinge_length": 0.59}, "element.fillet_radius"),
@@ -165,7 +172,8 @@ WITNESSES = {
     "stop_gap_above_tolerance": [
         ({"stop.tolerance": 0.1}, "stop.tolerance"),
         ({"stop.gaps": {"4": 0.005}}, "stop.tolerance"),
-        ({"tolerance.pad_height": 0.1}, "stop.tolerance"),
+        ({"tolerance.pad_height": 0.1}, "tolerance.pad_height"),
+        ({"tolerance.ledge": 0.06}, "tolerance.ledge"),
         ({"rating.overload_force": 250.0, "clamp.stop_plate_thickness": 7.0}, "rating.overload_force"),
         # a short arm beside a long one: 88 mm of body turn its hinge round on the closed stop
         ({"rating.overload_force": 15.0, "array.row_arms": [[90, 4], [90, 4]]}, "rating.overload_force"),
@@ -176,6 +184,7 @@ WITNESSES = {
         ({"holes.screw_offsets": [4.1, 15.0], "clamp.end_plate_margin": 1.0}, "holes.screw_offsets"),
         ({"holes.height": 4.0, "clamp.end_plate_bottom": 0.0}, "holes.height"),
         ({"holes.dowel_hole": 3.0}, "holes.dowel_hole"),
+        ({"holes.dowel_hole": 3.009}, "holes.dowel_hole"),
         ({"holes.dowel_hole": 3.2}, "holes.dowel_hole"),
         ({"clamp.dowel": "2.5"}, "holes.dowel_hole"),
         ({"holes.web": 2.0}, "element.rear_height"),
@@ -254,6 +263,34 @@ def test_the_witness_breaks_its_rule_alone(rule, n):
     text = str(error)
     assert text.isprintable()
     assert not re.search(r"\d\.\d{8}", text), "shows digits that nobody wrote"
+
+
+TOO_WIDE = {
+    "stop.tolerance": [{}, {"tolerance.ledge": 0.02}, {"clamp.hold_down_pitch": DROP}],
+    "tolerance.ledge": [{}, {"stop.tolerance": 0.012}, {"array.row_arms": [[6, 7], [8, 8]]}],
+    "tolerance.pad_height": [{}, {"clamp.hold_down_pitch": DROP}],
+}
+
+
+@pytest.mark.parametrize(
+    ("path", "others"), [(path, other) for path, cases in TOO_WIDE.items() for other in cases]
+)
+def test_the_legal_tolerance_of_a_stop_is_accepted_and_slightly_more_is_not(path, others):
+    """Bisected from outside: what the rules accept just below what they say, and no more."""
+
+    def found(value):
+        design = variant({**others, path: value})
+        return [b for b in broken_rules(design) if b.check == "stop_gap_above_tolerance"]
+
+    (wrong,) = found(0.1)
+    assert wrong.part == path
+    legal = float(re.fullmatch(r"at most ([\d.]+) mm", wrong.limit)[1])
+    assert found(legal) == []
+    low, high = 0.001, 0.1
+    while high - low > 1e-6:
+        middle = (low + high) / 2
+        low, high = (low, middle) if found(middle) else (middle, high)
+    assert legal <= low + 1e-6 < legal + 1.01e-4
 
 
 @pytest.mark.parametrize("name", names())

@@ -202,10 +202,11 @@ def stiffness(design: Design) -> dict[str, float]:
     return {f"E{row.number}": row.stiffness for row in estimate(Layout(design), "solid")}
 
 
-# the large array's others take a second each; of each kind of edit one is left for every run
+# up to a second each; of each kind of edit one is left for every run
 NIGHTLY = {
     "rounder corners", "thicker end plates", "a dowel hole moved by 0.05", "a thicker stop plate",
-    "a longer cart", "one more ring of holes", "the axis's threads moved by 0.05", "5 um of hinge, macro",
+    "a longer cart", "one more ring of holes", "plates of another alloy", "another sample", "5 um of fillet",
+    "an element added, soft", "the axis's threads moved by 0.05", "5 um of hinge, macro",
 }  # fmt: skip
 
 
@@ -331,17 +332,17 @@ def test_a_cause_that_is_refused_alone_is_taken_back_alone():
 
 
 def test_yield_and_the_check_of_it_turn(monkeypatch):
-    """Tighter dowel holes: some pins no longer enter; counted as `tactcad build` counts."""
+    """Fillets left loose: some hinges yield before their stop closes; counted as `tactcad build` counts."""
     monkeypatch.setattr("tactcad.review.sensor_state.COUNT", 200)
-    tight = ("[gauge]", "[holes]\ndowel_hole = 3.008\n[gauge]")
-    old, new = edited(SOFT), edited(SOFT, tight, ("pad_height = 1.6", "pad_height = 1.65"))
+    loose = ("[gauge]", "[tolerance]\nfillet_radius = 0.2\n[gauge]")
+    old, new = edited(SOFT), edited(SOFT, loose, ("pad_height = 1.6", "pad_height = 1.65"))
     _, meant = compared(old, new)
-    hole, pad = meant.consequences  # first: it makes a check fail
-    assert hole.what.startswith("holes.dowel_hole") and hole.effect.now_fails
-    shares = [sensor(from_table(tomllib.loads(text))).built(200).share for text in (old, edited(SOFT, tight))]
-    assert [hole.effect.yield_share.old, hole.effect.yield_share.new] == shares
+    fillet, pad = meant.consequences  # first: it makes a check fail
+    assert fillet.what.startswith("tolerance.fillet_radius") and fillet.effect.now_fails
+    shares = [sensor(from_table(tomllib.loads(text))).built(200).share for text in (old, edited(SOFT, loose))]
+    assert [fillet.effect.yield_share.old, fillet.effect.yield_share.new] == shares
     assert shares[0] > 0.995 > shares[1]
-    assert any("virtual arrays" in text for text in hole.effect.now)
+    assert any("virtual arrays" in text for text in fillet.effect.now)
     assert pad.effect.yield_share is None and not pad.effect.now_fails
 
 
@@ -410,10 +411,13 @@ def test_a_rebuild_under_another_hash_seed_and_path_shows_nothing(tmp_path, seed
 
 
 def test_the_summary_is_short_and_holds_no_markup(tmp_path, capsys):
-    """Between two designs, with hostile texts: code spans alone, which nothing in them ends."""
+    """More causes than it shows, with hostile texts: code spans alone, which nothing in them ends."""
     hostile = "`<img src=x>` | @everyone [a](http://b)"
-    (tmp_path / "a.toml").write_text(edited(SMALL))
-    (tmp_path / "b.toml").write_text(edited(SOFT, ("Soft tissue array 2 x 4", hostile)))
+    without_notes = edited(SOFT, ("hinge_thickness = 0.15", "hinge_thickness = 0.155")).split("[origin]")[0]
+    (tmp_path / "a.toml").write_text(edited(SOFT))
+    (tmp_path / "b.toml").write_text(
+        without_notes.replace("Soft tissue array 2 x 4", hostile).replace('"tactcad"', '"me"')
+    )
     out, page = tmp_path / "c.md", tmp_path / "c.html"
     sides = [str(tmp_path / name) for name in ("a.toml", "b.toml")]
     assert main(["diff", *sides, "--markdown", str(out), "--html", str(page)]) == 0

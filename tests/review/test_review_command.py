@@ -37,7 +37,8 @@ def made(work):
         done = tactcad_run("review", "one.toml", "--out", f"{n}.html", "--json", cwd=work, env=env)
         assert done.returncode == 0, done.stderr
         said = json.loads(done.stdout)
-        assert said["bytes"] == (work / said["path"]).stat().st_size and said["scenes"] == ["array"]
+        assert said["files"] == {f"{n}.html": (work / f"{n}.html").stat().st_size}
+        assert said["scenes"] == ["array"]
         pages.append((work / f"{n}.html").read_bytes())
     return pages
 

@@ -78,6 +78,27 @@ def test_the_words_stacked_part_on_part_are_the_scene(case):
         assert top == pytest.approx(box(at["EP1"])[1][1], abs=1e-6)
 
 
+def test_rows_are_as_alike_as_the_head_plates_holes_allow(case):
+    """Stacks that differ by d lean the plate by d over the rows' distance: over its thickness a third of the
+    play that its least holes leave the largest pins."""
+    design, scene, page = case
+    alike = float(re.search(r"both rows alike within ([\d.]+) mm", step_text(page, "Stack"))[1])
+    at = {p.designator: p for p in scene.placements}
+    pins = [p.origin[0] for d, p in at.items() if d.startswith("DW")]
+    apart = 2 * min(abs(x) for x in pins)
+    (bore,) = [c for c in at["EP1"].part.characteristics if c.name == "dowel hole diameter"]
+    assert design.clamp.dowel == "3"
+    play, thick = bore.lower - 3.008, at["EP1"].part.extrusion.thickness  # 3 m6
+    assert alike / apart * thick <= play / 3 < (alike + 0.01) / apart * thick
+
+
+def test_what_is_read_off_the_indicator_is_whole_micrometres(case):
+    _, _, page = case
+    less, more = re.search(r"to ([\d.]+) mm less, or ([\d.]+) mm more", page).groups()
+    assert float(more) > float(less)
+    assert len(more.partition(".")[2]) <= 3
+
+
 def test_arms_in_the_text_are_the_parts_numbers(case):
     _, scene, page = case
     said = dict(re.findall(r"(E\d+) \(arm ([\d.]+)\)", step_text(page, "Stack")))

@@ -75,6 +75,40 @@ def spring_and_signal(section: HingeSection, design: Design) -> tuple[np.ndarray
     return ladder.stiffness(flat).reshape(shape), signal.reshape(shape)
 
 
+def softened(
+    section: HingeSection, design: Design, distribution: Distribution, rng: np.random.Generator
+) -> tuple[HingeSection, np.ndarray]:
+    """The hinges without one recast layer an array, and how much its clamp turns, rad/(N mm), (arrays, 1):
+    each from none to its limit, at which two standard deviations stand."""
+    limits, shape = (
+        (design.tolerance.recast_layer, design.tolerance.clamp_compliance),
+        (len(section.load_arm), 1),
+    )
+    if distribution == "uniform":
+        layer, turn = (limit * rng.uniform(size=shape) for limit in limits)
+    else:
+        layer, turn = (np.minimum(abs(limit / LIMIT * rng.standard_normal(shape)), limit) for limit in limits)
+    left = section.with_(
+        hinge_thickness=section.hinge_thickness - 2 * layer,
+        hinge_length=section.hinge_length + 2 * layer,
+        fillet_radius=section.fillet_radius + layer,
+        arm_height=section.arm_height - 2 * layer,
+        body_height=section.body_height - 2 * layer,
+        body_length=section.body_length - layer,
+    )
+    return left, turn
+
+
+def clamped(
+    found: tuple[np.ndarray, np.ndarray], section: HingeSection, turn: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """K and K_v where the clamp's turn adds deflection, and no strain."""
+    K, K_v = found
+    lever = section.load_arm + section.hinge_length / 2 + section.body_length
+    times = 1.0 / (1.0 + K * turn * lever**2)
+    return K * times, K_v * times
+
+
 def used_elsewhere(section: HingeSection, contact: float, rng: np.random.Generator) -> HingeSection:
     """The same hinges, pressed off the place where they were calibrated."""
     off = contact / LIMIT * rng.standard_normal(section.shape)
@@ -104,9 +138,10 @@ def outcome(
     parts = sensor(design, [make_scene(design, "array")])
     arrays = Assembled(parts.layout, made(parts.variables, count, distribution, rng))
     objects = np.geomspace(*target.stiffness_range, points)
-    K, K_v = spring_and_signal(arrays.section, design)
-    used = used_elsewhere(arrays.section, target.known.contact if contact else 0.0, rng)
-    in_use = spring_and_signal(used, design)
+    left, turn = softened(arrays.section, design, distribution, rng)
+    K, K_v = clamped(spring_and_signal(left, design), left, turn)
+    used = used_elsewhere(left, target.known.contact if contact else 0.0, rng)
+    in_use = clamped(spring_and_signal(used, design), used, turn)
     found = np.array(
         [
             [_felt(target, design, table, k, v, x, rng) for x in objects]
@@ -236,8 +271,10 @@ def many(
     found, lacks = [], []
     for _ in range(0, count, at_once):
         arrays = Assembled(parts.layout, made(parts.variables, at_once, distribution, rng))
-        K, K_v = spring_and_signal(arrays.section, design)
-        in_use = spring_and_signal(used_elsewhere(arrays.section, target.known.contact, rng), design)
+        left, turn = softened(arrays.section, design, distribution, rng)
+        K, K_v = clamped(spring_and_signal(left, design), left, turn)
+        used = used_elsewhere(left, target.known.contact, rng)
+        in_use = clamped(spring_and_signal(used, design), used, turn)
         table = calibrations(target, design, K, K_v, rng)
         found.append([_many_felt(target, design, table, *in_use, x, rng) for x in objects])
         bad = {r.name: (r.margin(r.value(arrays)) < -ROUNDING).any(axis=1) for r in parts.requirements}
@@ -352,8 +389,9 @@ def uncalibrated(
     parts = sensor(design, [make_scene(design, "array")])
     arrays = Assembled(parts.layout, made(parts.variables, count, distribution, rng))
     said = drawn = hinge_section(parts.layout, parts.layout.elements)
-    used = used_elsewhere(arrays.section, target.known.contact, rng)
-    K, K_v = spring_and_signal(used, design)
+    left, turn = softened(arrays.section, design, distribution, rng)
+    used = used_elsewhere(left, target.known.contact, rng)
+    K, K_v = clamped(spring_and_signal(used, design), used, turn)
     K_v = K_v * (1.0 + target.known.gauge_factor / LIMIT * rng.standard_normal(K.shape))
     out = []
     for i in range(count):

@@ -94,7 +94,7 @@ def test_yield_half_widths_and_coverage_of_ten_targets(sensors):
     ranks, inside, met, chance = [], [], 0, []
     for n, (sensor, wanted) in enumerate(sensors):
         predicted = sensor.built(1000, wanted)
-        lab = outcome(sensor.target, sensor.design, 24, predicted.distribution, 1000 + n)
+        lab = outcome(sensor.target, sensor.design, 24, predicted.distribution, 1100 + n)
         widths = np.sort(predicted.half_widths)
         ranks += (np.searchsorted(widths, lab.half_width.max(axis=1)) / len(widths)).tolist()
         inside.append(lab.inside.mean())

@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tactcad.mechanics import ladder
+from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.stop import tip_compliance
+from tactcad.mechanics.stop import back_share, stress_share, tip_compliance
 from tactcad.parts.end_plate import SQUARE, lean
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
@@ -24,6 +24,7 @@ from tactcad.parts.stop_gap import stop_gap
 from .contacts import nearest_pose, resting_plane
 from .variables import Array, Deviations
 
+CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
 # Variables of elements, by the field of HingeSection that each sets.
 HINGE = {
     "element: hinge thickness": "hinge_thickness",
@@ -70,6 +71,10 @@ class Assembled:
     @cached_property
     def y(self) -> Array:
         return np.array([p.y for p in self.layout.elements])
+
+    @cached_property
+    def arm(self) -> Array:
+        return np.array([p.arm for p in self.layout.elements])
 
     @property
     def dowel_x(self) -> float:
@@ -186,7 +191,7 @@ class Assembled:
     @cached_property
     def tips(self) -> Array:
         """How far each tip is off along x, away from the middle, mm."""
-        place = self.made["element: place in its dowel's play, share"] * self.play / 2
+        place = self.made["element: place in its dowel hole's play, share"] * self.play / 2
         return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
 
     @property
@@ -241,7 +246,9 @@ class Assembled:
         changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
         arm = m["element: arm length"] - m["element: pad length"] / 2
         modulus = drawn.youngs_modulus * (1.0 + m["sheet: Young's modulus, relative"])
-        full = np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2)
+        # nor does a fillet reach higher than the arm
+        deep = (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
+        full = np.minimum(np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2), deep)
         return drawn.with_(
             **{**changed, "load_arm": drawn.load_arm + arm, "youngs_modulus": modulus, "fillet_radius": full}
         )
@@ -254,8 +261,25 @@ class Assembled:
     @cached_property
     def closing_force(self) -> Array:
         """Force at the pad that closes each stop, N; NaN as the stiffness."""
-        arm = np.array([p.arm for p in self.layout.elements])
-        return self.gaps / tip_compliance(self.section, self.stiffness, arm)
+        return self.gaps / tip_compliance(self.section, self.stiffness, self.arm)
+
+    @property
+    def yield_shares(self) -> Array:
+        """Stress at each fillet under the overload force, its stop closed, over the yield strength.
+
+        Where the estimator does not reach a hinge, its stiffness is the section's integral, as for the drawn
+        gaps; where its limits leave no hinge or sheet, CUT.
+        """
+        s, known, d = self.section, self.stiffness, self.layout.design
+        K = np.where(np.isnan(known), ladder.evaluate(s, "section").stiffness, known)
+        load, give = d.rating.overload_force, self.layout.stop_give
+        with np.errstate(invalid="ignore", divide="ignore"):
+            closing = np.minimum(self.gaps / tip_compliance(s, K, self.arm), load)
+            forwards = closing + stress_share(s, K, self.arm, give) * (load - closing)
+            backwards = back_share(s, K, self.arm, give) * (load - closing)
+            stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
+        share = stress / d.material.yield_strength
+        return np.where(share < CUT, share, CUT)  # not a number where there is no hinge
 
 
 PAD = "element: pad height over the dowel hole's centre"

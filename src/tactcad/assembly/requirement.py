@@ -10,9 +10,8 @@ import numpy as np
 from .mechanic import Assembled
 from .variables import Array
 
-# Least diametral play of a sliding pin, and least interference of a pressed one, mm; chosen: what a plug
-# gauge tells from none.
-LEAST_PLAY = LEAST_PRESS = 0.002
+# Least interference of a pressed pin, mm; chosen: what a plug gauge tells from none.
+LEAST_PRESS = 0.002
 
 Value = Callable[[Assembled], Array]
 

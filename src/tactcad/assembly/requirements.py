@@ -11,13 +11,14 @@ import numpy as np
 from tactcad.parts.carrier import carrier, carrier_clearance
 from tactcad.parts.end_plate import HOLES
 from tactcad.parts.layout import SUNK, Layout
+from tactcad.parts.library.dowels import LEAST_PLAY
 from tactcad.parts.library.fits import deviations, general
 from tactcad.parts.library.screws import METRIC
 from tactcad.parts.plate import PLACE
 from tactcad.parts.stop_gap import stop_limit
 from tactcad.scenes.scene import Scene
 
-from .requirement import LEAST_PLAY, LEAST_PRESS, Requirement, summed
+from .requirement import LEAST_PRESS, Requirement, summed
 from .rig_requirements import rig_requirements
 from .screw_patterns import patterns
 from .screwed_joints import LENGTH, ScrewedJoint, joints, screwed, thickness
@@ -74,6 +75,7 @@ def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> li
             (("spacer: thickness", 1.0), ("sheet: thickness", -1.0)),
         ),
         Requirement("stop closes within the rated deflection", "mm", 0.0, inf, lambda a: limit - a.gaps),
+        Requirement("stop keeps the hinge from yielding, as made", "", -inf, 1.0, lambda a: a.yield_shares),
         _carrier_mounts(layout, known),
         _set_screws_sunk(layout, known),
     ]

@@ -10,7 +10,7 @@ import numpy as np
 from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.library.bearings import BORE, OUTSIDE
-from tactcad.parts.library.dowels import dowel_limits
+from tactcad.parts.library.dowels import LEAST_PLAY, dowel_limits
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.rigs.cart_layout import LOOSE_WHEEL, cart_layout
 from tactcad.parts.rigs.cart_plate import AXLES, AXLES_OVER
@@ -18,7 +18,7 @@ from tactcad.parts.rigs.roller_tip import SEAT, SEAT_RADIUS, seat_radius
 from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
-from .requirement import LEAST_PLAY, Requirement, summed
+from .requirement import Requirement, summed
 from .variables import Array, DimensionLimits, variable
 
 AXLE_HEIGHT, WHEEL, BORES, SHANKS = (
@@ -29,7 +29,8 @@ AXLE_HEIGHT, WHEEL, BORES, SHANKS = (
 )
 # Shank of an ISO 4762 screw of product grade A (ISO 4759-1:2000).
 SHANK = "h13"
-# mm that the roller may lie beside the tip's middle: the load's place along the arm is as uncertain.
+# mm that the roller may lie beside its seat's middle: the load's place along the arm is as uncertain. Where
+# the seat is in the tip does not matter: the guide sets the roller by the pad's edge, after it is bonded.
 ROLLER_PLACE = 0.02
 # Wheels around the cart: the fourth stands off the plane of three by the alternating sum of their heights.
 AROUND = np.array([1.0, -1.0, 1.0, -1.0])
@@ -79,5 +80,5 @@ def _roller(design: Design, known: dict[str, DimensionLimits]) -> list[Requireme
     play = 2 * seat_radius(size) - float(size)
     return [
         summed("roller enters its seat", LEAST_PLAY, inf, play, ((seat, 2.0), (pin, -1.0))),
-        summed("roller in the tip's middle", -inf, ROLLER_PLACE, play / 2, ((seat, 1.0), (pin, -0.5))),
+        summed("roller in its seat's middle", -inf, ROLLER_PLACE, play / 2, ((seat, 1.0), (pin, -0.5))),
     ]

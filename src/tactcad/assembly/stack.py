@@ -94,7 +94,7 @@ def _summed(r: Requirement, variables: dict[str, DimensionLimits], built: Assemb
     half = sum(float(v.sum()) for v in reach.values())
     value = r.value(built)
     ranked = _ranked({name: float((v**2).sum()) for name, v in reach.items()})
-    return StackLine(r, middle, middle - half, middle + half, float(value.std()), _kept(r, value), ranked)
+    return StackLine(r, middle, middle - half, middle + half, _spread(value), _kept(r, value), ranked)
 
 
 def _behind_contacts(
@@ -138,7 +138,7 @@ def _behind_contacts(
             float(_at(r.value(middle), at)[0]),
             float(min(*ends, value.min())),
             float(max(*ends, value.max())),
-            float(_at(r.value(built), at).std()),
+            _spread(_at(r.value(built), at)),
             _kept(r, r.value(built)),
             _ranked(effect[r.name]),
         )
@@ -178,6 +178,11 @@ def _corner(variables: dict[str, DimensionLimits], ways: dict[str, Array], sign:
         name: ((v.upper + v.lower) / 2 + sign * ways[name] * (v.upper - v.lower) / 2)[np.newaxis]
         for name, v in variables.items()
     }
+
+
+def _spread(value: Array) -> float:
+    """Standard deviation; 0 where the values differ by rounding only."""
+    return float(value.std()) if np.ptp(value) > ROUNDING else 0.0
 
 
 def _kept(r: Requirement, value: Array) -> float:

@@ -72,7 +72,7 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
             yield DimensionLimits(
                 f"element: {name}", np.array([low for low, _ in own]), np.array([up for _, up in own])
             )
-    yield variable("element: place in its dowel's play, share", -1.0, 1.0, len(places))
+    yield variable("element: place in its dowel hole's play, share", -1.0, 1.0, len(places))
     modulus = present(d.tolerance.youngs_modulus)
     yield variable("sheet: Young's modulus, relative", -modulus, modulus)
     if layout.blanks():

@@ -125,11 +125,11 @@ class Sensor:
         worst = max(failed, key=lambda name: failed[name])
         (line,) = self.stack(worst)
         most = line.contributors[0] if line.contributors else None
+        missed = f"{line.shortfall:.3g} {line.requirement.unit}".rstrip()
         return (
             f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "
             f"{builds.seed}) meet all requirements; needed: {100 * LEAST_YIELD:g} %. Most often missed: "
-            f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {line.shortfall:.3g} "
-            f"{line.requirement.unit})"
+            f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {missed})"
             + (f"; largest contributor: {most.name}, {100 * most.share:.0f} %" if most else "")
         )
 

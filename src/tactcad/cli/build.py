@@ -99,19 +99,26 @@ def _print(name: str, builds: Builds, lines: list[StackLine]) -> None:
         failed = builds.failures[which]
         why = "; ".join(f"{n} miss: {requirement}" for requirement, n in sorted(failed.items(), key=_most))
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
-    print(f"  {'requirement':72} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")
+    named = {line.requirement.name: _with_unit(line) for line in lines}
+    wide = max(map(len, named.values()), default=0)
+    print(f"  {'requirement':{wide}} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")
     for line in lines:
         top = line.contributors[0] if line.contributors else None
         who = f"{top.name}, {100 * top.share:.0f} %" if top else ""
         worst = f"{line.worst_low:.4g} to {line.worst_high:.4g}"
-        r = f"{line.requirement.name} ({line.requirement.unit})"
-        print(f"  {r:72} {line.nominal:9.4g} {worst:>21} {line.sigma:8.2g}  {who}")
+        r = named[line.requirement.name]
+        print(f"  {r:{wide}} {line.nominal:9.4g} {worst:>21} {line.sigma:8.2g}  {who}")
     print("  element  K, N/mm         load arm, mm    stop gap, mm    closes at least at, N")
     for e in builds.elements:
         print(
             f"  E{e.number:<6}  {e.stiffness[0]:6.2f} +-{e.stiffness[1]:5.2f}  {e.load_arm[0]:6.3f} "
             f"+-{e.load_arm[1]:.3f}  {e.stop_gap[0]:6.3f} +-{e.stop_gap[1]:.3f}  {e.stop_closes_at_least:.3g}"
         )
+
+
+def _with_unit(line: StackLine) -> str:
+    r = line.requirement
+    return f"{r.name} ({r.unit})" if r.unit else r.name
 
 
 def _most(failed: tuple[str, int]) -> int:

@@ -50,7 +50,8 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.synthesis import target_report as report
     from tactcad.synthesis.synthesise import design
     from tactcad.synthesis.target import read_target
-    from tactcad.synthesis.write import refuse_taken, write
+    from tactcad.synthesis.target_answer import answer
+    from tactcad.synthesis.write import refuse_unwritable, write
 
     from .progress import slow_work
 
@@ -59,23 +60,28 @@ def run(args: argparse.Namespace) -> int:
     if args.seconds is not None and not 0 <= args.seconds <= 1e6:
         raise InputError("--in", "out of range", value=args.seconds, legal="0 to 1e6 (s)")
     target = read_target(args.target)
-    refuse_taken(args.out)
+    refuse_unwritable(args.out)
     with slow_work(sys.stderr) as tell:
         got = design(target, within=args.within / 100, seconds=args.seconds, tell=tell)
     r = report.record(got)
-    if got.met or (args.best and got.found.accepted):
+    written = got.met or (args.best and got.found.accepted)
+    if written:
         write(got, args.out)
     if args.json:
         print(json.dumps(r, indent=1))
     else:
-        print(report.answer(target, r))
+        print(answer(r))
         _print(r)
-        if got.met or (args.best and got.found.accepted):
+        if written:
             print(f"{args.out}: written\nnext: tactcad check {args.out}/design.toml")
+        elif args.best:
+            print(f"{args.out}: not written: no candidate keeps every limit and rule, so none is the best")
     return 0 if got.met else 1
 
 
 def _print(r: dict) -> None:
+    from tactcad.synthesis.target_answer import no_other_change
+
     for limit in r["binding"][:5]:
         print(
             f"  {limit['field']}: {_text(limit['value'])} eased to {_text(limit['eased'])}: half-width "
@@ -85,8 +91,10 @@ def _print(r: dict) -> None:
         print(
             f"  possible with {change['field']} {_text(change['needed'])} instead of {_text(change['value'])}"
         )
-    if not r["met"] and not r["changes"]:
-        print("  no single field changed up to eight times makes it possible")
+    if not r["met"]:
+        print(f"  {no_other_change(r)}")
+    for note in r["notes"]:
+        print(f"  note: {note}")
 
 
 def _text(value: object) -> str:

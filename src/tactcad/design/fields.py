@@ -145,7 +145,7 @@ class Day:
 class Numbers:
     """A list of numbers, each as `item`, `least` to `most` of them."""
 
-    item: Number
+    item: Number | Whole
     least: int
     most: int
     meaning: str

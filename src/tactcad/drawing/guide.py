@@ -122,10 +122,11 @@ def page(design: Design, scene: Scene) -> bytes:
         _list("Tools", tools(design, scene)),
     ]
     body += [_section(design, scene, n, step) for n, step in enumerate(scene.steps, start=1)]
-    if scene.supplies:
+    before = [s for ready in scene.ready for s in ready.supplies]
+    if supplies := [s for s in scene.supplies if s not in before]:
         lines = "".join(
             f"<tr><td>{escape(s.description)}</td><td class=n>{s.qty:g} {escape(s.unit)}</td></tr>"
-            for s in scene.supplies
+            for s in supplies
         )
         body.append(f"<section><h2>Supplies</h2><table>{lines}</table></section>")
     return (
@@ -161,9 +162,15 @@ def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
 def _table(design: Design, scene: Scene, step: Step) -> str:
     rows: dict[str, tuple[Part, list[str]]] = {}
     for p in scene.placements:
-        if p.designator in step.designators:
+        if p.designator in step.designators and p.designator not in step.ready:
             rows.setdefault(p.part.part_no, (p.part, []))[1].append(p.designator)
     lines = ["<table><tr><th>qty</th><th>part</th><th>name</th><th>designators</th><th>torque</th></tr>"]
+    for ready in scene.ready:
+        if step.ready & {p.designator for p in ready.placements}:
+            lines.append(
+                f"<tr><td class=n>1</td><td></td><td>{escape(ready.name)}, put together by its own guide</td>"
+                "<td></td><td></td></tr>"
+            )
     for number, (part, names) in rows.items():
         tight = torque(part, design)
         lines.append(

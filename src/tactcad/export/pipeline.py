@@ -185,12 +185,11 @@ def _rebuild(
     from .shapes import Shapes
 
     shapes = Shapes(cache, digest((inputs.sources, inputs.libraries)))
-    full = [make_scene(design, name, options.pose) for name in options.scenes]
-    scenes = [at_detail(scene, options.detail) for scene in full]
+    scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
-    products += stack_products(design, full, shapes)  # limits stand in the parts that are made
+    products += stack_products(design, options.scenes, shapes)
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)

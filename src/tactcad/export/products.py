@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
 from .cache import Cache
@@ -90,9 +91,10 @@ def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]
     return products
 
 
-def stack_products(design: Design, scenes: Sequence[Scene], shapes: Shapes) -> list[Output]:
-    """How the limits of all parts add up: a table, a page with bars, and what to measure on which part; from
-    one run of virtual builds."""
+def stack_products(design: Design, names: Sequence[str], shapes: Shapes) -> list[Output]:
+    """How the limits of all parts add up: a table, a page with bars, and what to measure on which part of the
+    scenes named; from one run of virtual builds. Envelopes and poses have no limits of their own."""
+    scenes = [make_scene(design, name) for name in names]
 
     @cache
     def run() -> tuple[bytes, bytes, bytes]:

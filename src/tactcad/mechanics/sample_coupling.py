@@ -81,9 +81,10 @@ def influence(
     def share(x: float, y: float) -> float:
         """Beyond FAR the sum over waves would alias: a layer transmits nothing there, a half-space as 1/r."""
         r = float(np.hypot(x, y))
-        if r > FAR:
-            return share(x * FAR / r, y * FAR / r) * FAR / r if np.isinf(thickness) else 0.0
-        return float((weight * np.cos(kx * x) * np.cos(ky * y)).sum() / own)
+        if r > FAR and np.isfinite(thickness):
+            return 0.0
+        near = FAR / max(r, FAR)
+        return near * float((weight * np.cos(kx * x * near) * np.cos(ky * y * near)).sum() / own)
 
     return np.array([share(x, y) for x, y in zip(dx, dy)])
 

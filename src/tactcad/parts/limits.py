@@ -24,7 +24,8 @@ class Characteristic:
 
     Of a fit (ISO 286) the nominal size may lie outside its limits.
     `between` names the two features that it lies between, or the one feature of size; of three,
-    it ends in the middle between the last two.
+    it ends in the middle between the last two. `remark`: by what it is made where that is not
+    the drawn value.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Characteristic:
     lower: float
     key: bool = False
     between: tuple[str, ...] = ()
+    remark: str = ""
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,21 @@ clamp edge +--------------------+
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tactcad.contour import rectangle
+from tactcad.design.tree import Design
 
 from .description import Extrusion, Part
 from .element import dowel_hole_limits, mounting_holes, screw_places, sheet_material
 from .fasteners import SPACER_TOLERANCE, STACK
 from .layout import Layout
 from .limits import FACES, DatumFeature, within
+
+
+def thickness_by_sheet(design: Design) -> str:
+    """What every spacer measures, in words."""
+    return f"{design.array.pitch:g} less what the elements' sheet measures, +-{SPACER_TOLERANCE:g}"
 
 
 def spacer(layout: Layout) -> Part:
@@ -30,12 +38,15 @@ def spacer(layout: Layout) -> Part:
         ),
         colour="#9aa4ae",
         notes=(
-            "burr-free, flat faces as rolled",
-            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else, to the same "
-            f"limits, {d.array.pitch:g} less what it measures; the whole stack {layout.stack:g} +-{STACK:g}",
+            "burr-free; picked from rolled sheet that measures so, or ground",
+            f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
+            f"{thickness_by_sheet(d)}; the whole stack {layout.stack:g} +-{STACK:g}",
         ),
         characteristics=(
-            within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
+            replace(
+                within("thickness", layout.spacer, SPACER_TOLERANCE, between=FACES),
+                remark=thickness_by_sheet(d),
+            ),
             dowel_hole_limits(d),
         ),
         geometric=(screw_places("A"),),

@@ -65,7 +65,8 @@ def seat(layout: Layout) -> float:
     """
     d = layout.design
     t, h = d.tolerance, d.holes
-    play = h.dowel_hole + h.dowel_hole_upper / 2 - dowel_diameter(d.clamp.dowel)
+    # a hole smaller than its dowel is refused for that, not for the gap
+    play = max(0.0, h.dowel_hole + h.dowel_hole_upper / 2 - dowel_diameter(d.clamp.dowel))
     off = max(0.0, hypot(t.pad_height, lean(layout) / 2) - play / 2)
     return round(2.0 * t.ledge + STOP_PLATE_FLAT + 1.5 * off, 6)
 

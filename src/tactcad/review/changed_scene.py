@@ -88,10 +88,10 @@ def changed_scene(
     designs, scenes, shapes
         Each of before and after. The shapes' makers must be two: equal numbers may mean other parts.
     """
-    from tactcad.solids.changed import Material, changed
+    from tactcad.solids.changed import ChangedMaterial, changed
     from tactcad.solids.place import placed_shape
 
-    known: dict[tuple[object, ...], Material] = {}
+    known: dict[tuple[object, ...], ChangedMaterial] = {}
 
     def pieces(a: Placement | None, b: Placement | None) -> Iterator[ScenePiece]:
         if a and b and _solid(a.part) == _solid(b.part) and _same_place(a, b):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import floor
 
 from tactcad.parts import seating
+from tactcad.parts.end_plate import head_bore
+from tactcad.parts.fasteners import SPACER_TOLERANCE, Clamping, clamping, dowel_depth
 from tactcad.parts.fasteners import STACK as STACK_TOLERANCE
-from tactcad.parts.fasteners import Clamping, clamping, dowel_depth
 from tactcad.parts.layout import Layout
+from tactcad.parts.library.dowels import dowel_limits
 
 from .scene import Placement, Step
 
@@ -21,6 +24,7 @@ CARRIER = "Carrier"
 HOLD_DOWN = "Hold the stop plate down"
 
 LEVEL = 0.01  # mm; chosen: 0.02 degrees over the smallest stack, what a lever indicator tells with ease
+LEANING = 1 / 3  # of the head plate's play; chosen: the pins' own lean and places have the rest
 ABREAST = 2  # rows that are stacked side by side
 
 
@@ -131,9 +135,24 @@ def _stack(layout: Layout, stacked: Sequence[Placement]) -> str:
     return (
         "Slide the parts on the dowels in this order, the first one on first, pads towards you and arms to "
         f"the middle. {' '.join(rows)} Nothing is tight yet. Pressed together by hand, elements and spacers "
-        f"are {layout.stack:g} mm long within {STACK_TOLERANCE:g}: measure it; if not, take spacers of the "
-        "next thickness."
+        f"are {layout.stack:g} mm long within {STACK_TOLERANCE:g}, and both rows alike within "
+        f"{rows_alike(layout):g} mm, or the head plate leans on its dowels: measure both. Where they are "
+        f"not, measure the spacers: each is {layout.design.array.pitch:g} mm less what the elements' sheet "
+        f"measures, +-{SPACER_TOLERANCE:g}, as their sheet says; where only the rows differ, exchange "
+        "spacers between them."
     )
+
+
+def rows_alike(layout: Layout) -> float:
+    """By how much the two rows' stacks may differ in length, mm, whole hundredths.
+
+    The head plate lies on both and leans by the difference over their distance; over its thickness that takes
+    a share of the least play of its holes.
+    """
+    d = layout.design
+    play = head_bore(layout).lower - dowel_limits(d.clamp.dowel)[1]
+    most = LEANING * play * 2 * min(layout.dowel_x) / d.clamp.end_plate_thickness
+    return floor(100 * most) / 100
 
 
 def _other_plate(c: Clamping, plate: Placement) -> str:
@@ -193,12 +212,14 @@ def _hold_down(layout: Layout) -> str:
     from tactcad.parts.stop_gap import seat  # numpy
 
     gaps = sorted(_gaps(layout), key=lambda pair: pair[0])
+    tolerance = layout.design.stop.tolerance
+    wider = floor(1e3 * (tolerance + seat(layout)) + 1e-6) / 1e3  # a micrometre is what the indicator shows
     return (
         f"Turn the set screws in, crosswise, {seating.words(layout)}, locked with a drop of thread lacquer. "
         "Read the pads' heights once more. Check each stop: push every pad with a plastic rod; it must give "
         f"way and come to a stop, with {', '.join(f'{gap:g} mm at arm {arm:g}' for arm, gap in gaps)} "
-        f"(to {layout.design.stop.tolerance:g} mm less, or {layout.design.stop.tolerance + seat(layout):g} "
-        "mm more, one plate lying on all ledges) on the lever indicator at the tip."
+        f"(to {tolerance:g} mm less, or {wider:g} mm more, one plate lying on all "
+        "ledges) on the lever indicator at the tip."
     )
 
 

@@ -52,8 +52,9 @@ def grasping(design: Design, pose: Pose = REST) -> Scene:
         b.step(
             "Weights",
             (0, 0, 330),
-            "Lift the array by its platform and set the latch under the carriage; take it out and lower the "
-            "array by hand once cart and sample stand below. One disc a loading step, laid on without a "
+            "Lift the array by its platform and set the latch under the carriage. Once cart and sample stand "
+            "below, hold the platform, put the latch back in its outer hole, and lower the array by hand. "
+            "One disc a loading step, laid on without a "
             "knock; each is weighed before. Without any, the "
             f"grasping force is the moving weight: {g.moving_weight:g} N.",
         )
@@ -108,9 +109,9 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
         "Guide rail",
         (0, -85, 110),
         "Lay the rail against a parallel set upright on the base plate; tighten its screws from the "
-        f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: with no cart "
-        "under the array the carriage comes down on it and stays on its rail. Keep the latch's pin in the "
-        "outer of its two holes; in the inner one it holds the lifted carriage up.",
+        f"middle outwards. Press the end stop's pin in below the rail, {STOP_DEPTH:g} mm deep: it keeps the "
+        "carriage on its rail. Put the latch, the pin that slides, by hand in the outer of the two holes "
+        "beside the rail, where it is out of the way; in the inner one it holds the lifted carriage up.",
         tools=("parallel, as long as the rail", "soft-faced hammer"),
     )
     return rail

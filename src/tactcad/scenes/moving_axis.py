@@ -80,8 +80,10 @@ def place_axis(b: Builder, rig: GuideLayout, rail: str, lift: float) -> tuple[st
     b.step(
         "Ballast",
         (0, 0, 305),
-        f"Weigh all that moves: with the ballast it must be {rig.grasping.moving_weight:g} N. Turn the "
-        "ballast thinner until it is.",
+        "Slide all that moves up off the guide on the carriage's transport rail and weigh it without that "
+        f"rail: with the ballast it must be {rig.grasping.moving_weight:g} N, "
+        f"{rig.grasping.moving_weight / NEWTON:.1f} g. Turn the ballast thinner until it is; then slide it "
+        "back, on the latch.",
         tools=("balance, 0.1 g",),
     )
     return name, z + disc.extrusion.thickness
@@ -148,7 +150,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Carriage",
         (0, -85, 200),
-        "Slide the carriage from its transport rail on the guide, seals taken off, one drop of thin oil.",
+        "Slide the carriage from its transport rail on the guide, from above, seals taken off, one drop of "
+        "thin oil, and let it down on the end stop. Keep the transport rail.",
     )
     foot = b.place("FO", rigs.foot(rig), (0, 0, rig.foot_bottom + lift))
     bar = b.place("BR", rigs.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
@@ -182,9 +185,13 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     b.step(
         "Bar on the carriage",
         (0, -160, 0),
-        "Screw the bar on the carriage. Lower the array on a flat plate on the cart: no light may show under "
-        f"any pad; the signal of each element tells the rest. A tilt of {design.tolerance.tilt:g} degree is "
-        "allowed, shim under the foot.",
+        "Lift the carriage and set the latch under it, in the inner of its holes. Screw the bar on the "
+        "carriage. Take the sample off and lay a flat plate of its thickness on the lid in its place. Hold "
+        "the bar, put the latch back in its outer hole, and lower the array by hand on the plate: no light "
+        "may show under any pad; the signal of each element tells the rest. A tilt of "
+        f"{design.tolerance.tilt:g} degree is allowed, shim under the foot. Then lift it on the latch again; "
+        "it stays there until the weights.",
+        tools=("flat plate, as thick as the sample",),
     )
     b.unit("platform with weights")
     under = PLATFORM_UNDER_HEAD

@@ -17,7 +17,7 @@ SLIVER = 1e-6  # mm3: less is the rounding of touching faces, as in checks/inter
 
 
 @dataclass(frozen=True)
-class Material:
+class ChangedMaterial:
     """Pieces of material, None where there is none; `whole` where the booleans failed and `removed` and
     `added` are the old and the new solid as they are."""
 
@@ -27,7 +27,7 @@ class Material:
     whole: bool = False
 
 
-def changed(old: TopoDS_Shape, new: TopoDS_Shape) -> Material:
+def changed(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
     """What became of the old solid's material, both in one frame; volumes are held against the whole ones."""
     operations = BRepAlgoAPI_Common(old, new), BRepAlgoAPI_Cut(old, new), BRepAlgoAPI_Cut(new, old)
     kept, removed, added = (_pieces(done) for done in operations)
@@ -35,7 +35,7 @@ def changed(old: TopoDS_Shape, new: TopoDS_Shape) -> Material:
     sound = all(done.IsDone() for done in operations)
     for side, other in ((old, v_removed), (new, v_added)):
         sound = sound and isclose(v_kept + other, volume(side), rel_tol=AGREES, abs_tol=SLIVER)
-    return Material(kept, removed, added) if sound else Material(None, old, new, whole=True)
+    return ChangedMaterial(kept, removed, added) if sound else ChangedMaterial(None, old, new, whole=True)
 
 
 def _pieces(done: BRepAlgoAPI_BooleanOperation) -> TopoDS_Shape | None:

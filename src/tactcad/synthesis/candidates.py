@@ -7,6 +7,7 @@ are what a drawing states and a shop's wire can tell apart.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil
@@ -26,9 +27,9 @@ from tactcad.parts.stop_gap import STEP_MM, land_room, seat
 
 from .interval import bounds, motion
 from .knowledge import Elements, elements, knowledge, reading_noise
-from .target import Target
+from .target import ARM, THICKNESS, Target
 
-ARM, THICKNESS, SLOT, RADIUS = 0.1, 0.005, 0.02, 0.01  # mm, steps
+SLOT, RADIUS = 0.02, 0.01  # mm, steps
 LEAST_STEPS = 4  # of a calibration: one more than a line needs
 PLAIN = 6.0  # mm, an arm that stands for any where arms do not matter
 POINTS = 3  # of the object's range, by logarithm, that decide: its ends and middle
@@ -73,6 +74,11 @@ class Stand:
         most = int(self.target.room.elements[1]) // self.target.room.rows + 1
         return np.array([0.0, *(_with_rows(self.base, n).carrier_size[1] for n in range(1, most + 1))])
 
+    @property
+    def in_a_row(self) -> int:
+        """Elements of the longer row of the largest array asked for; more miss room.elements alone."""
+        return ceil(self.target.room.elements[1] / self.target.room.rows)
+
     @cached_property
     def most(self) -> int:
         """Elements that the room takes."""
@@ -100,11 +106,13 @@ class Stand:
         """Least and largest of each whole number of a candidate."""
         wish, e = self.target.elements, self.base.element
         room = (self.target.room.length / 2 - self.beyond_slot) / ARM
+        # at least what is asked for, so that a room too narrow for that is what is found to be missed
+        searched = max(self.most, int(self.target.room.elements[0]))
         low = [ceil(wish.arms[0] / ARM - 1e-9), ceil(wish.hinges[0] / THICKNESS - 1e-9), wish.of_a_kind]
         high = [
             int(min(wish.arms[1] / ARM + 1e-9, room)),
             int(wish.hinges[1] / THICKNESS + 1e-9),
-            max(self.most - (self.kinds - 1) * wish.of_a_kind, wish.of_a_kind),
+            max(searched - (self.kinds - 1) * wish.of_a_kind, wish.of_a_kind),
         ]
         radius = ceil(e.corner_radius / 2 / RADIUS - 1e-9)
         slot = (ceil(max(2 * radius * RADIUS, self.base.gauge.grid_length) / SLOT), e.hinge_length * 2 / SLOT)
@@ -148,11 +156,12 @@ def _base(target: Target, sheet: float, alloy: str, tolerance: float) -> Design:
     own = d.material if alloy == d.material.alloy else SheetMaterial(alloy, *_values(alloy))
     spread = d.tolerance.youngs_modulus if own is d.material else ALLOYS[alloy].spread["youngs_modulus"]
     rows = tuple((PLAIN,) for _ in range(target.room.rows))
+    across = max(target.room.pitch, d.array.row_pitch) if target.room.rows > 1 else d.array.row_pitch
     return replace(
         d,
         material=own,
         sheet=replace(d.sheet, thickness=sheet),
-        array=replace(d.array, pitch=pitch, spacer=round(pitch - sheet, 6), row_arms=rows),
+        array=replace(d.array, pitch=pitch, row_pitch=across, spacer=round(pitch - sheet, 6), row_arms=rows),
         element=replace(d.element, override={}),
         tolerance=replace(d.tolerance, hinge_thickness=tolerance, youngs_modulus=spread),
         rating=replace(d.rating, overload_force=target.grasp.overload),
@@ -263,7 +272,8 @@ class Candidates:
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
             "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
-            "room.elements": np.maximum(self.total / max(s.most, 0.1), room.elements[0] / self.total) - 1.0,
+            "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
+            "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
             "room.height": np.full(len(length), s.height / room.height - 1.0),
             "calibration": np.where(
@@ -280,26 +290,39 @@ class Candidates:
         known = np.isfinite(self.elements.stiffness).all(axis=1) & np.isfinite(self.half_width)
         return np.where(known & self.known_as_made & np.isfinite(total), total, np.inf)
 
-    @cached_property
-    def known_as_made(self) -> NDArray[np.bool_]:
-        """Whether the estimator reaches elements at either end of their tolerances too. What bounds it are
-        ratios to the hinge's thickness, so the ends are where thickness and all else part most."""
+    @property
+    def at_limits(self) -> Iterator[HingeSection]:
+        """Elements at either end of their tolerances. What bounds the estimator are ratios to the hinge's
+        thickness, so the ends are where thickness and all else part most."""
         s, t = self.section, self.stand.base.tolerance
-        inside = np.ones(len(self.arm), bool)
-        for sign in (-1.0, 1.0):
+        for sign, layer in ((-1.0, t.recast_layer), (1.0, 0.0)):
             off = {p: getattr(s, p) - sign * getattr(t, name) for name, p in as_built.DIMENSIONS.items()}
             off["hinge_thickness"] = s.hinge_thickness + sign * t.hinge_thickness
-            off["fillet_radius"] = np.minimum(off["fillet_radius"], off["hinge_length"] / 2.0)
-            inside &= (validity.reasons(s.with_(**off), ladder.DEFAULT_RUNG) == "").all(axis=1)
-        return inside
+            left = as_built.without_layer(s.with_(**off), layer)
+            yield left.with_(fillet_radius=np.minimum(left.fillet_radius, left.hinge_length / 2.0))
+
+    @cached_property
+    def known_as_made(self) -> NDArray[np.bool_]:
+        """Whether the estimator reaches elements at either end of their tolerances too."""
+        rung = ladder.DEFAULT_RUNG
+        return np.all([(validity.reasons(s, rung) == "").all(axis=1) for s in self.at_limits], axis=0)
+
+    @cached_property
+    def out_of_range(self) -> tuple[str, ...]:
+        """Why the estimator does not reach the first candidate's elements, as drawn or as made."""
+        some = [validity.reasons(s, ladder.DEFAULT_RUNG)[0] for s in (self.section, *self.at_limits)]
+        return tuple(dict.fromkeys(str(why) for row in some for why in row if why))
+
+    @property
+    def in_a_row(self) -> NDArray[np.int_]:
+        """Elements of the longer row."""
+        return np.ceil(self.total / self.stand.target.room.rows).astype(int)
 
     @cached_property
     def area(self) -> Array:
         """Of the carrier, mm2."""
-        s = self.stand
-        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + s.beyond_slot)
-        a_row = np.ceil(self.total / s.target.room.rows).astype(int)
-        return length * s.widths[np.minimum(a_row, len(s.widths) - 1)]
+        length = 2.0 * (self.arm.max(axis=1) + self.slot / 2 + self.stand.beyond_slot)
+        return length * self.stand.widths[np.minimum(self.in_a_row, len(self.stand.widths) - 1)]
 
     @cached_property
     def cut(self) -> Array:

@@ -65,7 +65,7 @@ class Evaluated:
 
     def with_load_cell(self, limits: float) -> Evaluated:
         """With limits of the load cell's compliance (half-width, mm/N): it is in series with the object."""
-        low = 1.0 / (1.0 / self.low + limits)
+        low = self.low / (1.0 + limits * self.low)
         return Evaluated(self.estimate, low, 1.0 / np.maximum(1.0 / self.high - limits, 1e-12))
 
 

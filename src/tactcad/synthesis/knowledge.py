@@ -5,7 +5,9 @@ inspected   the hinge's thickness is measured, the rest lies within tolerances
 calibrated  force and signal were read against the stage's displacement, several runs an element
 
 Two errors come to each: the contact's place along the arm, in use against as known; and, uncalibrated, the
-gauge's own sensitivity. What all elements share is kept apart: one sheet, one lot, one machine's offset.
+gauge's own sensitivity. What all elements share is kept apart: one sheet, one lot, one machine's offset, and
+what only softens: one cut's recast layer, one clamp that turns. Those count both ways, as in
+mechanics/as_built: half their limit is the root mean square of what they may be about nothing.
 """
 
 from __future__ import annotations
@@ -55,11 +57,13 @@ class Elements:
     section      their hinges
     stiffness    K, N/mm; NaN beyond the estimator's range
     signal       K_v, V/mm
+    free         as made: what of them carries load, out of the clamp
     """
 
     section: HingeSection
     stiffness: Array
     signal: Array
+    free: Elements | None = None
 
 
 def elements(section: HingeSection, design: Design) -> Elements:
@@ -73,6 +77,14 @@ def elements(section: HingeSection, design: Design) -> Elements:
         per_mm = readout.volts_per_strain(gauge.factor, design_readout(design))
         signal[inside] = (per_mm * gauge_signal.foil_strain_per_deflection(safe, gauge)).reshape(-1)
     return Elements(section, fitted.stiffness, signal)
+
+
+def as_made(section: HingeSection, design: Design, layer: Array | float, turn: Array | float) -> Elements:
+    """Elements of which a layer (mm) on every cut face carries nothing, in a clamp that turns (rad/(N mm)):
+    its turn adds deflection, and no strain under the gauge. The section stays what can be measured."""
+    cut = elements(as_built.without_layer(section, layer), design)
+    soft = as_built.in_clamp(section, cut.stiffness, turn) / cut.stiffness
+    return Elements(section, cut.stiffness * soft, cut.signal * soft, cut)
 
 
 def reading_noise(design: Design) -> float:
@@ -113,6 +125,8 @@ def knowledge(target: Target, design: Design, e: Elements, steps: Array | None =
             common[name] = (shared**0.5 * k, shared**0.5 * v)
         own_share = 1.0 - shared
         of_k, of_v, cross = of_k + own_share * k * k, of_v + own_share * v * v, cross + own_share * k * v
+    for name, (k, v) in _softening(design, e).items():
+        common[name] = (k / SIGMAS, v / SIGMAS)
     return Knowledge(of_k, of_v, cross, (place[0], place[1]), common)
 
 
@@ -133,8 +147,21 @@ def _dimensions(target: Target, design: Design, e: Elements) -> list[tuple[str, 
     return rows
 
 
+def _softening(design: Design, e: Elements) -> dict[str, tuple[Array, Array]]:
+    """ln K and ln K_v of elements over those as drawn where the recast layer, or the clamp's turn, is at its
+    limit."""
+    t = design.tolerance
+    cut = elements(as_built.without_layer(e.section, t.recast_layer), design)
+    clamped = np.log(as_built.in_clamp(e.section, e.stiffness, t.clamp_compliance) / e.stiffness)
+    return {
+        "recast_layer": (np.log(cut.stiffness / e.stiffness), np.log(cut.signal / e.signal)),
+        "clamp_compliance": (clamped, clamped),
+    }
+
+
 def _log_derivative(e: Elements, design: Design, parameter: str) -> Array:
     """dln K/dln p and dln K_v/dln p, (2, elements)."""
+    e = e.free or e
     nominal = getattr(e.section, parameter)
     changed = elements(e.section.with_(**{parameter: nominal * (1.0 + STEP)}), design)
     pairs = ((changed.stiffness, e.stiffness), (changed.signal, e.signal))

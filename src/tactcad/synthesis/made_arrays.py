@@ -1,10 +1,10 @@
 """Arrays of a design as they are made and used: how many meet the target, and what spreads the answer.
 
-Arrays are built virtually (room `assembly`), with its correlations: one sheet, one machine's offset. Each is
-calibrated once, with as many degrees of freedom as its runs leave, and pressed on objects over the range. It
-meets the target where it goes together, all pads touch from the first load on, no stop closes and no hinge
-is overloaded under the largest force, and the interval that its own readings give is no wider than wanted at
-every object.
+Arrays are built virtually (room `assembly`), with its correlations: one sheet, one machine's offset; each
+has one recast layer and one clamp that turns, anywhere up to their limits. Each is calibrated once, with as
+many degrees of freedom as its runs leave, and pressed on objects over the range. It meets the target where it
+goes together, all pads touch from the first load on, no stop closes and no hinge is overloaded under the
+largest force, and the interval that its own readings give is no wider than wanted at every object.
 """
 
 from __future__ import annotations
@@ -17,18 +17,20 @@ from scipy.special import betaincinv
 
 from tactcad.assembly.mechanic import Assembled
 from tactcad.assembly.virtual_build import DECIDING, Sensor, sensor
-from tactcad.assembly.virtual_shop import SIGMAS, Distribution, made
+from tactcad.assembly.virtual_shop import SIGMAS, Distribution, made, within_limits
 from tactcad.design.tree import Design
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
+from tactcad.mechanics.stop import tip_compliance
 from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.layout import Layout
+from tactcad.parts.stop_gap import stop_gap
 from tactcad.scenes import make_scene
 
 from .candidates import POINTS
 from .evaluation import Covariance, Evaluated, Evaluation
 from .interval import motion
-from .knowledge import Elements, Knowledge, elements, knowledge, reading_noise
+from .knowledge import Elements, Knowledge, as_made, elements, knowledge, reading_noise
 from .target import Target
 
 SEED = 20261123
@@ -118,7 +120,7 @@ class MadeSensor:
         lacks: dict[str, np.ndarray] = {
             f"assembly: {name}": bad for name, bad in self.parts.missed(arrays, count).items() if bad.any()
         }
-        e = elements(arrays.section, self.design)
+        e = as_made(arrays.section, self.design, *self.softening(count, distribution, rng))
         grip, alloy = self.target.grasp, design_alloy(self.design)
         forces = np.max(
             [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points], axis=0
@@ -126,13 +128,38 @@ class MadeSensor:
         rate = e.stiffness * self.points[-1] / (e.stiffness + self.points[-1])
         last = (rate * (arrays.pads.max(axis=1, keepdims=True) - arrays.pads)).sum(axis=1)
         lacks["pads not all touching at the first load"] = last > grip.force / grip.loads
-        lacks["stop closes under the largest force"] = (forces > arrays.closing_force).any(axis=1)
+        arm = np.array([p.arm for p in self.layout.elements])
+        closing = arrays.gaps / tip_compliance(e.section, e.stiffness, arm)
+        lacks["stop closes under the largest force"] = (forces > closing).any(axis=1)
         yields = strength.yield_force_where_known(e.section, alloy) / self.design.rating.yield_factor
         lacks["hinge beyond its rated force"] = (forces > yields).any(axis=1)
         lacks["force on one element"] = (forces > grip.element_force * (1.0 + 1e-9)).any(axis=1)
         width = np.where(np.logical_or.reduce(list(lacks.values())), np.inf, self._half_widths(e, rng))
         lacks["interval too wide"] = ~(width <= wanted)
         return lacks, width
+
+    def softening(
+        self, count: int, distribution: Distribution, rng: np.random.Generator
+    ) -> tuple[Array, Array]:
+        """Recast layer, mm, and turn of the clamp, rad/(N mm), of arrays, (count, 1): alike in an array's
+        elements, and never negative."""
+        t = self.design.tolerance
+        share = np.abs(within_limits(rng.standard_normal((2, count, 1)), distribution))
+        return t.recast_layer * share[0], t.clamp_compliance * share[1]
+
+    @property
+    def cannot_bear(self) -> str:
+        """Why the array as drawn does not bear the target's forces; "" where it does."""
+        e, grip = self.drawn, self.target.grasp
+        forces = [motion(e, np.ones(1), x, grip.force, grip.loads).largest for x in self.points]
+        largest = np.max(forces, axis=0)
+        gaps = np.array([stop_gap(self.layout, p) for p in self.layout.elements])
+        arm = np.array([p.arm for p in self.layout.elements])
+        if (largest * tip_compliance(e.section, e.stiffness, arm) > gaps).any():
+            return "a stop closes under the largest force"
+        yields = strength.yield_force_where_known(e.section, design_alloy(self.design))
+        beyond = (largest > yields / self.design.rating.yield_factor).any()
+        return "a hinge is beyond its rated force" if beyond else ""
 
     @property
     def calibrated(self) -> bool:
@@ -199,8 +226,8 @@ class MadeSensor:
         k, v = known.place
         runs = self.target.known.runs
         of_k, of_v = known.of_k - k * k, known.of_v - v * v
-        first = np.sqrt(of_k)
-        along = (known.cross - k * v) / first
+        first = np.sqrt(np.maximum(of_k, 0.0))
+        along = np.divide(known.cross - k * v, first, out=np.zeros_like(first), where=first > 0.0)
         z = np.sqrt(runs) * rng.standard_normal((2, runs, *e.stiffness.shape))
         err = np.stack([first * z[0], along * z[0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[1]])
         mean = err.mean(axis=1)

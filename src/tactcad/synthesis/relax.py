@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import fields
 from typing import Any
 
-from .target import Target
+from .target import TABLES, Target
 
+# Not tried, for there is no more or less of them: other sheets or alloys, another known.how or target.base.
 # Each field that can be eased: which way one step eases it. A step is 10 %, or one of what comes in ones, or
 # 0.01 mm of a hinge.
 STEP, HINGE_STEP = 0.10, 0.01
@@ -15,33 +16,39 @@ FURTHEST = 8.0  # times, a field is eased at most before it is said that it alon
 CLOSE = 0.02  # relative; the least change is found to within this
 
 
-@dataclass(frozen=True)
-class Eased:
-    """A field of the target with another value; `factor` is its size over the present one's where it has
-    one."""
-
-    field: str
-    value: Any
-    shown: str
-
+NOT_NARROWING = ("target.half_width", "target.share", "room.height")  # eased, they change no interval
 
 Ease = Callable[[Target, float], Target | None]
 
 
+def _get(target: Target, path: str) -> Any:
+    table, name = path.split(".")
+    return getattr(getattr(target, table), name)
+
+
+def _legal(path: str, value: float) -> float:
+    """The value, no further than a target file may say it."""
+    table, name = path.split(".")
+    spec = next(f for f in fields(TABLES[table]) if f.name == name).metadata["spec"]
+    spec = getattr(spec, "item", spec)
+    return min(max(value, spec.low), spec.high)
+
+
 def _scaled(path: str, up: bool) -> Ease:
     def ease(target: Target, by: float) -> Target | None:
-        table, name = path.split(".")
-        value = getattr(getattr(target, table), name)
-        return target.with_(path, value * by if up else value / by) if value else None
+        value = _get(target, path)
+        return target.with_(path, _legal(path, value * by if up else value / by)) if value else None
 
     return ease
 
 
-def _whole(path: str) -> Ease:
+def _whole(path: str, up: bool = True) -> Ease:
     def ease(target: Target, by: float) -> Target | None:
-        table, name = path.split(".")
-        value = getattr(getattr(target, table), name)
-        return target.with_(path, max(value + 1, round(value * by))) if by > 1.0 else target
+        value = _get(target, path)
+        if by <= 1.0:
+            return target
+        other = max(value + 1, round(value * by)) if up else min(value - 1, round(value / by))
+        return target.with_(path, int(_legal(path, other)))
 
     return ease
 
@@ -50,25 +57,33 @@ def _end(path: str, end: int, up: bool, whole: bool = False) -> Ease:
     """One end of a range."""
 
     def ease(target: Target, by: float) -> Target | None:
-        table, name = path.split(".")
-        pair = list(getattr(getattr(target, table), name) or ())
+        pair = list(_get(target, path) or ())
         if not pair:
             return None
         pair[end] = pair[end] * by if up else pair[end] / by
         if whole:
-            pair[end] = max(round(pair[end]), getattr(getattr(target, table), name)[end] + (by > 1.0))
+            one_more = _get(target, path)[end] + (1 if up else -1) * (by > 1.0)
+            pair[end] = max(round(pair[end]), one_more) if up else min(round(pair[end]), one_more)
+        pair[end] = _legal(path, pair[end])
         return target.with_(path, tuple(pair)) if pair[0] <= pair[1] else None
 
     return ease
 
 
+def _share(target: Target, by: float) -> Target:
+    """Arrays that need not meet the target: by so much more."""
+    return target.with_("target.share", _legal("target.share", 1.0 - (1.0 - target.target.share) * by))
+
+
 def _tolerances(target: Target, by: float) -> Target:
-    finer = tuple(sorted({*target.stock.hinge_tolerances, min(target.stock.hinge_tolerances) / by}))
+    finest = _legal("stock.hinge_tolerances", min(target.stock.hinge_tolerances) / by)
+    finer = tuple(sorted({*target.stock.hinge_tolerances, finest}))
     return target.with_("stock.hinge_tolerances", finer)
 
 
 EASES: dict[str, Ease] = {
     "target.half_width": _scaled("target.half_width", True),
+    "target.share": _share,
     "object.stiffness[0]": _end("object.stiffness", 0, True),
     "object.stiffness[1]": _end("object.stiffness", 1, False),
     "object.modulus[0]": _end("object.modulus", 0, True),
@@ -77,11 +92,15 @@ EASES: dict[str, Ease] = {
     "grasp.element_force": _scaled("grasp.element_force", True),
     "grasp.overload": _scaled("grasp.overload", False),
     "grasp.loads": _whole("grasp.loads"),
+    "room.rows": _whole("room.rows"),
     "room.elements[0]": _end("room.elements", 0, False, whole=True),
     "room.elements[1]": _end("room.elements", 1, True, whole=True),
     "room.pitch": _scaled("room.pitch", False),
     "room.length": _scaled("room.length", True),
     "room.width": _scaled("room.width", True),
+    "room.height": _scaled("room.height", True),
+    "elements.kinds": _whole("elements.kinds"),
+    "elements.of_a_kind": _whole("elements.of_a_kind", False),
     "elements.arms[0]": _end("elements.arms", 0, False),
     "elements.arms[1]": _end("elements.arms", 1, True),
     "elements.hinges[0]": _end("elements.hinges", 0, False),

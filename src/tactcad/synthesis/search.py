@@ -13,6 +13,9 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import differential_evolution
 
+from tactcad.design.design_text import design_text
+from tactcad.design.load import parse
+from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.mechanics.section import Array
 from tactcad.parts.rules import broken_rules
@@ -37,7 +40,7 @@ class Found:
     goal          what was made least
     accepted      whether it keeps every limit and every rule
     evaluations   candidates that were looked at
-    refused       by rule, how many candidates it refused that would have been the best yet
+    refused       by rule or field, how many candidates it refused that would have been the best yet
     """
 
     candidate: Candidates
@@ -54,6 +57,15 @@ class Found:
     @cached_property
     def design(self) -> Design:
         return realised(self.candidate)
+
+
+def refusals(design: Design) -> set[str]:
+    """Rules that a design breaks, or the field that its own file would be refused for."""
+    try:
+        parse(design_text(design), design.name)
+    except InputError as error:
+        return {error.where}
+    return {f"rule {finding.check}" for finding in broken_rules(design)}
 
 
 def search(
@@ -91,10 +103,10 @@ def search(
     def keeps_rules(row: Array) -> bool:
         key = np.rint(row).astype(int).tobytes()
         if key not in tried:
-            broken = broken_rules(realised(stand.candidates(row[np.newaxis])))
-            for name in {finding.check for finding in broken}:
+            why = refusals(realised(stand.candidates(row[np.newaxis])))
+            for name in why:
                 best["refused"][name] = best["refused"].get(name, 0) + 1
-            tried[key] = not broken
+            tried[key] = not why
         return tried[key]
 
     def value(numbers: Array) -> Array:

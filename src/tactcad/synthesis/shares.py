@@ -2,7 +2,7 @@
 
 Arrays are made, known and read once each; y = ln of the estimate over the true K_obj. First and total
 effects are Jansen's estimators (Saltelli et al. 2010, Comput. Phys. Commun. 181, 259, table 2 c and f) with
-all numbers of one cause drawn anew together.
+all numbers of one cause drawn anew together; their standard errors are the bootstrap's.
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from tactcad.mechanics.sample_coupling import shares_between
 from tactcad.mechanics.section import Array
 
 from .interval import coupled_estimate, information, motion, weights
-from .knowledge import Knowledge, elements
+from .knowledge import Knowledge, as_made, elements
 from .made_arrays import MadeSensor
 
 SEED = 20261124
 COUNT = 2048
+RESAMPLED = 100  # bootstrap samples for the shares' standard errors
 SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
 LEAST = 5e-4  # shares below are not listed
 OF_ELEMENTS = ("element: ", "sheet: ")
-READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, PADS = (
+READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, LAYER, CLAMP, PADS = (
     "noise of readings",
     "contact's place along the arm",
     "calibration's noise and scatter",
@@ -35,17 +36,22 @@ READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, PADS = (
     "thickness as measured",
     "load cell's limits",
     f"coupling of the pads, to {100 * SLIGHT:g} % of a half-space's",
+    "recast layer",
+    "turn of the clamp",
     "pad heights",
 )
 
 
 @dataclass(frozen=True)
 class Share:
-    """Shares of the variance of ln K_obj that a cause has alone, and with all it interacts with."""
+    """Shares of the variance of ln K_obj that a cause has alone, and with all it interacts with; standard
+    errors of the sampling."""
 
     cause: str
     first: float
     total: float
+    first_error: float = 0.0
+    total_error: float = 0.0
 
 
 def half_space_shares(sensor: MadeSensor) -> Array:
@@ -67,20 +73,28 @@ def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) ->
             name: rng.standard_normal((count, n, 2)) for name in (READINGS, CONTACT, *_of_belief(sensor))
         }
         alike = {name: rng.uniform(-1.0, 1.0, count) for name in (CELL, COUPLING)}
-        return {**parts, **causes, **alike}
+        soft = dict(zip((LAYER, CLAMP), sensor.softening(count, "normal", rng)))
+        return {**parts, **causes, **alike, **soft}
 
     middle = made(others, 1, "normal", rng, only=())
     estimate = _estimator(sensor, {k: np.broadcast_to(v, (count, v.shape[1])) for k, v in middle.items()})
     a, b = draw(), draw()
     y_a, y_b = estimate(a), estimate(b)
-    variance = float(np.concatenate([y_a, y_b]).var())
+    again = rng.integers(count, size=(RESAMPLED, count))
+    every = np.vstack([np.arange(count), again])  # the sample itself, then its bootstrap
+    variance = np.concatenate([y_a[every], y_b[every]], axis=1).var(axis=1)
     out = [Share(PADS, 0.0, 0.0)]  # slopes do not see them once all pads touch, which every array is held to
     for name in a:
         y_c = estimate({**a, name: b[name]})
         # c, unlike table 2 b, is steady where a single cause has nearly all of the variance
-        first = 1.0 - float(((y_b - y_c) ** 2).mean() / 2.0 / variance)
-        total = float(((y_a - y_c) ** 2).mean() / 2.0 / variance)
-        out.append(Share(name, max(first, 0.0) if total > LEAST else 0.0, total if total > LEAST else 0.0))
+        total = ((y_a - y_c) ** 2 / 2.0)[every].mean(axis=1) / variance
+        # no cause has more alone than with others: what the sample says beyond that is chance
+        first = np.clip(1.0 - ((y_b - y_c) ** 2 / 2.0)[every].mean(axis=1) / variance, 0.0, total)
+        if total[0] > LEAST:
+            errors = float(first[1:].std()), float(total[1:].std())
+            out.append(Share(name, float(first[0]), float(total[0]), *errors))
+        else:
+            out.append(Share(name, 0.0, 0.0))
     return sorted(out, key=lambda s: -s.total)
 
 
@@ -94,7 +108,8 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
 
     def estimate(causes: dict[str, Array]) -> Array:
         parts = {k: v for k, v in causes.items() if k.startswith(OF_ELEMENTS)}
-        true = elements(Assembled(sensor.layout, {**rest, **parts}).section, sensor.design)
+        section = Assembled(sensor.layout, {**rest, **parts}).section
+        true = as_made(section, sensor.design, causes[LAYER], causes[CLAMP])
         known = sensor.known(true)
         m = motion(true, ones, np.asarray(x), grip.force, grip.loads)
         by_noise, _, weighed = weights(m, true, known, ones, np.asarray(x), noise)
@@ -133,6 +148,6 @@ def _errors(known: Knowledge, z: Array) -> tuple[Array, Array]:
     """Errors of ln K and ln K_v by a calibration from independent standard normal numbers, with their
     covariance; the contact's place apart."""
     of_k, of_v = known.of_k - known.place[0] ** 2, known.of_v - known.place[1] ** 2
-    k = np.sqrt(of_k)
-    along = (known.cross - known.place[0] * known.place[1]) / k
+    k = np.sqrt(np.maximum(of_k, 0.0))
+    along = np.divide(known.cross - known.place[0] * known.place[1], k, out=np.zeros_like(k), where=k > 0.0)
     return k * z[..., 0], along * z[..., 0] + np.sqrt(np.maximum(of_v - along**2, 0.0)) * z[..., 1]

@@ -6,15 +6,16 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from tactcad.design.tree import Design
 from tactcad.lab import array_estimate
 from tactcad.mechanics.section import Array
+from tactcad.scenes import left_out
 
 from . import relax
+from .alternatives import Alternative, LeastChange, Limit
 from .candidates import Candidates, Stand, stands
 from .interval import Bounds, bounds, coupled_estimate
 from .made_arrays import MadeSensor, Yield
@@ -37,63 +38,6 @@ Tell = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True)
-class Alternative:
-    """One design of the front.
-
-    name, what   of the entry, and what was held beside the interval
-    found        its candidate
-    half_width   relative, nominal, largest over the range
-    """
-
-    name: str
-    what: str
-    found: Found
-
-    @property
-    def half_width(self) -> float:
-        return self.found.half_width
-
-    def record(self) -> dict[str, Any]:
-        c, stand = self.found.candidate, self.found.candidate.stand
-        return {
-            "name": self.name,
-            "what": self.what,
-            "half_width": self.half_width,
-            "elements": int(c.total[0]),
-            "different": int(c.different[0]),
-            "carrier_area_mm2": float(c.area[0]),
-            "cut_length_mm": float(c.cut[0]),
-            "hinge_tolerance_mm": stand.base.tolerance.hinge_thickness,
-            "sheet_mm": stand.base.sheet.thickness,
-            "alloy": stand.base.material.alloy,
-            "arms_mm": [round(float(a), 6) for a in c.arm[0]],
-            "hinges_mm": [round(float(t), 6) for t in c.thickness[0]],
-            "counts": [int(n) for n in c.count[0]],
-            "stiffness_N_per_mm": [float(k) for k in c.elements.stiffness[0]],
-        }
-
-
-@dataclass(frozen=True)
-class Limit:
-    """A field of the target that limits: eased by one step alone, the half-width falls to `half_width`."""
-
-    field: str
-    value: Any
-    eased: Any
-    half_width: float
-    gain: float
-
-
-@dataclass(frozen=True)
-class LeastChange:
-    """A field whose change alone makes the target possible, and the nearest value that does."""
-
-    field: str
-    value: Any
-    needed: Any
-
-
-@dataclass(frozen=True)
 class Synthesis:
     """What `design` found.
 
@@ -104,6 +48,7 @@ class Synthesis:
     made        its yield
     solid       K of every element by solid elements, N/mm
     met         whether the target is
+    binding     fields whose easing narrows the interval; None where that was not searched
     """
 
     target: Target
@@ -111,7 +56,7 @@ class Synthesis:
     wanted: float
     made: Yield
     met: bool
-    binding: tuple[Limit, ...] = ()
+    binding: tuple[Limit, ...] | None = None
     shares: tuple[Share, ...] = ()
     front: tuple[Alternative, ...] = ()
     ratios: tuple[tuple[float, float], ...] = ()
@@ -129,8 +74,10 @@ class Synthesis:
         """A found candidate as a design of that name."""
         d, wish = found.design, self.target.target
         identity = replace(d.design, name=name, title=wish.title, revision="A")
-        limits = ", ".join(limit.field for limit in self.binding) or "nothing near"
-        return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, limits)})
+        binding = "limits not searched"
+        if self.binding is not None:
+            binding = f"binding: {', '.join(limit.field for limit in self.binding) or 'nothing near'}"
+        return replace(d, design=identity, origin={**d.origin, **origins(self.target.base, d, binding)})
 
     @cached_property
     def sensor(self) -> MadeSensor:
@@ -144,6 +91,16 @@ class Synthesis:
         known = s.known(s.drawn)
         got = bounds(s.drawn, ones, known, x[:, np.newaxis], s.noise, grip.force, grip.loads).half_width(x)
         return float(got.max()) if np.isfinite(got).all() else None
+
+    @cached_property
+    def base_cannot(self) -> str:
+        """Why the base design as it is does not bear the target's forces; "" where it does."""
+        return MadeSensor(self.target, self.target.base).cannot_bear
+
+    @cached_property
+    def scenes_left_out(self) -> list[str]:
+        """Why rigs of the base design do not take the chosen array, one line for each."""
+        return left_out(self.found.design) if self.found.accepted else []
 
     @property
     def ratio(self) -> float:
@@ -195,43 +152,38 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
     within
         Relative, by how much more search might change the answer.
     """
-    asked = target.target.half_width
     looked, best = 0, None
-    for margin in (
-        MARGINS if asked is not None and target.target.least in ("room", "cut", "kinds") else (1.0,)
-    ):
-        found = []
-        for stand in _in_order(target):
-            one = search(stand, goal_of(target, margin), within=within)
-            looked += one.evaluations
-            found.append(one)
-            if (
-                target.target.least == "tolerance"
-                and asked
-                and one.accepted
-                and one.half_width <= asked / 100
-            ):
-                break
+    for margin, some in _tries(target):
+        found = [search(stand, goal_of(target, margin), within=within) for stand in some]
+        looked += sum(one.evaluations for one in found)
         chosen = min(found, key=lambda f: (not f.accepted, f.goal))
-        if target.target.least == "tolerance" and asked and found[-1].half_width <= asked / 100:
-            chosen = found[-1]
         made, wanted = _made(target, chosen, arrays)
         met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
         this = Synthesis(target, chosen, wanted, made, met)
-        if best is None or (met, made.share) > (best.met, best.made.share):
+        if best is None or _worth(this) > _worth(best):
             best = this
-        if met or not chosen.accepted:
+        if met or (not chosen.accepted and target.target.least != "tolerance"):
             break
     assert best is not None
     return replace(best, evaluations=looked)
 
 
-def _in_order(target: Target) -> list[Stand]:
-    """Stands, the loosest hinge tolerance first where that is to be found."""
-    order = stands(target)
-    if target.target.least == "tolerance":
-        order.sort(key=lambda s: -s.base.tolerance.hinge_thickness)
-    return order
+def _worth(got: Synthesis) -> tuple[bool, bool, float, float]:
+    return got.met, got.found.accepted, got.made.share, -got.found.half_width
+
+
+def _tries(target: Target) -> list[tuple[float, list[Stand]]]:
+    """What is searched until the target is met: margins between wanted and nominal half-width, and stands."""
+    everything, least = stands(target), target.target.least
+    if target.target.half_width is not None and least in ("room", "cut", "kinds"):
+        return [(margin, everything) for margin in MARGINS]
+    if target.target.half_width is None or least != "tolerance":
+        return [(1.0, everything)]
+    loosest_first = sorted(set(target.stock.hinge_tolerances), reverse=True)
+    return [
+        (1.0, [s for s in everything if s.base.tolerance.hinge_thickness == tolerance])
+        for tolerance in loosest_first
+    ]
 
 
 def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
@@ -286,14 +238,14 @@ def design(
     got = attempt(target, within=within)
     if not got.met:
         return _with_changes(got, within, tell, started, seconds)
-    left_out = []
+    skipped = []
     for i, (what, step) in enumerate(steps, start=1):
         if seconds is not None and time.perf_counter() - started > seconds:
-            left_out.append(what)
+            skipped.append(what)
             continue
         tell(i, len(steps) + 1, what)
         got = step(got)
-    return replace(got, left_out=tuple(left_out))
+    return replace(got, left_out=tuple(skipped))
 
 
 def _with_shares(got: Synthesis) -> Synthesis:
@@ -311,7 +263,13 @@ def _search_near(target: Target, found: Found, goal: Goal | None = None) -> Foun
     here = found.candidate.stand
     same = [s for s in stands(target) if _same_stand(s, here)] or stands(target)
     near = [
-        search(s, goal or goal_of(target), start=found.row, within=QUICK, seed=seed)
+        search(
+            s,
+            goal or goal_of(target),
+            start=found.row if s.kinds == here.kinds else None,
+            within=QUICK,
+            seed=seed,
+        )
         for s in same
         for seed in NEAR_SEEDS
     ]
@@ -319,11 +277,11 @@ def _search_near(target: Target, found: Found, goal: Goal | None = None) -> Foun
 
 
 def _same_stand(one: Stand, other: Stand) -> bool:
-    return (one.kinds, one.base.sheet, one.base.material.alloy) == (
-        other.kinds,
-        other.base.sheet,
-        other.base.material.alloy,
-    )
+    """Whether all is the same but tolerances; or one has more kinds of element than the other's target
+    allows."""
+    alike = one.base.sheet, one.base.material.alloy
+    kinds = one.kinds == other.kinds or one.kinds > other.target.elements.kinds
+    return kinds and alike == (other.base.sheet, other.base.material.alloy)
 
 
 def _with_limits(got: Synthesis) -> Synthesis:
@@ -331,7 +289,7 @@ def _with_limits(got: Synthesis) -> Synthesis:
     width, narrowest = got.found.half_width, _narrowest
     limits = []
     for name, other in relax.eased(got.target):
-        if name == "target.half_width":
+        if name in relax.NOT_NARROWING:
             continue
         found = _search_near(other, got.found, narrowest)
         if found.accepted and found.half_width < width * (1.0 - NEAR):
@@ -391,13 +349,13 @@ def _with_changes(
 ) -> Synthesis:
     """What of the target, changed alone by the least, would make it possible; each shown by a run."""
     names = [name for name, _ in relax.eased(got.target)]
-    changes, left_out = [], []
+    changes, skipped = [], []
     for i, name in enumerate(names):
         if seconds is not None and time.perf_counter() - started > seconds:
-            left_out.append(f"least change of {name}")
+            skipped.append(f"least change of {name}")
             continue
         tell(i, len(names), f"impossible as asked; the least change of {name}")
         change = relax.least_change(got.target, name, lambda t: attempt(t, within=within).met)
         if change:
             changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
-    return replace(got, changes=tuple(changes), left_out=tuple(left_out))
+    return replace(got, changes=tuple(changes), left_out=tuple(skipped))

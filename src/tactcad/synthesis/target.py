@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass, field
-from math import inf
+from math import ceil, floor, inf
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +18,12 @@ from tactcad.design.materials import ALLOYS
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
 from tactcad.design.toml_text import parse_toml
-from tactcad.design.tree import Design, Element, Identity, Rating, Sheet, Tolerance
+from tactcad.design.tree import Array, Design, Element, Identity, Rating, Sheet, Tolerance
 from tactcad.lab.calibration import RUN_SCATTER
 from tactcad.lab.pads import stiffness_per_modulus
 from tactcad.lab.simulate import Noise
 
+ARM, THICKNESS = 0.1, 0.005  # mm, steps that a drawing states and a shop's wire can tell apart
 LEAST = ("width", "kinds", "room", "cut", "tolerance")
 KNOWN = ("drawn", "inspected", "calibrated")
 
@@ -46,7 +47,11 @@ class Wish:
     name: str = given(_spec(Identity, "name"))
     title: str = given(_spec(Identity, "title"), "Array from a target")
     base: str = given(
-        TextLine(r"[^\x00-\x1f]{1,200}", "a named design or a path", "design whose other values are kept"),
+        TextLine(
+            r"[^\x00-\x1f]{1,200}",
+            "a named design, or a path from the target file's folder",
+            "design whose other values are kept",
+        ),
         DEFAULT_DESIGN,
     )
     half_width: float | None = given(
@@ -91,9 +96,11 @@ class Room:
 
     rows: int = given(Whole(1, 2, "rows of elements"), 2)
     elements: tuple[float, ...] = given(
-        Numbers(Number("", 2, 1000, "elements"), 2, 2, "least and largest number of elements"), (2, 10)
+        Numbers(Whole(2, 1000, "elements"), 2, 2, "least and largest number of elements"), (2, 10)
     )
-    pitch: float = given(Number("mm", 0.2, 50, "least distance of neighbouring pads"), 0.2)
+    pitch: float = given(
+        Number("mm", 0.2, 50, "least distance of neighbouring pads, along and across the rows"), 0.2
+    )
     length: float = given(Number("mm", 1, 2000, "along the arms, carrier and all"), 2000.0)
     width: float = given(Number("mm", 1, 2000, "along the rows, carrier and all"), 2000.0)
     height: float = given(Number("mm", 1, 500, "from the pads to the carrier's top"), 500.0)
@@ -223,11 +230,12 @@ def read_target(path: str | Path) -> Target:
     InputError
         The file is missing or no target, a value is not legal, or two contradict each other.
     """
-    return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path))
+    return parse_target(read_text(path, MOST_BYTES, "a target file (TOML)"), str(path), Path(path).parent)
 
 
-def parse_target(text: str, where: str) -> Target:
-    """A target from TOML text; `where` names the text in messages. Raises as `read_target`."""
+def parse_target(text: str, where: str, folder: Path = Path()) -> Target:
+    """A target from TOML text; `where` names the text in messages, and `target.base` as a path is one from
+    `folder`. Raises as `read_target`."""
     table = parse_toml(text, where)
     for name, value in table.items():
         if name not in (*TABLES, "origin"):
@@ -238,7 +246,7 @@ def parse_target(text: str, where: str) -> Target:
         if name not in table:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
     values = {name: read_table(kind, table.get(name, {}), name) for name, kind in TABLES.items()}
-    base = read(values["target"].base)
+    base = _base(values["target"].base, folder)
     stock = values["stock"]
     values["stock"] = Stock(
         stock.sheets or (base.sheet.thickness,),
@@ -248,6 +256,15 @@ def parse_target(text: str, where: str) -> Target:
     target = Target(**values, base=base, origin=_origins(table.get("origin", {}), values))
     _refuse_contradictions(target)
     return target
+
+
+def _base(name: str, folder: Path) -> Design:
+    try:
+        return read(folder / name if "/" in name or name.endswith(".toml") else name)
+    except InputError as error:
+        if error.where == "DESIGN":
+            raise InputError("target.base", error.what, value=name, legal=error.legal) from error
+        raise InputError("target.base", str(error), value=name) from error
 
 
 def _origins(table: dict[str, Any], values: dict[str, Any]) -> dict[str, str]:
@@ -289,3 +306,29 @@ def _refuse_contradictions(target: Target) -> None:
             legal="drawn or inspected, or another target.base",
         )
     _ = target.stiffness_range  # refuses an object that is too thin
+    _refuse_between_steps(target)
+    _refuse_illegal_pitch(target)
+
+
+def _refuse_between_steps(target: Target) -> None:
+    """Ranges that hold no value which the search can take."""
+    e = target.elements
+    for path, (low, high), step in (("elements.arms", e.arms, ARM), ("elements.hinges", e.hinges, THICKNESS)):
+        if floor(high / step + 1e-9) < ceil(low / step - 1e-9):
+            near = f"{floor(low / step) * step:g} or {ceil(high / step) * step:g} mm"
+            what = f"holds no whole multiple of {step:g} mm, the step of the search"
+            raise InputError(path, what, value=[low, high], legal=f"a range that holds {near}")
+
+
+def _refuse_illegal_pitch(target: Target) -> None:
+    """Pitches with which no design file could be written."""
+    spec = Array.__dataclass_fields__["spacer"].metadata["spec"]
+    for sheet in target.stock.sheets:
+        spacer = round(target.room.pitch - sheet, 6)
+        if spacer > spec.high:
+            raise InputError(
+                "room.pitch",
+                f"a sheet of {sheet:g} mm would need spacers of {spacer:g} mm",
+                value=target.room.pitch,
+                legal=f"at most {sheet + spec.high:g} mm: array.spacer is {spec.legal}",
+            )

@@ -15,11 +15,13 @@ from tactcad.paper.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panel
 from tactcad.parts.layout import Layout
 
 from .interval import LEVEL
+from .realise import dealt
 from .shares import SLIGHT
 from .synthesise import CURVE, PAPERS_RATIO, Synthesis
-from .target import Target
+from .target_answer import answer, no_other_change, percent
 
 COUPLINGS = (0.0, SLIGHT, 1.0)
+USEFUL = 0.5  # half-width of K_obj beyond which an array tells hardly more than that something is there
 LISTED = 8  # rows of limits and shares on the page
 STYLE = """
 body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0 1em;color:#1c2733}
@@ -38,7 +40,11 @@ def record(got: Synthesis) -> dict[str, Any]:
         "met": got.met,
         "wanted_half_width": got.wanted,
         "half_width": got.found.half_width if got.found.accepted else None,
-        "base": {"name": got.target.base.name, "half_width": got.base_half_width},
+        "base": {
+            "name": got.target.base.name,
+            "half_width": got.base_half_width,
+            "cannot": got.base_cannot if got.base_half_width is not None else "",
+        },
         "yield": got.made.share,
         "yield_wanted": got.target.target.share,
         "yield_interval": list(got.made.interval),
@@ -51,6 +57,10 @@ def record(got: Synthesis) -> dict[str, Any]:
         "changes": [asdict(c) for c in got.changes],
         "left_out": list(got.left_out),
         "beyond": _beyond(got),
+        "out_of_range": list(got.found.candidate.out_of_range),
+        "refused": got.found.refused,
+        "limits_searched": got.binding is not None,
+        "notes": _notes(got),
     }
     if not got.found.accepted:
         return out | {"object_interval": [], "binding": [], "shares": [], "front": []}
@@ -70,7 +80,7 @@ def record(got: Synthesis) -> dict[str, Any]:
             for a, b, c in zip(x, whole.low, whole.high)
         ],
         "pairs": pairs,
-        "binding": [asdict(limit) for limit in got.binding],
+        "binding": [asdict(limit) for limit in got.binding or ()],
         "shares": [asdict(s) for s in got.shares],
         "front": [entry.record() for entry in got.front],
         "coupling": [{"share": c, "shift": got.coupling(c)} for c in COUPLINGS],
@@ -83,11 +93,33 @@ def record(got: Synthesis) -> dict[str, Any]:
 
 
 def _beyond(got: Synthesis) -> dict[str, float]:
-    """By limit that the best candidate does not keep, how far beyond it is, relative."""
-    misses = {name: float(v[0]) for name, v in got.found.candidate.misses.items()}
-    width = got.found.half_width / got.wanted - 1.0 if got.wanted else 0.0
-    beyond = {**misses, "target.half_width": width}
-    return {name: v for name, v in beyond.items() if v > 1e-9 and np.isfinite(v)}
+    """By limit that the best candidate does not keep, how far beyond it is, relative; its half-width only
+    where it keeps all others, and nothing that hangs on its elements where the estimator does not reach
+    them."""
+    c = got.found.candidate
+    misses = {name: float(v[0]) for name, v in c.misses.items()}
+    if c.out_of_range:
+        low, high = c.stand.limits
+        of_room = ["room.height", *(["room.length"] if low[0] > high[0] else [])]
+        misses = {name: misses[name] for name in of_room}
+    elif got.found.accepted:
+        misses["target.half_width"] = got.found.half_width / got.wanted - 1.0 if got.wanted else 0.0
+    return {name: v for name, v in misses.items() if v > 1e-9 and np.isfinite(v)}
+
+
+def _notes(got: Synthesis) -> list[str]:
+    """What the design does not say of itself."""
+    notes = []
+    for line in got.scenes_left_out:
+        if line.startswith("scene calibration ") and got.target.known.how == "calibrated":
+            line = f"its elements count as calibrated, but not on the rig of this design; {line}"
+        notes.append(line)
+    if got.met and got.target.target.half_width is None and got.wanted > USEFUL:
+        notes.append(
+            f"an interval of {percent(got.wanted)} either way is no useful sensor: allow more force, more "
+            "elements, or a narrower range"
+        )
+    return notes
 
 
 def _pairs(got: Synthesis) -> list[tuple[int, int]]:
@@ -99,7 +131,8 @@ def _pairs(got: Synthesis) -> list[tuple[int, int]]:
 
 def _elements(got: Synthesis) -> list[dict[str, Any]]:
     s = got.sensor
-    forces = dict(zip(got.found.candidate.arm[0].round(6), got.found.candidate.largest_force[0]))
+    c = got.found.candidate
+    kinds = [kind for row in dealt(c) for kind in row]
     rows = []
     for i, place in enumerate(Layout(got.found.design).elements):
         rows.append(
@@ -111,7 +144,7 @@ def _elements(got: Synthesis) -> list[dict[str, Any]]:
                 "stiffness": float(s.drawn.stiffness[i]),
                 "stiffness_by_solid_elements": got.solid[i] if got.solid else None,
                 "signal_V_per_mm": float(s.drawn.signal[i]),
-                "largest_force": float(forces.get(round(place.arm, 6), np.nan)),
+                "largest_force": float(c.largest_force[0, kinds[i]]),
             }
         )
     return rows
@@ -139,45 +172,16 @@ def report_page(got: Synthesis) -> bytes:
     ).encode()
 
 
-def _percent(share: float) -> str:
-    return f"{100 * share:.3g} %"
-
-
-def answer(target: Target, r: dict[str, Any]) -> str:
-    """What came out, in two sentences."""
-    low, high = r["object_range"]
-    if not r["met"]:
-        why = "; ".join(f"{name} by {_percent(v)}" for name, v in r["beyond"].items())
-        why = (
-            f"misses {why}"
-            if why
-            else (
-                f"keeps it as drawn, but of the arrays made only {_percent(r['yield'])} do, not "
-                f"{_percent(r['yield_wanted'])}"
-            )
-        )
-        return f"Impossible as asked: the best there is {why}."
-    e, base = r["elements"], r["base"]
-    than = f"; {base['name']} as it is: {_percent(base['half_width'])}" if base["half_width"] else ""
-    return (
-        f"{len(e)} elements feel {low:.3g} to {high:.3g} N/mm within {_percent(r['wanted_half_width'])} "
-        f"(half the 95 % interval; as drawn {_percent(r['half_width'])}{than}). "
-        f"{_percent(r['yield'])} of arrays made within "
-        f"their tolerances keep that ({_percent(r['yield_interval'][0])} to "
-        f"{_percent(r['yield_interval'][1])})."
-    )
-
-
 def _answer(got: Synthesis, r: dict[str, Any]) -> str:
-    text = f'<p class="answer{"" if r["met"] else " no"}">{escape(answer(got.target, r))}</p>'
-    if not r["changes"]:
+    text = f'<p class="answer{"" if r["met"] else " no"}">{escape(answer(r))}</p>'
+    text += "".join(f"<p>Note: {escape(note)}.</p>" for note in r["notes"])
+    if r["met"]:
         return text
     rows = [(c["field"], _value(c["value"]), _value(c["needed"])) for c in r["changes"]]
-    return (
-        text
-        + "<p>Each of these changes alone makes it possible:</p>"
-        + _table(("field", "asked", "needed"), rows)
-    )
+    if rows:
+        text += "<p>Each of these changes alone makes it possible:</p>"
+        text += _table(("field", "asked", "needed"), rows)
+    return text + f"<p>{escape(no_other_change(r).capitalize())}.</p>"
 
 
 def _value(value: Any) -> str:
@@ -212,7 +216,7 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
         log_ticks(ax.xaxis, _ticks(float(x[0]), float(x[-1])))
         ax.legend()
         picture = svg(figure, "interval")
-    lines = ", ".join(f"{_percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
+    lines = ", ".join(f"{percent(c['share'])}: {c['shift']:+.1%}" for c in r["coupling"][1:])
     return (
         f"<h2>How surely it feels</h2>{picture}<p>Pads are taken to press on separate springs. "
         f"Where the object couples "
@@ -225,8 +229,10 @@ def _interval_part(got: Synthesis, r: dict[str, Any]) -> str:
 
 
 def _ticks(low: float, high: float) -> list[float]:
+    """Both ends, and round numbers between that stand clear of them."""
     steps = [a * 10.0**n for n in range(-4, 5) for a in (1, 1.5, 2, 3, 5, 7)]
-    return [v for v in steps if low <= v <= high] or [low, high]
+    clear = (high / low) ** 0.06
+    return [low, *(v for v in steps if low * clear <= v <= high / clear), high]
 
 
 def _yield_part(r: dict[str, Any]) -> str:
@@ -234,14 +240,16 @@ def _yield_part(r: dict[str, Any]) -> str:
     text = (
         f"<h2>Yield</h2><p>Of {r['yield_arrays']} arrays made ({r['yield_distribution']} parts, "
         f"one sheet and one "
-        f"machine's offset each) {_percent(r['yield'])} go together, stay within their hinges' "
+        f"machine's offset each) {percent(r['yield'])} go together, stay within their hinges' "
         f"strength, keep their stops open "
-        f"and give an interval within {_percent(r['wanted_half_width'])} everywhere on the range.</p>"
+        f"and give an interval within {percent(r['wanted_half_width'])} everywhere on the range.</p>"
     )
     return text + (_table(("lacking", "arrays"), rows) if rows else "")
 
 
 def _limits_part(r: dict[str, Any]) -> str:
+    if not r["binding"] and not r["shares"]:
+        return ""
     text = "<h2>What limits it</h2>"
     if r["binding"]:
         best = r["binding"][0]
@@ -249,8 +257,8 @@ def _limits_part(r: dict[str, Any]) -> str:
             (
                 b["field"],
                 f"{_value(b['value'])} to {_value(b['eased'])}",
-                _percent(b["half_width"]),
-                f"-{_percent(b['gain'])}",
+                percent(b["half_width"]),
+                f"-{percent(b['gain'])}",
             )
             for b in r["binding"][:LISTED]
         ]
@@ -264,14 +272,25 @@ def _limits_part(r: dict[str, Any]) -> str:
     shown = [s for s in r["shares"] if s["total"] > 0][:LISTED]
     with panels(1, 1, (9.0, 0.5 * len(shown) + 1.2)) as (figure, ax):
         at = np.arange(len(shown))[::-1]
-        ax.barh(at + 0.2, [100 * s["total"] for s in shown], 0.38, color=SKY, label="with interactions")
-        ax.barh(at - 0.2, [100 * s["first"] for s in shown], 0.38, color=BLUE, label="alone")
+        for off, key, colour, label in (
+            (0.2, "total", SKY, "with interactions"),
+            (-0.2, "first", BLUE, "alone"),
+        ):
+            share, error = ([100 * s[key + e] for s in shown] for e in ("", "_error"))
+            ax.barh(at + off, share, 0.38, xerr=error, color=colour, ecolor=GREY, label=label)
         ax.set_yticks(at, [s["cause"] for s in shown])
-        ax.set(xlabel="% of the variance of K_obj, at the middle of the range")
+        ax.set(xlabel="% of the variance of K_obj, at the middle of the range", xlim=(0, None))
         ax.legend(loc="lower right")
         text += svg(figure, "shares")
+    rows = [tuple([s["cause"], *(_whole_percent(s, key) for key in ("first", "total"))]) for s in shown]
+    text += _table(("cause", "alone", "with interactions"), rows)
     none = [s["cause"] for s in r["shares"] if s["total"] <= 0]
-    return text + f"<p><small>Below 0.05 %: {escape('; '.join(none))}.</small></p>"
+    below = f" Below 0.05 %: {escape('; '.join(none))}." if none else ""
+    return text + f"<p><small>\u00b1: standard error of the sampling.{below}</small></p>"
+
+
+def _whole_percent(share: dict[str, Any], key: str) -> str:
+    return f"{100 * share[key]:.0f} \u00b1 {max(100 * share[key + '_error'], 0.5):.0f} %"
 
 
 def _ratio_part(r: dict[str, Any]) -> str:
@@ -288,10 +307,10 @@ def _ratio_part(r: dict[str, Any]) -> str:
         picture = svg(figure, "ratio")
     at = {p["ratio"]: p["half_width"] for p in r["ratios"]}
     paper = at.get(r["papers_ratio"])
-    than = f", against {_percent(paper)} at the paper's 10" if paper else ""
+    than = f", against {percent(paper)} at the paper's 10" if paper else ""
     return (
         f"<h2>Stiffness ratio</h2>{picture}<p>Best here: {r['ratio']:.3g}, half-width "
-        f"{_percent(r['half_width'])}{than}. The "
+        f"{percent(r['half_width'])}{than}. The "
         "paper looks at a pair's ratio alone: the larger K_r/K_m, the better conditioned, with "
         "diminishing returns from 10 "
         "on. Here a stiffer reference is also read with less signal and calibrated less well "
@@ -316,7 +335,7 @@ def _front_part(r: dict[str, Any]) -> str:
     rows = [
         (
             f["name"],
-            _percent(f["half_width"]),
+            percent(f["half_width"]),
             str(f["elements"]),
             f"{f['carrier_area_mm2'] / 100:.1f}",
             f"{f['hinge_tolerance_mm']:g}",
@@ -329,6 +348,7 @@ def _front_part(r: dict[str, Any]) -> str:
 
 
 def _elements_part(r: dict[str, Any]) -> str:
+    solid = bool(r["elements"][0]["stiffness_by_solid_elements"])
     rows = [
         (
             f"E{e['number']}",
@@ -336,10 +356,11 @@ def _elements_part(r: dict[str, Any]) -> str:
             f"{e['arm']:g}",
             f"{e['hinge_thickness']:g}",
             f"{e['stiffness']:.4g}",
-            f"{e['stiffness_by_solid_elements']:.4g}" if e["stiffness_by_solid_elements"] else "",
+            *([f"{e['stiffness_by_solid_elements']:.4g}"] if solid else []),
             f"{e['largest_force']:.3g}",
         )
         for e in r["elements"]
     ]
-    heads = ("element", "row", "arm, mm", "hinge, mm", "K, N/mm", "by solid elements", "largest force, N")
+    by_solid = ["by solid elements"] if solid else []
+    heads = ("element", "row", "arm, mm", "hinge, mm", "K, N/mm", *by_solid, "largest force, N")
     return "<h2>Elements</h2>" + _table(heads, rows)

@@ -12,7 +12,8 @@ from tactcad.design.held import MAKING, held_folder, sweep_folders
 from tactcad.design.messages import InputError
 
 from .synthesise import Synthesis
-from .target_report import answer, record, report_json, report_page
+from .target_answer import answer
+from .target_report import record, report_json, report_page
 
 
 def refuse_taken(out: str | Path) -> None:
@@ -22,6 +23,20 @@ def refuse_taken(out: str | Path) -> None:
         raise InputError(
             "--out", "is there already and not an empty folder", value=str(out), legal="a new folder"
         )
+
+
+def refuse_unwritable(out: str | Path) -> None:
+    """Raise as `write` would for a place that is taken or cannot be written to, and leave nothing there."""
+    refuse_taken(out)
+    folder = absolute(out)
+    place = folder.parent
+    while not os.path.lexists(place):
+        place = place.parent
+    try:
+        with held_folder(place, folder.name):
+            pass
+    except OSError as error:
+        raise refusal(str(out), error) from error
 
 
 def write(got: Synthesis, out: str | Path) -> None:
@@ -48,7 +63,7 @@ def write(got: Synthesis, out: str | Path) -> None:
 
 def _files(got: Synthesis) -> Iterator[tuple[str, bytes]]:
     target = got.target.target.name
-    heading = f"{target}: by `tactcad design`.\n{answer(got.target, record(got))}"
+    heading = f"{target}: by `tactcad design`.\n{answer(record(got))}"
     yield "design.toml", design_text(got.design, heading).encode()
     for entry in got.front[1:]:
         name = f"{target[:24].rstrip('-')}-{entry.name.replace('.', '-')}"

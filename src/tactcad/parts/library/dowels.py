@@ -8,6 +8,8 @@ from ..description import Extrusion, Material, Part, Purchase
 from .fits import deviations
 from .tables import number, rows
 
+# Least diametral play of a sliding pin, mm; chosen: what a plug gauge tells from none.
+LEAST_PLAY = 0.002
 HARDENED = Material("hardened steel", 7850)
 
 _SERIES = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30, 32, 35, 40, 45, 50)

@@ -57,7 +57,7 @@ def roller_tip(rig: StandLayout) -> Part:
 
 SEAT_RADIUS = "seat radius"
 SEAT = 0.005  # mm, plus and minus; chosen: two to three passes of the wire
-# Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the tip's middle.
+# Radial, mm: what a pin's feel tells from none; more would let the roller lie beside the seat's middle.
 LEAST_AROUND_ROLLER = 0.001
 
 

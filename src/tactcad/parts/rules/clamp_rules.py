@@ -10,7 +10,7 @@ from ..end_plate import HOLES
 from ..fasteners import LEAST_GRIP, carrier_screw, clamping, thinnest_carrier
 from ..finding import SAME, Finding
 from ..layout import BESIDE_SET_SCREW, CARRIER_EDGE, END_PLATE_WEB, HOLE_WEB, LEAST_GAP, SUNK, Layout
-from ..library.dowels import dowel_diameter, dowel_limits
+from ..library.dowels import LEAST_PLAY, dowel_diameter, dowel_limits
 from ..library.screws import (
     DRILL_REACH,
     METRIC,
@@ -48,8 +48,9 @@ def holes_inside_body(layout: Layout) -> Iterator[Finding]:
             h.height,
             f"from {low + h.web + widest / 2:g} to {high - h.web - widest / 2:g} mm",
         )
-    pin, loosest = dowel_limits(d.clamp.dowel)[1], float(d.clamp.dowel) + 0.1
-    yield from at_least("holes.dowel_hole", "smaller than the dowel may be (m6)", h.dowel_hole, pin)
+    least, loosest = round(dowel_limits(d.clamp.dowel)[1] + LEAST_PLAY, 6), float(d.clamp.dowel) + 0.1
+    what = f"leaves the largest dowel (m6) less than {LEAST_PLAY:g} mm of play"
+    yield from at_least("holes.dowel_hole", what, h.dowel_hole, least)
     if h.dowel_hole > loosest:
         yield wrong(
             "holes.dowel_hole", "does not locate on the dowel", h.dowel_hole, f"at most {loosest:g} mm"

@@ -8,6 +8,10 @@ from ..finding import SAME, Finding
 from ..layout import LEAST_GAP, ElementPlace, Layout
 from .rule import at_least, at_most, rule, wrong
 
+# Of a hinge's thickness that its tolerance may take; chosen: its stiffness, which goes with t^3, is then
+# still between 0.42 and 1.95 of the drawn one.
+SHARE_OF_HINGE = 0.25
+
 
 def at(place: ElementPlace, field: str, layout: Layout) -> str:
     """Path of a hinge field of one element: its override where it has one."""
@@ -81,6 +85,19 @@ def hinge_thinner_than_arm(layout: Layout) -> Iterator[Finding]:
             room / sides,
             f"at most {room / sides:g} mm, (arm_height - hinge_thickness)" + ("/2" if sides == 2 else ""),
         )
+
+
+@rule(after="hinge_thinner_than_arm")
+def hinge_outlasts_its_tolerance(layout: Layout) -> Iterator[Finding]:
+    """The thinnest hinge as made is still the hinge of the design."""
+    thinnest = min(p.hinge.t for p in layout.elements)
+    most = SHARE_OF_HINGE * thinnest
+    yield from at_most(
+        "tolerance.hinge_thickness",
+        f"more than a quarter of the thinnest hinge, {thinnest:g} mm",
+        layout.design.tolerance.hinge_thickness,
+        most,
+    )
 
 
 @rule(after="override_names_element")

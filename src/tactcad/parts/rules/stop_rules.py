@@ -3,18 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import Field, fields, replace
 from math import ceil, floor, hypot, pi, sqrt, tan
 
+from tactcad.design.tree import Design, Stop, Tolerance
+
 from ..finding import SAME, Finding
-from ..layout import Layout
+from ..layout import ElementPlace, Layout
 from ..stop_gap import land_room, seat, stop_gap, stop_limit
 from ..stop_give import SHARE, shortest_pitch, stop_plate_beams
+from ..stop_plate import STOP_PLATE_FLAT
 from .rule import at_least, at_most, rule, wrong
 
 # Least contact of stop plate and shortest ledge along the arm, mm; chosen: it carries the set screw's
 # push without lifting, and is the least that a 0.15 mm misplaced plate still finds.
 LEAST_SEAT = 0.5
+USUAL = {
+    "stop.tolerance": Stop().tolerance,
+    "tolerance.ledge": Tolerance().ledge,
+    "tolerance.pad_height": Tolerance().pad_height,
+}
+TENTH = 1e-4  # mm: legal tolerances are stated to a tenth of a micrometre
 
 
 @rule(after="override_names_element")
@@ -172,26 +181,74 @@ def stop_keeps_rated_deflection(layout: Layout) -> Iterator[Finding]:
 
 @rule(after="stop_plate_stays")
 def stop_gap_above_tolerance(layout: Layout) -> Iterator[Finding]:
-    """The arm moves before its stop closes; what leaves it no gap is the overload or the tolerance."""
+    """The arm moves before its stop closes; what leaves it no gap is the overload or a tolerance."""
     d = layout.design
     for p in layout.elements:
-        gap, limit = stop_gap(layout, p), stop_limit(layout, p)
-        if gap > d.stop.tolerance + SAME:
+        if _opens(layout, p):
             continue
-        if not (d.stop.gaps and p.arm in d.stop.gaps) and 0 < limit.overload < d.rating.overload_force:
-            yield wrong(
-                "rating.overload_force",
-                f"no stop keeps the hinge of element {p.number} within its rated deflection",
-                d.rating.overload_force,
-                f"at most {limit.overload:.4g} N",
-            )
-        else:
-            yield wrong(
-                "stop.tolerance",
-                f"the stop of element {p.number} may close before it moves: its gap is {gap:g} mm",
-                d.stop.tolerance,
-                f"less than {gap:g} mm" if gap > 0 else "less, or a softer hinge",
-            )
+        gap, overload = stop_gap(layout, p), stop_limit(layout, p).overload
+        what = f"the stop of element {p.number} may close before it moves: its gap is {gap:g} mm"
+        if d.stop.gaps and p.arm in d.stop.gaps:
+            yield wrong("stop.tolerance", what, d.stop.tolerance, f"less than {gap:g} mm")
+            continue
+        taken = _taken_by_tolerances(layout)
+        legal = {path: _largest_tolerance(d, path) for path in taken}
+        # where a usual tolerance would do it is not the overload that leaves no gap
+        held = [path for path in taken if legal[path] >= USUAL[path]]
+        if not held and 0 < overload < d.rating.overload_force:
+            what = f"no stop keeps the hinge of element {p.number} within its rated deflection"
+            yield wrong("rating.overload_force", what, d.rating.overload_force, f"at most {overload:.4g} N")
+            continue
+        path = next(iter(held), next((path for path in taken if legal[path]), taken[0]))
+        most = f"at most {legal[path]:g} mm" if legal[path] else "less, or a softer hinge"
+        yield wrong(path, what, _tolerance(d, path), most)
+
+
+def _opens(layout: Layout, place: ElementPlace) -> bool:
+    return stop_gap(layout, place) > layout.design.stop.tolerance + SAME
+
+
+def _taken_by_tolerances(layout: Layout) -> list[str]:
+    """Fields that a derived gap makes room for, the one that takes most of it first."""
+    d = layout.design
+    stop, ledge = 2 * d.stop.tolerance, 2 * d.tolerance.ledge
+    pads = seat(layout) - ledge - STOP_PLATE_FLAT
+    taken = {"stop.tolerance": stop, "tolerance.ledge": ledge, "tolerance.pad_height": pads}
+    return sorted(taken, key=lambda path: -taken[path])
+
+
+def _largest_tolerance(design: Design, path: str) -> float:
+    """Largest value of a tolerance (mm, a multiple of TENTH) that alone leaves every derived gap open; 0
+    where none does."""
+    least, now = _field(design, path).metadata["spec"].low, _tolerance(design, path)
+    low, high = ceil(least / TENTH), ceil(now / TENTH)
+    given = design.stop.gaps or {}
+
+    def open_at(tenths: int) -> bool:
+        layout = Layout(_with_tolerance(design, path, tenths * TENTH))
+        return all(_opens(layout, p) for p in layout.elements if p.arm not in given)
+
+    if low >= high or not open_at(low):
+        return 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if open_at(middle) else (low, middle)
+    return round(low * TENTH, 4)
+
+
+def _tolerance(design: Design, path: str) -> float:
+    section, name = path.split(".")
+    return getattr(getattr(design, section), name)
+
+
+def _field(design: Design, path: str) -> Field:
+    section, name = path.split(".")
+    return next(f for f in fields(getattr(design, section)) if f.name == name)
+
+
+def _with_tolerance(design: Design, path: str, value: float) -> Design:
+    section, name = path.split(".")
+    return replace(design, **{section: replace(getattr(design, section), **{name: round(value, 4)})})
 
 
 @rule(after="stop_plate_stays")

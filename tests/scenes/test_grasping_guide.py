@@ -1,0 +1,61 @@
+"""The grasping set-up's guide: what is handled stands by then; what was put together is not listed again."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+import pytest
+from variants import variant
+
+from tactcad.drawing import guide
+from tactcad.scenes import make_scene
+
+
+@pytest.fixture(scope="module", params=["grasping", "calibration"])
+def case(request):
+    design = variant()
+    scene = make_scene(design, request.param)
+    return scene, guide.page(design, scene).decode()
+
+
+def sections(page):
+    """Text and table of each step, by title, in order."""
+    found = re.findall(r"<h2>\d+\. (.*?)</h2>\s*<p>(.*?)</p>(.*?)</section>", page, re.S)
+    return {unescape(title): (unescape(text), rest) for title, text, rest in found}
+
+
+def test_the_finished_array_is_one_line(case):
+    """Every designator of the array's own parts is left out, every other one listed once."""
+    scene, page = case
+    ready = {p.designator for p in scene.ready[0].placements}
+    cells = " ".join(re.findall(r"<td>([A-Z]{2}\d+(?: [A-Z]{2}\d+)*|E\d+(?: E\d+)*)</td>", page)).split()
+    assert sorted(cells) == sorted(p.designator for p in scene.placements if p.designator not in ready)
+    assert page.count("array, put together by its own guide") == 1
+    assert "strain gauge adhesive" not in page
+
+
+def test_latch_and_stop_are_there_before_they_are_used():
+    page = guide.page(variant(), make_scene(variant(), "grasping")).decode()
+    steps = sections(page)
+    order = list(steps)
+    first = {
+        word: next(n for n, title in enumerate(order) if word in steps[title][0])
+        for word in ("latch", "end stop")
+    }
+    rail = order.index("Guide rail")
+    assert "ES1 LP1" in steps["Guide rail"][1]
+    assert first["latch"] == first["end stop"] == rail
+    # the carriage is held while something is screwed on it, and the sample is out of the flat plate's way
+    text = steps["Bar on the carriage"][0]
+    assert (
+        text.index("set the latch under it") < text.index("Screw the bar") < text.index("Take the sample off")
+    )
+    assert text.index("Take the sample off") < text.index("lower the array")
+
+
+def test_the_moving_weight_is_in_grams_too():
+    """3.235 N at standard gravity."""
+    text = sections(guide.page(variant(), make_scene(variant(), "grasping")).decode())["Ballast"][0]
+    newton, gram = map(float, re.search(r"([\d.]+) N, ([\d.]+) g", text).groups())
+    assert gram == pytest.approx(newton / 9.80665e-3, abs=0.05)

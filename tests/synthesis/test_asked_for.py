@@ -1,0 +1,141 @@
+"""What a target asks for is what the design has: steps, pitch, kinds' forces, tolerances; and no more is said
+than is so."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tactcad.design.design_text import design_text
+from tactcad.design.load import parse
+from tactcad.design.messages import InputError
+from tactcad.mechanics.ladder import stiffness
+from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.layout import Layout
+from tactcad.parts.rules import broken_rules
+from tactcad.synthesis.candidates import stands
+from tactcad.synthesis.realise import realised
+from tactcad.synthesis.search import refusals, search
+from tactcad.synthesis.synthesise import Synthesis, attempt
+from tactcad.synthesis.target import Target, parse_target
+from tactcad.synthesis.target_report import record
+
+SMALL = """
+[target]
+name = "small"
+[object]
+stiffness = [3, 6]
+[grasp]
+force = 6
+overload = 8
+[room]
+elements = [4, 6]
+pitch = 4
+[elements]
+arms = [5, 7]
+hinges = [0.25, 0.4]
+"""
+
+
+def small(*changes: tuple[str, str]) -> Target:
+    text = SMALL
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return parse_target(text, "t")
+
+
+def quick(target: Target, within: float = 0.05) -> Synthesis:
+    return attempt(target, arrays=100, within=within)
+
+
+def test_largest_forces_are_those_of_the_element_not_of_its_arm():
+    """Springs between one approach and one object: K x/(K + x) over the sum of it, the most on the range."""
+    got = quick(small(("arms = [5, 7]", "arms = [6, 6]")))
+    layout = Layout(got.found.design)
+    K = stiffness(hinge_section(layout, layout.elements))
+    assert np.ptp(K) > 1.0  # both kinds have arms of 6 mm
+    x = np.array([[3.0], [4.0], [6.0]])
+    rate = K * x / (K + x)
+    largest = (6.0 * rate / rate.sum(axis=1, keepdims=True)).max(axis=0)
+    told = [e["largest_force"] for e in record(got)["elements"]]
+    assert told == pytest.approx(largest.tolist(), rel=1e-3)
+
+
+def test_rows_are_as_far_apart_as_pads_along_them():
+    pitch = 8.0
+    got = quick(small(("pitch = 4", "pitch = 8")))
+    array = got.found.design.array
+    assert array.row_pitch >= pitch and array.pitch >= pitch
+    made = parse(design_text(got.design), "written")
+    assert got.found.accepted and made.array == array and not broken_rules(made)
+
+
+def test_a_pitch_that_no_design_file_can_say_is_refused_at_reading():
+    with pytest.raises(InputError, match=r"room.pitch: .*spacers of 47 mm.*at most 33 mm"):
+        small(("pitch = 4", "pitch = 50"))
+
+
+def test_a_design_that_its_own_reader_refuses_is_never_accepted():
+    target = small()
+    (stand,) = stands(target)
+    wide = replace(stand, base=replace(stand.base, array=replace(stand.base.array, pitch=50.0, spacer=47.0)))
+    assert refusals(wide.base) == {"array.spacer"}
+    best = quick(target, 0.5).found.row
+    wide.__dict__["limits"] = (best, best + 1.0)
+    got = search(wide, lambda c: c.half_width, within=0.05)
+    assert not got.accepted and "array.spacer" in got.refused
+
+
+def test_a_base_with_overrides_leaves_none_of_their_origins():
+    target = small(('name = "small"', 'name = "small"\nbase = "better-array"'))
+    (stand,) = stands(target)
+    base = replace(
+        stand.base, origin={**stand.base.origin, "element.override.9.hinge_thickness": "chosen: x"}
+    )
+    low, high = stand.limits
+    made = realised(replace(stand, base=base).candidates(((low + high) / 2.0)[np.newaxis]))
+    assert parse(design_text(made), "d") == made
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("arms = [5, 7]", "arms = [6.02, 6.08]", r"elements.arms: .*0.1 mm.*holds 6 or 6.1 mm"),
+        ("hinges = [0.25, 0.4]", "hinges = [0.251, 0.254]", r"elements.hinges: .*0.005 mm.*0.25 or 0.255 mm"),
+        ("elements = [4, 6]", "elements = [4.5, 6]", r"room.elements\[0\]: not a whole number"),
+    ],
+)
+def test_a_range_between_two_steps_is_refused(old, new, says):
+    with pytest.raises(InputError, match=says):
+        small((old, new))
+
+
+def test_ends_of_a_range_that_are_steps_are_used():
+    for arm in (5.3, 6.9):
+        (stand,) = stands(small(("arms = [5, 7]", f"arms = [{arm}, {arm}]")))
+        assert stand.limits[0][0] == stand.limits[1][0] == round(10 * arm)
+
+
+def test_the_loosest_tolerance_that_meets_the_target_is_found_also_where_a_looser_one_nearly_does():
+    """At 20 um the design keeps it as drawn, but too few of the arrays made do."""
+    least = ('name = "small"', 'name = "small"\nleast = "tolerance"')
+    target = small(least, ("[elements]", '[known]\nhow = "drawn"\n[elements]'))
+    loose = target.with_("stock.hinge_tolerances", (0.02,))
+    wanted = 100.01 * quick(loose, 0.2).found.half_width
+    both = target.with_("stock.hinge_tolerances", (0.002, 0.02)).with_("target.half_width", wanted)
+    got = quick(both, 0.2)
+    assert got.met and got.found.design.tolerance.hinge_thickness == 0.002
+
+
+def test_an_exact_calibration_leaves_the_noise_of_the_readings():
+    target = small()
+    for name in ("run_scatter", "force_noise", "displacement_noise", "contact"):
+        target = target.with_(f"known.{name}", 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        got = quick(target)
+    assert got.met and got.found.half_width < got.wanted < 4.0 * got.found.half_width

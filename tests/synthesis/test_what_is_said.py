@@ -1,0 +1,200 @@
+"""What a synthesis says of itself is so: what binds, what was not tried, what the base design takes, what is
+written where."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from tactcad.cli.main import main
+from tactcad.design.design_text import design_text
+from tactcad.design.load import read
+from tactcad.design.messages import InputError
+from tactcad.synthesis import relax
+from tactcad.synthesis.alternatives import LeastChange
+from tactcad.synthesis.made_arrays import MadeSensor
+from tactcad.synthesis.shares import COUNT, variance_shares
+from tactcad.synthesis.synthesise import Synthesis, attempt
+from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
+from tactcad.synthesis.target_answer import answer, no_other_change
+from tactcad.synthesis.target_report import record, report_page
+from tactcad.synthesis.write import refuse_unwritable
+
+SMALL = """
+[target]
+name = "small"
+[object]
+stiffness = [3, 6]
+[grasp]
+force = 6
+overload = 8
+[room]
+elements = [4, 6]
+pitch = 4
+[elements]
+arms = [5, 7]
+hinges = [0.25, 0.4]
+"""
+
+
+def target(*changes: tuple[str, object]) -> Target:
+    got = parse_target(SMALL, "t")
+    for path, value in changes:
+        got = got.with_(path, value)
+    return got
+
+
+@lru_cache
+def small() -> Synthesis:
+    return attempt(target(), arrays=100, within=0.1)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "says"),
+    [
+        ("room.width", 25.0, "misses room.width by"),
+        ("room.length", 50.0, "misses room.length by"),
+        ("room.height", 10.0, "misses room.height by"),
+        ("elements.hinges", (0.005, 0.01), "estimator does not reach"),
+        ("elements.arms", (1.2, 1.3), "estimator does not reach"),
+        ("stock.sheets", (0.2,), "estimator does not reach"),
+    ],
+)
+def test_the_limit_that_binds_is_the_one_named(path, value, says):
+    r = record(attempt(target((path, value)), arrays=10, within=0.5))
+    assert not r["met"] and says in answer(r)
+    others = ("room.elements", "target.half_width", "e+")
+    assert not any(other in answer(r) for other in others)
+
+
+def test_room_that_is_missed_by_a_little_is_missed_by_that():
+    """The carrier of four elements in two rows against a room 3 % narrower."""
+    got = small().found.candidate.stand
+    narrow = target(("room.width", float(got.widths[2]) / 1.03), ("room.elements", (4, 4)))
+    r = record(attempt(narrow, arrays=10, within=0.5))
+    assert r["beyond"]["room.width"] == pytest.approx(0.03, abs=1e-6)
+
+
+def test_fields_not_tried_are_not_said_to_have_been_tried():
+    r = {"changes": [], "left_out": []}
+    assert no_other_change(r).startswith("no single field changed")
+    r["left_out"] = ["least change of grasp.force", "least change of room.width"]
+    assert no_other_change(r) == "not tried for time: 2 fields that might make it possible if changed alone"
+    missed = replace(small(), met=False, left_out=("least change of grasp.force",))
+    assert b"Not tried for time: 1 fields" in report_page(missed)
+    changed = replace(small(), met=False, changes=(LeastChange("grasp.force", 6.0, 7.0),))
+    assert b"No other single field" in report_page(changed)
+
+
+def test_best_that_writes_nothing_says_so(tmp_path, capsys):
+    (tmp_path / "t.toml").write_text(SMALL + "[stock]\nsheets = [0.2]\n")
+    out = str(tmp_path / "o")
+    assert main(["design", str(tmp_path / "t.toml"), "--out", out, "--in", "0", "--best"]) == 1
+    said = capsys.readouterr().out
+    assert f"{out}: not written: no candidate keeps every limit" in said and "not tried for time" in said
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_the_search(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("x")
+    monkeypatch.setattr("tactcad.synthesis.synthesise.design", lambda *_a, **_k: pytest.fail("searched"))
+    (tmp_path / "t.toml").write_text(SMALL)
+    for place in ("file/out", "x" * 300, "file"):
+        assert main(["design", str(tmp_path / "t.toml"), "--out", str(tmp_path / place)]) == 2
+    refuse_unwritable(tmp_path / "new" / "deeper")
+    assert {p.name for p in tmp_path.iterdir()} == {"file", "t.toml"}
+
+
+def test_a_base_is_named_by_its_field_and_found_from_the_targets_folder(tmp_path, monkeypatch):
+    def based(name: str) -> str:
+        return SMALL.replace('name = "small"', f'name = "small"\nbase = "{name}"')
+
+    (tmp_path / "there").mkdir()
+    base = read("macro-array")
+    own = replace(base, design=replace(base.design, name="own"))
+    (tmp_path / "there" / "own.toml").write_text(design_text(own))
+    (tmp_path / "there" / "t.toml").write_text(based("own.toml"))
+    monkeypatch.chdir(tmp_path)
+    assert read_target("there/t.toml").base.name == "own"
+    (tmp_path / "bad.toml").write_text(design_text(own).replace("thickness = 3.0", "thickness = -3.0"))
+    for name, says in (
+        ("none", "no design of that name"),
+        ("bad.toml", "sheet.thickness"),
+        ("gone.toml", ""),
+    ):
+        with pytest.raises(InputError, match=f"^target.base: .*{says}"):
+            parse_target(based(name), "t", tmp_path)
+
+
+def test_shares_state_their_sampling_error_and_no_cause_has_more_alone_than_with_others():
+    sensor = small().sensor
+    one, *others = (variance_shares(sensor, COUNT // 16, seed) for seed in range(8))
+    assert all(s.first <= s.total for some in (one, *others) for s in some)
+    seen = {s.cause: [s] for s in one}
+    for some in others:
+        for s in some:
+            seen[s.cause].append(s)
+    largest = max(seen.values(), key=lambda values: np.mean([s.total for s in values]))
+    scatter = float(np.std([s.total for s in largest], ddof=1))
+    stated = float(np.mean([s.total_error for s in largest]))
+    assert 0.5 < stated / scatter < 2.0  # eight samples
+
+
+def test_the_base_design_is_compared_only_where_it_takes_the_force():
+    assert small().base_cannot == "" and "as it is: " in answer(record(small()))
+    much = MadeSensor(target(("grasp.force", 60.0)), small().target.base)
+    assert much.cannot_bear
+    heavy = replace(small(), target=target(("grasp.force", 60.0)))
+    assert "cannot take the force: " in answer(record(heavy))
+
+
+def test_an_interval_that_tells_nothing_is_said_to_be_no_sensor():
+    assert not any("no useful sensor" in note for note in record(small())["notes"])
+    wide = replace(small(), wanted=0.6)
+    assert any("no useful sensor" in note for note in record(wide)["notes"])
+    asked = replace(wide, target=target(("target.half_width", 60.0)))
+    assert not any("no useful sensor" in note for note in record(asked)["notes"])
+
+
+def test_rigs_that_do_not_take_the_array_are_told(monkeypatch):
+    told = ["scene calibration left out: rule x: y", "scene grasping left out: rule z: w"]
+    monkeypatch.setattr("tactcad.synthesis.synthesise.left_out", lambda _design: told)
+    notes = record(replace(small()))["notes"]
+    assert "not on the rig of this design; scene calibration left out" in notes[0] and notes[1] == told[1]
+    assert b"scene grasping left out" in report_page(replace(small()))
+
+
+def test_what_was_not_searched_does_not_bind():
+    got = small()
+    assert got.design.origin["array.row_arms"].endswith("limits not searched")
+    assert "nothing near" in replace(got, binding=()).design.origin["array.row_arms"]
+    same = replace(got.found.design, origin=got.target.base.origin)
+    kept = replace(got, target=replace(got.target, base=same))  # a search that ends where it began
+    assert kept.design.origin["element.hinge_thickness"].startswith("synthesised")
+
+
+def test_parts_of_the_report_that_were_left_out_have_no_heading():
+    page = report_page(small()).decode()
+    assert "What limits it" not in page and "by solid elements" not in page and "Stiffness ratio" not in page
+    solid = replace(small(), solid=tuple(small().sensor.drawn.stiffness))
+    assert "by solid elements" in report_page(solid).decode()
+
+
+def test_every_field_is_eased_to_what_a_target_file_may_say():
+    asked = target(("room.height", 30.0), ("target.half_width", 40.0), ("known.runs", 60), ("room.rows", 1))
+    names = []
+    for by in (1.1, relax.FURTHEST):
+        for name, other in relax.eased(asked, by):
+            table, field = name.partition("[")[0].split(".")
+            value = getattr(getattr(other, table), field)
+            spec = TABLES[table].__dataclass_fields__[field].metadata["spec"]
+            spec.read(list(value) if isinstance(value, tuple) else value, name)
+            names.append(name)
+    wanted = {"room.height", "target.share", "elements.kinds", "room.rows"}
+    assert wanted <= set(names) and "elements.of_a_kind" not in names  # one is the least
+    eased = dict(relax.eased(target(("elements.of_a_kind", 3)), 2.0))
+    assert eased["elements.of_a_kind"].elements.of_a_kind == 2
+    assert eased["target.share"].target.share == pytest.approx(0.9)
+    assert eased["elements.kinds"].elements.kinds == 4
