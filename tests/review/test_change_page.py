@@ -190,6 +190,26 @@ def test_a_rebuild_shows_nothing(running, files, tmp_path, capsys):
     one.close()
 
 
+def test_pieces_of_elements_that_take_others_designators_are_told_apart(files, tmp_path):
+    """An element less in front of each row: what stood as E1 went, and E2, which is E1 now, moved."""
+    from tactcad.export.sides import read_side
+    from tactcad.review.change_record import change_record
+    from tactcad.review.consequences import Meaning, kept_designs
+    from tactcad.review.subject import shapes_of
+
+    rows, shorter = "[[5, 9, 5, 9], [9, 5, 9, 5]]", "[[9, 5, 9], [5, 9, 5]]"
+    text = files[0].read_text("utf-8")
+    assert rows in text
+    (tmp_path / "less.toml").write_text(text.replace(rows, shorter), "utf-8")
+    old, new = read_side(str(files[0])), read_side(str(tmp_path / "less.toml"))
+    designs = kept_designs(old, new)
+    shapes = shapes_of(designs[0], lambda _: None), shapes_of(designs[1], lambda _: None)
+    record, _ = change_record((old, new), designs, shapes, [], Meaning(), lambda *_: None)
+    labels = [p["designator"] for p in record["scenes"][0]["placed"]]
+    assert len(set(labels)) == len(labels) and {"E1 removed", "E1 removed 2"} < set(labels)
+    assert sum(label.startswith("E") and "removed" in label and label[1].isdigit() for label in labels) == 8
+
+
 def test_a_side_without_a_design_is_refused_and_nothing_is_written(files, tmp_path, capsys):
     golden = str(HARDWARE.parent / "exports" / "golden" / "soft-tissue.json")
     out, other = tmp_path / "page.html", tmp_path / "light.html"
