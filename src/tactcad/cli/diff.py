@@ -1,4 +1,4 @@
-"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html|--markdown|--freecad FILE] [--fail-on KIND]"""
+"""tactcad diff A B [DESIGN] [--present-code] [--json] [--html|--review|--markdown|--freecad FILE] ..."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .parser import add_json
@@ -20,7 +21,8 @@ EXAMPLES = """\
   tactcad diff before exports/macro-array --html changes.html  two exports, with their pictures side by side
   tactcad diff macro-array my/design.toml --json               two designs, as JSON
   tactcad diff HEAD~3 HEAD macro-array                         two git revisions of a design, each by its code
-  tactcad diff HEAD . macro-array --freecad changes.FCStd      what changed since the commit, in FreeCAD
+  tactcad diff HEAD . macro-array --review changes.html        what changed since the commit, in 3-D
+  tactcad diff HEAD . macro-array --freecad changes.FCStd      the same in FreeCAD
   tactcad diff main . macro-array --present-code               since main's text, by the present code alone
   tactcad diff origin/main HEAD macro-array --markdown changes.md --fail-on checks --fail-on revision
                                                                for a pull request
@@ -48,6 +50,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
     parser.add_argument(
         "--html", metavar="FILE", help="also write one offline page with contours laid over each other"
+    )
+    parser.add_argument(
+        "--review",
+        metavar="FILE",
+        help="also write one offline page that shows it in three dimensions: added, removed and kept "
+        "material in colours, and what each cause names",
     )
     parser.add_argument(
         "--markdown", metavar="FILE", help="also write a summary of at most 60 lines for a pull request"
@@ -80,14 +88,17 @@ def run(args: argparse.Namespace) -> int:
     changes = compare_sides(old, new)
     meant = meaning(old, new)
     met = held(args.fail_on, Compared(old, new, changes, meant))
+    made: dict[str, bytes] = {}  # written when all is made: a side may tell no design
+    if args.freecad or args.review:
+        made |= _material(args, old, new, changes, meant)
     if args.html:
         from tactcad.export.difference_page import page
 
-        write_whole(args.html, page(old, new, changes, html(meant)))
+        made[args.html] = page(old, new, changes, html(meant))
     if args.markdown:
-        write_whole(args.markdown, markdown(old, new, changes, meant).encode())
-    if args.freecad:
-        _write_freecad(args.freecad, old, new, meant)
+        made[args.markdown] = markdown(old, new, changes, meant).encode()
+    for path, data in made.items():
+        write_whole(path, data)
     if args.json:
         print(json.dumps(_record(old, new, changes, meant), indent=1))
     else:
@@ -103,36 +114,55 @@ def _sides(args: argparse.Namespace) -> tuple[Side, Side]:
     from tactcad.export.sides import named, read_side
     from tactcad.review.freecad_file import refuse_no_document
     from tactcad.review.revisions import design_file, revision_sides
+    from tactcad.review.viewer_library import viewer_library
 
     if args.present_code and args.design is None:
         raise InputError("--present-code", "goes with revisions only", legal="A B DESIGN")
     read = [named(args.old), named(args.new)] if args.design is None else [design_file(args.design)]
-    outs = {"--html": args.html, "--markdown": args.markdown, "--freecad": args.freecad}
-    for option, out in outs.items():
-        if out:
-            refuse_overwriting(out, *read, option=option)
+    outs: dict[str, str] = {}  # option by file
+    for option in ("--html", "--review", "--markdown", "--freecad"):
+        out = vars(args)[option[2:]]
+        if not out:
+            continue
+        refuse_overwriting(out, *read, option=option)
+        if (other := outs.setdefault(out, option)) != option:
+            raise InputError(option, f"{other} is written there", value=out, legal="another file")
+        if not (folder := Path(out).parent).is_dir():  # said before any work
+            legal = "a file in a folder that is there"
+            raise InputError(option, "no such folder", value=str(folder), legal=legal)
     if args.freecad:
         refuse_no_document(args.freecad)
-    if args.html and args.html == args.markdown:
-        raise InputError("--markdown", "the page is written there", value=args.markdown, legal="another file")
+    if args.review:
+        viewer_library()
     if args.design is None:
         return read_side(args.old), read_side(args.new)
     return revision_sides(args.old, args.new, args.design, args.present_code)
 
 
-def _write_freecad(out: str, old: Side, new: Side, meant: Meaning) -> None:
-    from tactcad.design.files import write_whole
+def _material(
+    args: argparse.Namespace, old: Side, new: Side, changes: list[Change], meant: Meaning
+) -> dict[str, bytes]:
+    """What shows material that changed, by file: the page, the document of FreeCAD."""
+    from tactcad.review.change_record import change_record
     from tactcad.review.consequences import kept_designs
     from tactcad.review.freecad_changes import freecad_changes
+    from tactcad.review.review_page import review_page
     from tactcad.review.subject import shapes_of
     from tactcad.review.summary import rows
+    from tactcad.review.viewer_library import viewer_library
 
     from .progress import progress
 
     say = progress(sys.stderr)
-    before, after = kept_designs(old, new)
-    shapes = shapes_of(before, say.line), shapes_of(after, say.line)
-    write_whole(out, freecad_changes((before, after), shapes, rows(meant), say.step))
+    designs = kept_designs(old, new)
+    shapes = shapes_of(designs[0], say.line), shapes_of(designs[1], say.line)
+    made: dict[str, bytes] = {}
+    if args.review:
+        record, block = change_record((old, new), designs, shapes, changes, meant, say.step)
+        made[args.review] = review_page(record, block, viewer_library())
+    if args.freecad:
+        made[args.freecad] = freecad_changes(designs, shapes, rows(meant), say.step)
+    return made
 
 
 def _record(old: Side, new: Side, changes: list[Change], meant: Meaning) -> dict:

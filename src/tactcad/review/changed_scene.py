@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
 from tactcad.parts.description import Part, Vector, vector
+from tactcad.scenes import chosen_scenes, make_scene
 from tactcad.scenes.scene import Placement, Rotation, Scene, rotation
 
 from .effect import same_elements
@@ -19,6 +21,14 @@ if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
 PieceKind = Literal["same", "kept", "added", "removed"]
+# sRGB and transparency, %: green came and red went, as in text differences; first what matters most
+LOOKS: dict[PieceKind, tuple[str, int]] = {
+    "added": ("#2ca02c", 0),
+    "removed": ("#d62728", 0),
+    "kept": ("#b0b4ba", 60),
+    "same": ("#c8ccd0", 85),
+}
+WHOLE = "whole part: the kernel could not tell kept from changed material"
 CLOSE = 1e-9  # mm, and of directions: places that agree so far are one
 
 
@@ -37,6 +47,35 @@ class ScenePiece:
     origin: Vector
     rotation: Rotation
     whole: bool = False
+
+
+def changed_scenes(
+    designs: tuple[Design, Design], shapes: tuple[Shapes, Shapes], say: Callable[[int, int, str], None]
+) -> dict[str, list[ScenePiece]]:
+    """Every scene that both designs have, in pieces; loads the kernel.
+
+    Parameters
+    ----------
+    designs, shapes
+        As in `changed_scene`; both designs must keep their rules.
+    say
+        Receives (done, total, text) as the work goes on.
+
+    Raises
+    ------
+    CheckFailure
+        Where the designs have no scene in common.
+    """
+    before, after = (chosen_scenes(design, None) for design in designs)
+    names = [name for name in after if name in before]
+    if not names:
+        raise CheckFailure("the designs have no scene in common: nothing was written")
+    scenes: dict[str, list[ScenePiece]] = {}
+    for n, name in enumerate(names):
+        say(n, len(names), f"{name}: material that changed")
+        a, b = (make_scene(design, name) for design in designs)
+        scenes[name] = changed_scene(designs, (a, b), shapes)
+    return scenes
 
 
 def changed_scene(

@@ -6,23 +6,12 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
-from tactcad.scenes import chosen_scenes, make_scene
 
-from .changed_scene import PieceKind, ScenePiece, changed_scene
+from .changed_scene import LOOKS, WHOLE, PieceKind, ScenePiece, changed_scenes
 from .freecad_file import made_by_freecad, program
 from .freecad_record import Row, part_file
-
-# sRGB and transparency, %: green came and red went, as in text differences
-LOOKS: dict[PieceKind, tuple[str, int]] = {
-    "added": ("#2ca02c", 0),
-    "removed": ("#d62728", 0),
-    "kept": ("#b0b4ba", 60),
-    "same": ("#c8ccd0", 85),
-}
-WHOLE = "whole part: the kernel could not tell kept from changed material"
 
 
 def freecad_changes(
@@ -50,15 +39,7 @@ def freecad_changes(
         Where FreeCAD is not installed or ends without a document, or the designs have no scene in common.
     """
     command = program()
-    before, after = (chosen_scenes(design, None) for design in designs)
-    names = [name for name in after if name in before]
-    if not names:
-        raise CheckFailure("the designs have no scene in common: no document was written")
-    scenes: dict[str, list[ScenePiece]] = {}
-    for n, name in enumerate(names):
-        say(n, len(names), f"{name}: material that changed")
-        a, b = (make_scene(design, name) for design in designs)
-        scenes[name] = changed_scene(designs, (a, b), shapes)
+    scenes = changed_scenes(designs, shapes, say)
     record, texts = changes_record(designs, scenes, changes)
     return made_by_freecad(command, record, texts, lambda done, what: say(done, len(texts) + 1, what))
 

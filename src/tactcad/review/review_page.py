@@ -14,7 +14,7 @@ from typing import Any
 from .viewer_library import ViewerLibrary
 
 # The page's own script, in the order in which it is put together.
-SCRIPTS = ("data", "view", "tree", "panel", "measure", "strain", "controls", "start")
+SCRIPTS = ("data", "view", "tree", "panel", "measure", "strain", "controls", "changes", "start")
 # Nothing is fetched: not even the page's own address. Scripts are the page's one, known by its digest, and
 # the viewer, which that unpacks into a blob; the viewer sets styles itself and draws its symbols from data.
 POLICY = (
@@ -29,7 +29,8 @@ def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary)
     Parameters
     ----------
     record, block
-        As `review_record` gives them; texts in it may hold anything, the page shows them as text.
+        As `review_record` or `change_record` gives them; texts in it may hold anything, the
+        page shows them as text.
     library
         The viewer.
     """

@@ -33,7 +33,7 @@ async function start() {
     mark: (designator, place) => view.mark(place, designator),
     toScene: (point, placed) => view.toScene(point, placed),
   });
-  const panel = new Panel(record, parts, {
+  const panel = new (record.changes ? ChangePanel : Panel)(record, parts, {
     select,
     isolate: (designators) => tree.isolate(designators),
     zoom: (designator) => view.fit([designator], 0.6),
@@ -70,7 +70,7 @@ async function start() {
     byId('open-cover').hidden = scene.cover.length === 0;
     byId('open-cover').setAttribute('aria-pressed', 'false');
     for (const tab of byId('scenes').children) tab.setAttribute('aria-selected', String(tab.dataset.scene === scene.name));
-    byId('status').textContent = `${scene.placed.length} parts`;
+    byId('status').textContent = `${scene.placed.length} ${record.changes ? 'pieces' : 'parts'}`;
   }
 
   head(record, showScene);

@@ -20,16 +20,21 @@ MOST_TEXT = 160  # characters of a cause in a table
 COLUMNS = (*FIGURES.values(), "yield", "mass", "cut length")
 
 
+def cause_lines(c: Consequence) -> list[str]:
+    """What a cause means, in lines."""
+    return [*_how(c), *effect_lines(c.effect, title=c.kind == "title block")]
+
+
 def lines(meaning: Meaning) -> Iterator[str]:
     """For the terminal: each cause, largest consequence first, with what it means below it."""
     if meaning.consequences:
         yield "causes, largest consequence first:"
     for c in meaning.consequences:
         yield f"  {c.what}"
-        yield from (f"      {said}" for said in (*_how(c), *_said(c.effect, title=c.kind == "title block")))
+        yield from (f"      {line}" for line in cause_lines(c))
     if meaning.together and len([c for c in meaning.consequences if c.kind == "value"]) != 1:
         yield "  all together"
-        yield from (f"      {said}" for said in _said(meaning.together))
+        yield from (f"      {line}" for line in effect_lines(meaning.together))
     yield from (f"  not the sum: {line}" for line in meaning.interactions)
 
 
@@ -119,7 +124,7 @@ def _aside(c: Consequence) -> str:
     return asides.get(c.how, "")
 
 
-def _said(effect: SensorEffect, title: bool = False) -> Iterator[str]:
+def effect_lines(effect: SensorEffect, title: bool = False) -> Iterator[str]:
     """An effect in lines: figures on one, then what they do not say."""
     figures = [f"{name} {cell}" for name, cell in zip(COLUMNS, _cells(effect)) if cell]
     if figures:

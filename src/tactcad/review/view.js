@@ -50,14 +50,22 @@ class View {
       up: 'Z', control: 'orbit', ortho: true, axes: false, collapse: 1, clipObjectColors: true,
     });
     this.viewer.setPickHandler(false);  // clicks are this page's
+    for (const p of scene.placed) this.setBehind(this.group(p.designator), this.parts.get(p.part_no).behind ?? 0);
     this.lookFrom('iso');
+  }
+
+  // Of faces in one place the one that is less far behind (steps of the depth buffer) is seen.
+  setBehind(group, steps) {
+    group.traverse(({material}) => {
+      if (material?.polygonOffset) material.polygonOffsetUnits += steps;
+    });
   }
 
   shapes(scene) {
     const [low, high] = this.rest;
     const shared = {version: 3, loc: [[0, 0, 0], [0, 0, 0, 1]], normal_len: 0};
     const parts = scene.placed.map((p, n) => ({
-      ...shared, id: `/s/${n}`, name: `${n}`, type: 'shapes', subtype: 'solid', state: [1, 1], alpha: 1,
+      ...shared, id: `/s/${n}`, name: `${n}`, type: 'shapes', subtype: 'solid', state: [1, 1], alpha: this.parts.get(p.part_no).alpha ?? 1,
       color: this.parts.get(p.part_no).colour, renderback: false, texture: null, accuracy: null, bb: null,
       loc: [p.origin, quaternion(p.rotation)], shape: this.meshes.get(p.part_no),
     }));
