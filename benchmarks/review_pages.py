@@ -1,4 +1,4 @@
-"""Seconds from a design to its review page, with nothing in the cache and with everything, and the page's size.
+"""Seconds from a design to its review page, with nothing in the cache and with everything, and its size.
 
 usage: python benchmarks/review_pages.py [docs/review.md]
 

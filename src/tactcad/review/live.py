@@ -1,4 +1,4 @@
-"""A design file followed while it is written: the last good model, and what stands against the present text."""
+"""A design file followed while it is written: the last good model, and what is wrong with the text since."""
 
 from __future__ import annotations
 

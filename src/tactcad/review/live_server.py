@@ -80,10 +80,10 @@ class _Answer(BaseHTTPRequestHandler):
         if self.headers.get("Host", "") not in self.server.hosts:
             self._send(403, "text/plain", b"not this machine's address\n")
             return
-        token, _, rest = self.path.removeprefix("/").partition("/")
+        token, slash, rest = self.path.removeprefix("/").partition("/")
         known = hmac.compare_digest(token.encode(), self.server.token.encode())
         asked = re.fullmatch(r"events\?version=(\d{1,9})&model=(\d{1,9})", rest, re.ASCII)
-        if known and rest == "":
+        if known and slash and not rest:
             self._send(200, "text/html; charset=utf-8", self.server.page())
         elif known and asked:
             self._send(200, "application/octet-stream", self.server.news(int(asked[1]), int(asked[2])))
