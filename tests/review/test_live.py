@@ -105,7 +105,8 @@ def test_only_who_has_the_token_is_answered_and_no_path_is_a_file(server):
         f"/{token}/events",
         f"/{token}/events?version=-1&model=0",
         f"/{token}/events?version=1&model=1&file=/etc/passwd",
-        "/events?version=0&model=9",
+        "/events?version=9&model=9",
+        "/x/events?version=9&model=9",
         f"http://127.0.0.1:{port}/{token}/",
     ):
         assert answer(server, path)[0] == 404, path

@@ -24,7 +24,7 @@ POLL = 0.1  # s between two looks at the file; chosen: a tenth of the second in 
 
 
 @dataclass(frozen=True)
-class Shown:
+class LiveState:
     """What the page is to show.
 
     version  grows with every change of the rest
@@ -55,7 +55,7 @@ class Live:
         started = time.perf_counter()
         self._text = self._read()
         self.design, self.record, self.block = self._made(self._text)
-        self.shown = Shown(0, 0, str(path), time.perf_counter() - started, "", ())
+        self.shown = LiveState(0, 0, str(path), time.perf_counter() - started, "", ())
 
     def look(self) -> None:
         """Take up the file where it changed."""
@@ -79,12 +79,12 @@ class Live:
         else:
             self._take(text, (design, record, block), started)
 
-    def state(self) -> tuple[Shown, dict[str, Any], bytes]:
+    def state(self) -> tuple[LiveState, dict[str, Any], bytes]:
         """What is to be shown, with the record and the block of the same version."""
         with self.changed:
             return self.shown, self.record, self.block
 
-    def after(self, version: int, seconds: float) -> tuple[Shown, dict[str, Any], bytes]:
+    def after(self, version: int, seconds: float) -> tuple[LiveState, dict[str, Any], bytes]:
         """The same once it is another version than that, or after so many seconds."""
         with self.changed:
             self.changed.wait_for(lambda: self.shown.version != version, seconds)
@@ -108,7 +108,7 @@ class Live:
         self._text = text
         if message != self.shown.message:
             s = self.shown
-            self._tell(Shown(s.version + 1, s.model, s.file, s.seconds, message, s.changes))
+            self._tell(LiveState(s.version + 1, s.model, s.file, s.seconds, message, s.changes))
 
     def _take(self, text: str, made: tuple[Design, dict[str, Any], bytes], started: float) -> None:
         design, record, block = made
@@ -121,9 +121,9 @@ class Live:
             self.design, self.record, self.block = made
             kept = tuple(map(asdict, changes)) or s.changes  # a mended text may be the one before
             model = new if changes else s.model
-            self._tell(Shown(new, model, s.file, time.perf_counter() - started, "", kept))
+            self._tell(LiveState(new, model, s.file, time.perf_counter() - started, "", kept))
 
-    def _tell(self, shown: Shown) -> None:
+    def _tell(self, shown: LiveState) -> None:
         with self.changed:
             self.shown = shown
             self.changed.notify_all()

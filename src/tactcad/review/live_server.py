@@ -16,7 +16,7 @@ from typing import Any
 
 from tactcad.design.messages import InputError
 
-from .live import Live, Shown
+from .live import Live, LiveState
 from .review_page import review_page
 from .viewer_library import ViewerLibrary
 
@@ -68,7 +68,7 @@ class LiveServer(ThreadingHTTPServer):
         return _line(shown, record) + block
 
 
-def _line(shown: Shown, record: dict[str, Any] | None) -> bytes:
+def _line(shown: LiveState, record: dict[str, Any] | None) -> bytes:
     return json.dumps({"live": asdict(shown), "record": record}, allow_nan=False).encode() + b"\n"
 
 
