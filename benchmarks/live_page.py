@@ -1,4 +1,4 @@
-"""Seconds from saving a design to the picture of it in a browser, `tactcad view` of the published 2 x 5 array.
+"""Seconds from saving a design to its picture in a browser: `tactcad view` of the published 2 x 5 array.
 
 usage: python benchmarks/live_page.py [docs/review.md]
 

@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import find
     from tactcad.export.shapes import Shapes
     from tactcad.parts.designs import load
-    from tactcad.review.live import POLL, Live
+    from tactcad.review.live import POLL, Live, load_kernel
     from tactcad.review.live_server import LiveServer
     from tactcad.review.subject import shapes_of
     from tactcad.review.viewer_library import viewer_library
@@ -45,6 +45,7 @@ def run(args: argparse.Namespace) -> int:
     with LiveServer(live, library, args.port) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         print(f"{path}: {server.url}", flush=True)
+        load_kernel()
         while True:
             time.sleep(POLL)
             live.look()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import threading
 import time
 import traceback
@@ -40,6 +41,12 @@ class LiveState:
     seconds: float
     message: str
     changes: tuple[dict[str, Any], ...]
+
+
+def load_kernel() -> None:
+    """Load the kernel now: a first model from the cache did without, and the first save would wait for it."""
+    for module in ("build", "bytes", "facets"):
+        importlib.import_module(f"tactcad.solids.{module}")
 
 
 class Live:
