@@ -30,6 +30,7 @@ COMMANDS = {
     "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
     "release": "run every check, and write one zip that a shop can quote from",
     "review": "one offline page: the sensor in 3-D, with limits, findings, estimates and bill part by part",
+    "view": "the same page live: it follows the design file while it is written",
     "golden": "run every check, show what changed, and write a design's golden geometry",
     "diff": "what changed between two designs, git revisions, exports or golden files, and what it means",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
@@ -43,7 +44,7 @@ COMMANDS = {
 }
 
 # Commands refused at once where the kernel is not installed; others are when they first need it.
-NEED_KERNEL = ("export", "check", "release", "review", "golden")
+NEED_KERNEL = ("export", "check", "release", "review", "view", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from math import sqrt
 from typing import Any
 
-from tactcad.assembly.stack import StackLine
+from tactcad.assembly.stack import SEED, StackLine
 from tactcad.assembly.virtual_build import Builds, Sensor, sensor
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
@@ -65,7 +65,15 @@ class ElementFacts:
 def element_facts(design: Design, scenes: tuple[Scene, ...]) -> tuple[ElementFacts, Sensor, list[StackLine]]:
     """The facts, and the sensor with its stack from which those of the parts are read."""
     made = sensor(design, scenes)
-    builds = made.built(BUILT)
+    return _facts(design, made.built(BUILT)), made, made.stack()
+
+
+def estimate_facts(design: Design) -> ElementFacts:
+    """The facts without virtual builds: of no array."""
+    return _facts(design, Builds(0, SEED, {}, {}, ()))
+
+
+def _facts(design: Design, builds: Builds) -> ElementFacts:
     layout, why_not = Layout(design), ""
     rows: list[ElementEstimate] = []
     gentle: list[ElementEstimate] = []
@@ -86,8 +94,7 @@ def element_facts(design: Design, scenes: tuple[Scene, ...]) -> tuple[ElementFac
             "fillet_per_newton": _per_newton(low.peak_strain, low) if low else None,
             "built": asdict(built[place.number]) if place.number in built else None,
         }
-    facts = ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, _fit(builds))
-    return facts, made, made.stack()
+    return ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, _fit(builds))
 
 
 def _per_newton(strain: float | None, row: ElementEstimate) -> float | None:

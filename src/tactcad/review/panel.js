@@ -108,7 +108,7 @@ class Panel {
       ['Design', d.name], ['Revision', d.revision], ['Date', d.date], ['Author', d.author], ['Organisation', d.organisation],
       ['Scenes', this.record.scenes.map((s) => s.name).join(', ')], ['Parts in this scene', `${this.scene.placed.length}`],
       ['Different parts', `${new Set(this.scene.placed.map((p) => p.part_no)).size}`],
-      ['Findings', `${this.record.findings.filter((f) => f.severity === 'fail').length} failed, `
+      ['Findings', this.record.live ? 'not looked for while live' : `${this.record.findings.filter((f) => f.severity === 'fail').length} failed, `
         + `${this.record.findings.filter((f) => f.severity !== 'fail').length} flagged`],
       ['Arrays that go together', Object.entries(fit.kept).map(([name, share]) => `${percent(share)} (${name})`).join(', ')],
     ]))];
@@ -240,8 +240,8 @@ class Panel {
       section('Pair by pair', pairs.length ? this.pairTable(pairs) : el('p', {}, 'All elements are equally stiff: no pair tells an object.'),
         el('p', {className: 'hint'}, 'An element measures with the stiffest one. Best for: the object, N/mm, that the pair finds best; '
           + 'error x: its relative error there over that of the ratio of deflections. Gauge: strain at the rated force.'))]),
-      section('Fit', list(Object.entries(fit.kept).map(([name, share]) => [`${name} parts`, `${percent(share)} of ${fit.count} arrays go together`])),
-        ...(missed.length ? [table(['parts', 'missed', 'arrays'], missed, ['', '', 'n'])] : [])),
+      ...(fit.count ? [section('Fit', list(Object.entries(fit.kept).map(([name, share]) => [`${name} parts`, `${percent(share)} of ${fit.count} arrays go together`])),
+        ...(missed.length ? [table(['parts', 'missed', 'arrays'], missed, ['', '', 'n'])] : []))] : []),
     ];
   }
 

@@ -15,12 +15,14 @@ from .viewer_library import ViewerLibrary
 
 # The page's own script, in the order in which it is put together.
 SCRIPTS = ("data", "view", "tree", "panel", "measure", "strain", "controls", "changes", "start")
+LIVE = "live"  # after those, where the record says that the page is served and follows a file
 # Nothing is fetched: not even the page's own address. Scripts are the page's one, known by its digest, and
 # the viewer, which that unpacks into a blob; the viewer sets styles itself and draws its symbols from data.
 POLICY = (
     "default-src 'none'; script-src 'sha256-{digest}' blob:; style-src 'unsafe-inline'; img-src data: blob:; "
     "base-uri 'none'; form-action 'none'"
 )
+ASKS = "; connect-src 'self'"  # a live page alone: the server that it came from
 
 
 def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary) -> bytes:
@@ -35,10 +37,12 @@ def review_page(record: Mapping[str, Any], block: bytes, library: ViewerLibrary)
         The viewer.
     """
     folder, identity = files(__package__), record["design"]
-    script = "'use strict';\n" + "".join(folder.joinpath(f"{name}.js").read_text("utf-8") for name in SCRIPTS)
+    live = LIVE in record
+    names = (*SCRIPTS, LIVE) if live else SCRIPTS
+    script = "'use strict';\n" + "".join(folder.joinpath(f"{name}.js").read_text("utf-8") for name in names)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     places = {
-        "POLICY": POLICY.format(digest=digest),
+        "POLICY": POLICY.format(digest=digest) + (ASKS if live else ""),
         "TITLE": escape(f"{identity['title']}, revision {identity['revision']}"),
         "STYLE": folder.joinpath("page.css").read_text("utf-8"),
         "VIEWER_STYLE": library.style.replace("</", "<\\/"),

@@ -59,10 +59,7 @@ def review_record(
     say(total - 1, total, "checks")
     findings = finding_facts(design, scenes, shapes, lambda *_: None)
     strains, block = _strains(design, pack)
-    record = {
-        "schema": SCHEMA,
-        "tactcad": __version__,
-        "design": {name: getattr(design.design, name) for name in IDENTITY},
+    record = record_head(design) | {
         "parts": [
             asdict(part_facts(part, made.variables, lines))
             | {"mesh": pack.table[part.part_no], "box": pack.boxes[part.part_no]}
@@ -76,6 +73,12 @@ def review_record(
     }
     say(total, total, "done")
     return record, block
+
+
+def record_head(design: Design) -> dict[str, Any]:
+    """What every record begins with."""
+    identity = {name: getattr(design.design, name) for name in IDENTITY}
+    return {"schema": SCHEMA, "tactcad": __version__, "design": identity}
 
 
 def _strains(design: Design, pack: MeshPack) -> tuple[dict[str, Any], bytes]:

@@ -3,12 +3,22 @@ const DIRECTIONS = [['iso', 'Corner'], ['front', 'Front'], ['rear', 'Back'], ['l
 
 async function start() {
   const record = JSON.parse(new TextDecoder().decode(await unpacked('data')));
-  const block = await unpacked('block');
-  const parts = new Map(record.parts.map((part) => [part.part_no, part]));
-  const meshes = new Map(record.parts.map((part) => [part.part_no, arrays(block, part.mesh)]));
-  const strains = new Map(Object.entries(record.strains).map(([number, s]) => [number, s.why_not ? s : {...s, ...arrays(block, {
-    points: s.points, moved: s.moved, strain: s.strain, quads: s.quads,
-  })}]));
+  const [parts, meshes, strains] = [new Map(), new Map(), new Map()];
+
+  // Takes up a record and its block in the place of the one before.
+  function take(given, block) {
+    Object.assign(record, given);
+    titles(record);
+    for (const known of [parts, meshes, strains]) known.clear();
+    for (const part of given.parts) {
+      parts.set(part.part_no, part);
+      meshes.set(part.part_no, arrays(block, part.mesh));
+    }
+    for (const [number, s] of Object.entries(given.strains)) {
+      strains.set(number, s.why_not ? s : {...s, ...arrays(block, {points: s.points, moved: s.moved, strain: s.strain, quads: s.quads})});
+    }
+  }
+  take(record, await unpacked('block'));
   const library = await module(await unpacked('viewer'));
   const view = new View(library, byId('canvas'), meshes, parts);
   let scene = record.scenes[0];
@@ -100,13 +110,17 @@ async function start() {
   addEventListener('beforeprint', () => { byId('printed').src = view.picture(); });
   showScene(scene.name);
   document.documentElement.dataset.ready = 'true';
+  return {record, parts, meshes, view, tree, controls, measure, panel, select, take, showScene};
 }
 
-function head(record, showScene) {
+function titles(record) {
   const d = record.design;
   byId('title').textContent = d.title;
   byId('subtitle').textContent = [`${d.name}, revision ${d.revision}`, d.date, d.organisation].filter(Boolean).join(' \u00b7 ');
   byId('made').textContent = `Made by tactcad ${record.tactcad} from ${d.name}, revision ${d.revision}. One file; nothing is fetched.`;
+}
+
+function head(record, showScene) {
   byId('show-about').addEventListener('click', () => byId('about').showModal());
   const names = record.scenes.map((s) => s.name);
   byId('scenes').hidden = names.length < 2;
@@ -118,7 +132,8 @@ function head(record, showScene) {
   }
 }
 
-start().catch((error) => {
+const started = start();
+started.catch((error) => {
   byId('status').textContent = `This page cannot be shown: ${error.message}`;
   document.documentElement.dataset.ready = 'failed';
   throw error;

@@ -1,0 +1,51 @@
+"""tactcad view [DESIGN] [--scene NAME] [--port PORT]"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from .parser import add_design
+
+EXAMPLES = """\
+  tactcad view my/design.toml                      its array; open the printed address in a browser
+  tactcad view my/design.toml --scene grasping     a rig
+  tactcad view my/design.toml --port 8123          always the same port; the token changes
+
+The page of `tactcad review`, that follows the file: every save shows the new sensor, keeping the view, with
+the numbers that changed before and after. Where a rule is broken or the text is wrong, it says so and the
+last good model stays. Only this machine is answered, and only the printed address. Checks and virtual builds
+take seconds and are left out. Ctrl-C ends it."""
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    add_design(parser)
+    parser.add_argument("--scene", default="array", metavar="NAME", help="scene to show (default array)")
+    parser.add_argument("--port", type=int, default=0, help="port on 127.0.0.1 (default: any free one)")
+
+
+def run(args: argparse.Namespace) -> int:
+    import threading
+    import time
+
+    from tactcad.design.load import find
+    from tactcad.export.shapes import Shapes
+    from tactcad.parts.designs import load
+    from tactcad.review.live import POLL, Live, load_kernel
+    from tactcad.review.live_server import LiveServer
+    from tactcad.review.subject import shapes_of
+    from tactcad.review.viewer_library import viewer_library
+
+    from .progress import progress
+
+    say = progress(sys.stderr)
+    path, library = find(args.design), viewer_library()
+    known = shapes_of(load(path), say.line)
+    live = Live(path, args.scene, lambda: Shapes(known.cache, known.made_by))
+    with LiveServer(live, library, args.port) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        print(f"{path}: {server.url}", flush=True)
+        load_kernel()
+        while True:
+            time.sleep(POLL)
+            live.look()
