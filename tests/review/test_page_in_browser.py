@@ -198,7 +198,8 @@ def test_a_finding_shows_its_part_and_its_place(fresh, record):
     fresh.page.click(".finding >> nth=0")
     shown = fresh.page.locator("#tree [data-designator]:has(> .row > input:checked)")
     assert shown.evaluate_all("all => all.map((e) => e.dataset.designator)") == list(found["designators"])
-    assert fresh.page.locator("#marker").is_visible() and differ(fresh.picture(), whole) > MOVED
+    fresh.page.wait_for_selector("#marker", state="visible")  # it is put there with the next picture
+    assert differ(fresh.picture(), whole) > MOVED
     assert found["message"] in fresh.text("#status")
 
 
