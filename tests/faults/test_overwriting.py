@@ -23,6 +23,7 @@ FILES = {
     "release, design": "release IN --out OUT/..",
     "release, shop": "release A.toml --shop IN --out OUT/..",
     "golden, shop": "golden hardware/A.toml --shop IN",
+    "review": "review IN --out OUT",
 }
 FOLDERS = {
     "export": "export IN --out OUT",

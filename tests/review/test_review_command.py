@@ -88,6 +88,8 @@ def test_an_exports_page_is_its_designs(work, made):
     done = tactcad_forked("review", "exported", "--out", "exported.html", cwd=work, env=env)
     assert done.returncode == 0, done.stderr
     assert (work / "exported.html").read_bytes() == made[0]
+    done = tactcad_forked("review", "exported", "--out", "exported/step/page.html", cwd=work, env=env)
+    assert "would overwrite exported, which is read" in refused(done)
     manifest = work / "exported" / "manifest.json"
     record = json.loads(manifest.read_text())
     record["inputs"]["libraries"]["build123d"] = "0.1"

@@ -60,7 +60,7 @@ def _exported(source: str, folder: Path) -> Subject:
     values = {k.removeprefix("design."): v for k, v in before.values.items() if k.startswith("design.")}
     try:
         design = from_table(_table(values))
-        differ = reasons(_only(before, values), inputs_of(design, ROOMS, before_libraries(before)))
+        differ = reasons(_only(before, values), inputs_of(design, ROOMS, _libraries(before)))
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise InputError(source, f"made by another version of tactcad: {error}", legal=again) from None
     if differ:
@@ -71,7 +71,7 @@ def _exported(source: str, folder: Path) -> Subject:
     return Subject(design, folder, tuple(scenes), sheets)
 
 
-def before_libraries(before: Inputs) -> list[str]:
+def _libraries(before: Inputs) -> list[str]:
     """The libraries that an export depended on."""
     return [name for name in before.libraries if name != "python"]
 
