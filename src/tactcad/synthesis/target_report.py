@@ -290,7 +290,7 @@ def _limits_part(r: dict[str, Any]) -> str:
 
 
 def _whole_percent(share: dict[str, Any], key: str) -> str:
-    return f"{100 * share[key]:.0f} \u00b1 {max(100 * share[key + '_error'], 0.5):.0f} %"
+    return f"{100 * share[key]:.0f} \u00b1 {max(100 * share[key + '_error'], 1):.0f} %"
 
 
 def _ratio_part(r: dict[str, Any]) -> str:
