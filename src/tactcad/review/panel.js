@@ -153,9 +153,10 @@ class Panel {
       const fit = this.record.array.fit;
       made.push(section('Fit, as built', list([
         ['Arrays that go together', percent(Math.min(fit.kept.normal, fit.kept.uniform))],
-        ['K as built', `${figures(b.stiffness[0])} \u00b1 ${figures(b.stiffness[1], 2)} N/mm (one standard deviation)`],
+        ['K as built', b.stiffness.includes(null) ? 'not estimated'
+          : `${figures(b.stiffness[0])} \u00b1 ${figures(b.stiffness[1], 2)} N/mm (one standard deviation)`],
         ['Load arm', `${mm(b.load_arm[0])} \u00b1 ${mm(b.load_arm[1])} mm`], ['Stop gap', `${mm(b.stop_gap[0])} \u00b1 ${mm(b.stop_gap[1])} mm`],
-        ['Stop closes at least at', `${figures(b.stop_closes_at_least, 3)} N`],
+        ['Stop closes at least at', b.stop_closes_at_least === null ? 'not estimated' : `${figures(b.stop_closes_at_least, 3)} N`],
       ]), el('p', {className: 'hint'}, `${fit.count} arrays built virtually, normal parts, seed ${fit.seed}.`)));
     }
     if (pairs.length) made.push(section('Pairs', this.pairTable(pairs)));
