@@ -26,7 +26,7 @@ from .scene_facts import scene_facts
 from .subject import shapes_of, subject
 from .viewer_library import viewer_library
 
-HEIGHT = 640  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen
+HEIGHT = 720  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen
 VSCODE = "ocp_vscode"
 INSTALL = "pip install ocp-vscode, of the same version as the extension OCP CAD Viewer"
 OPEN = "in VS Code run the command 'OCP CAD Viewer: Open viewer', elsewhere `python -m ocp_vscode`"
