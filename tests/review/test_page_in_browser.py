@@ -6,7 +6,7 @@ import copy
 
 import numpy as np
 import pytest
-from browser import Opened, browser, chromium
+from browser import Opened, chromium
 
 from tactcad.scenes import make_scene
 
@@ -52,12 +52,6 @@ def written(path, record):
 
     path.write_bytes(review_page(*record, viewer_library()))
     return path
-
-
-@pytest.fixture(scope="module")
-def running():
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")
