@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,7 +44,7 @@ def record(macro, tmp_path_factory):
     whole = checks.run_checks
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(checks, "run_checks", lambda design, names, say: whole(design, names[:1], say=say))
-        shapes = Shapes(Cache(tmp_path_factory.mktemp("page") / "cache"), "tests")
+        shapes = Shapes(Cache(Path(os.environ["TACTCAD_CACHE"])), "tests")
         return review_record(macro, SCENES, shapes, lambda *_: None, {})
 
 
