@@ -13,8 +13,8 @@ from variants import variant
 
 @pytest.fixture(scope="session", autouse=True)
 def own_cache(tmp_path_factory):
-    """No test reads what another run, or the user's own exports, left in the cache. Tests that run side by side
-    share one."""
+    """No test reads what another run, or the user's own exports, left in the cache; tests that run side by
+    side share one."""
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent
