@@ -5,14 +5,22 @@ Its being here also puts tests/ on the import path, for variants.py and sound_de
 
 from __future__ import annotations
 
+import os
+
 import pytest
 from variants import variant
 
 
-@pytest.fixture(autouse=True)
-def own_cache(tmp_path_factory, monkeypatch):
-    """No test reads what another run, or the user's own exports, left in the cache."""
-    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+@pytest.fixture(scope="session", autouse=True)
+def own_cache(tmp_path_factory):
+    """No test reads what another run, or the user's own exports, left in the cache; tests that run side by
+    side share one."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TACTCAD_CACHE", str(folder / "cache"))
+        yield
 
 
 def pytest_terminal_summary(terminalreporter):

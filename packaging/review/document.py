@@ -5,36 +5,21 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import tempfile
 from collections import Counter
 from math import isclose
 from pathlib import Path
 
-from tactcad.review.freecad_file import environment, profile, program
+import window
+
+from tactcad.review.freecad_file import profile, program
 
 INSIDE = Path(__file__).with_name("colours_in_freecad.py")
 AGREES = 1e-6  # share of a volume
-SECONDS = 300
 
 
 def colours(path: Path) -> dict | None:
     """Colour of every part as the window program shows it; None where it ended without telling."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        (folder / "user.cfg").write_text(profile())
-        files = {"REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json")}
-        try:
-            subprocess.run(
-                [program(), "-u", str(folder / "user.cfg"), str(INSIDE)],
-                env=environment(folder) | files,
-                capture_output=True,
-                check=False,
-                timeout=SECONDS,
-            )
-            return json.loads((folder / "out.json").read_text())
-        except (OSError, ValueError, subprocess.TimeoutExpired):
-            return None
+    return window.asked(program(), INSIDE, path, profile())
 
 
 def document_faults(

@@ -48,13 +48,19 @@ def command() -> str | None:
 
 def shown(program: str, path: Path) -> dict | None:
     """What the tree shows of an assembly; None where FreeCAD ended without telling."""
+    return asked(program, INSIDE, path, settings())
+
+
+def asked(program: str, script: Path, path: Path, user: str) -> dict | None:
+    """What a script in FreeCAD's window program says of a file, under a user's settings; None where it ended
+    without telling."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "user.cfg").write_text(settings())
+        (folder / "user.cfg").write_text(user)
         files = {"REVIEW_FILE": str(path.resolve()), "REVIEW_OUT": str(folder / "out.json")}
         try:
             subprocess.run(
-                [program, "-u", str(folder / "user.cfg"), str(INSIDE)],
+                [program, "-u", str(folder / "user.cfg"), str(script)],
                 env=environment(folder) | files,
                 capture_output=True,
                 check=False,

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from browser import Opened, browser, chromium
+from browser import Opened, chromium
 from variants import HARDWARE
 
 from tactcad.cli.main import main
@@ -68,12 +68,6 @@ def page(files, tmp_path_factory):
     path = tmp_path_factory.mktemp("change") / "changes.html"
     path.write_bytes(review_page(*made[0], viewer_library()))
     return path
-
-
-@pytest.fixture(scope="module")
-def running():
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

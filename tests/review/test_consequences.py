@@ -366,12 +366,6 @@ def test_a_rig_less_is_one_cause():
     assert [str(c) for c in causes(old, new)] == ["[grasping] removed"]
 
 
-@pytest.mark.parametrize("name", ["better-array", MACRO])
-def test_an_export_s_values_give_the_design_again(name):
-    design = load(str(HARDWARE / f"{name}.toml"))
-    assert from_table(nested(flattened(design))) == design
-
-
 def test_arm_lengths_with_a_point_keep_their_gaps():
     design = from_table(
         tomllib.loads(edited(SOFT, ("[gauge]", '[stop]\ngaps = {5=0.1, "9.5"=0.2}\n[gauge]')))

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from browser import DRAWN, LOADED, browser
+from browser import DRAWN, LOADED
 from faults.command_line import environment, one_by_one
 
 from tactcad.cli.main import main
@@ -223,12 +223,6 @@ def test_the_command_prints_its_address_and_ends_on_ctrl_c(tmp_path):
         assert said.startswith("d.toml: http://127.0.0.1:")
         run.send_signal(signal.SIGINT)
         assert run.wait(30) == 130 and run.stderr.read().count(b"\n") == 1
-
-
-@pytest.fixture(scope="module")
-def running():
-    with browser() as one:
-        yield one
 
 
 def test_the_page_follows_the_file(running, live, server):

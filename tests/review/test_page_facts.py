@@ -12,7 +12,7 @@ import pytest
 from variants import HARDWARE
 
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.inputs import flattened
+from tactcad.export.inputs import flattened, nested
 from tactcad.fem.face_strain import face_strain
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import cut_element
@@ -26,7 +26,6 @@ from tactcad.review.element_facts import element_facts
 from tactcad.review.part_facts import part_facts
 from tactcad.review.scene_facts import scene_facts
 from tactcad.review.strain_field import strain_along, strain_field
-from tactcad.review.subject import _table
 from tactcad.scenes import make_scene
 
 WRITTEN = tomllib.loads((HARDWARE / "macro-array.toml").read_text("utf-8"))
@@ -176,11 +175,11 @@ def test_a_design_is_read_back_from_an_exports_values(macro):
     from tactcad.design.load import from_table
     from tactcad.parts.designs import load
 
-    for name in ("macro-array", "soft-tissue", "smallest-bearing", "double-sample"):
+    for name in ("macro-array", "soft-tissue", "smallest-bearing", "double-sample", "better-array"):
         design = load(name)
-        assert from_table(_table(flattened(design))) == design
+        assert from_table(nested(flattened(design))) == design
     with_gaps = replace(macro, stop=replace(macro.stop, gaps={4.0: 0.08, 7.5: 0.1}))
-    assert _table(flattened(with_gaps))["stop"]["gaps"] == {"4.0": 0.08, "7.5": 0.1}
+    assert nested(flattened(with_gaps))["stop"]["gaps"] == {"4.0": 0.08, "7.5": 0.1}
 
 
 def test_a_missing_viewer_is_said_with_the_remedy(monkeypatch, tmp_path):

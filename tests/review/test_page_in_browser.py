@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import copy
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Opened, browser, chromium
+from browser import Opened, chromium
 
 from tactcad.scenes import make_scene
 
@@ -42,7 +44,7 @@ def record(macro, tmp_path_factory):
     whole = checks.run_checks
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(checks, "run_checks", lambda design, names, say: whole(design, names[:1], say=say))
-        shapes = Shapes(Cache(tmp_path_factory.mktemp("page") / "cache"), "tests")
+        shapes = Shapes(Cache(Path(os.environ["TACTCAD_CACHE"])), "tests")
         return review_record(macro, SCENES, shapes, lambda *_: None, {})
 
 
@@ -52,12 +54,6 @@ def written(path, record):
 
     path.write_bytes(review_page(*record, viewer_library()))
     return path
-
-
-@pytest.fixture(scope="module")
-def running():
-    with browser() as one:
-        yield one
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from small_target import SMALL
 
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
@@ -22,22 +23,6 @@ from tactcad.synthesis.search import refusals, search
 from tactcad.synthesis.synthesise import Synthesis, attempt
 from tactcad.synthesis.target import Target, parse_target
 from tactcad.synthesis.target_report import record
-
-SMALL = """
-[target]
-name = "small"
-[object]
-stiffness = [3, 6]
-[grasp]
-force = 6
-overload = 8
-[room]
-elements = [4, 6]
-pitch = 4
-[elements]
-arms = [5, 7]
-hinges = [0.25, 0.4]
-"""
 
 
 def small(*changes: tuple[str, str]) -> Target:

@@ -9,6 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from small_target import SMALL
 
 from tactcad.cli.main import main
 from tactcad.design.load import parse, read
@@ -22,22 +23,6 @@ from tactcad.synthesis.realise import order
 from tactcad.synthesis.shares import variance_shares
 from tactcad.synthesis.synthesise import Synthesis, attempt, design
 from tactcad.synthesis.target import parse_target
-
-SMALL = """
-[target]
-name = "small"
-[object]
-stiffness = [3, 6]
-[grasp]
-force = 6
-overload = 8
-[room]
-elements = [4, 6]
-pitch = 4
-[elements]
-arms = [5, 7]
-hinges = [0.25, 0.4]
-"""
 
 
 @lru_cache

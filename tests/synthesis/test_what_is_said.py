@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from small_target import SMALL
 
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
@@ -22,22 +23,6 @@ from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
 from tactcad.synthesis.target_answer import answer, no_other_change
 from tactcad.synthesis.target_report import record, report_page
 from tactcad.synthesis.write import refuse_unwritable
-
-SMALL = """
-[target]
-name = "small"
-[object]
-stiffness = [3, 6]
-[grasp]
-force = 6
-overload = 8
-[room]
-elements = [4, 6]
-pitch = 4
-[elements]
-arms = [5, 7]
-hinges = [0.25, 0.4]
-"""
 
 
 def target(*changes: tuple[str, object]) -> Target:

@@ -12,16 +12,13 @@ from tactcad.design.load import find, from_table
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design
 from tactcad.export.cache import Cache, default_root
-from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, reasons
+from tactcad.export.inputs import Inputs, digest, inputs_from_json, inputs_of, nested, reasons
 from tactcad.export.manifest import NAME, check_manifest, read_manifest
 from tactcad.export.pipeline import DRAWN_WITH, LIBRARIES, ROOMS
 from tactcad.export.products import drawing_products, part_products
 from tactcad.export.shapes import Shapes
 from tactcad.parts.description import Part
 from tactcad.parts.designs import load
-
-# Tables whose keys are no field names: their dots belong to the key.
-FREE_KEYS = ("origin.", "stop.gaps.")
 
 
 @dataclass(frozen=True)
@@ -59,7 +56,7 @@ def _exported(source: str, folder: Path) -> Subject:
         raise InputError(source, "its manifest does not say what it was made from", legal=again)
     values = {k.removeprefix("design."): v for k, v in before.values.items() if k.startswith("design.")}
     try:
-        design = from_table(_table(values))
+        design = from_table(nested(values))
         differ = reasons(_only(before, values), inputs_of(design, ROOMS, _libraries(before)))
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise InputError(source, f"made by another version of tactcad: {error}", legal=again) from None
@@ -78,34 +75,6 @@ def _libraries(before: Inputs) -> list[str]:
 
 def _only(before: Inputs, values: dict[str, Any]) -> Inputs:
     return Inputs(values, before.sources, before.libraries)
-
-
-def _table(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The nested table of values by path, as TOML would give it; what is None was left out."""
-    table: dict[str, Any] = {}
-    for path, value in values.items():
-        if value is None:
-            continue
-        free = next((prefix for prefix in FREE_KEYS if path.startswith(prefix)), "")
-        words = [*filter(None, free.split(".")), path.removeprefix(free)] if free else path.split(".")
-        _set(table, words, value)
-    return table
-
-
-def _set(table: dict[str, Any], words: list[str], value: Any) -> None:
-    for word in words[:-1]:
-        table = table.setdefault(word, {})
-    name, *indices = words[-1].split("[")
-    if not indices:
-        table[name] = value
-        return
-    # "row_arms[0][1]": elements come in their order
-    rows = table.setdefault(name, [])
-    for _ in indices[:-1]:
-        index = int(indices[0].rstrip("]"))
-        rows += [[] for _ in range(index + 1 - len(rows))]
-        rows = rows[index]
-    rows.append(value)
 
 
 def shapes_of(design: Design, say: Callable[[str], None]) -> Shapes:

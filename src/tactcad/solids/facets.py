@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
 from OCP.BRepLib import BRepLib_ToolTriangulatedShape
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.BRepTools import BRepTools
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_REVERSED, TopAbs_VERTEX
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_REVERSED, TopAbs_VERTEX
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 
 from .explore import subshapes
-from .occt import as_edge, as_face, as_vertex
+from .occt import as_edge, as_vertex
+from .triangles import face_triangles, tessellated
 
 Floats = NDArray[np.float32]
 Indices = NDArray[np.uint32]
@@ -64,9 +63,7 @@ def facets(shape: TopoDS_Shape, linear: float, angular: float) -> Facets:
     ValueError
         Where the kernel cannot mesh a face.
     """
-    BRepTools.Clean_s(shape)
-    BRepMesh_IncrementalMesh(shape, linear, False, angular, False)
-    faces = [as_face(f) for f in subshapes(shape, TopAbs_FACE)]
+    faces = tessellated(shape, linear, angular)
     meshed = [_face(face) for face in faces]
     starts = np.cumsum([0, *(len(points) for points, _, _ in meshed)])
     drawn = [(as_edge(e), lines) for e in subshapes(shape, TopAbs_EDGE) if len(lines := _edge(e, faces))]
@@ -91,18 +88,14 @@ def _floats(arrays: list[np.ndarray]) -> Floats:
 
 def _face(face: TopoDS_Face) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Points, normals and triangles of one face."""
+    points, corners = face_triangles(face)
     where = TopLoc_Location()
     mesh = BRep_Tool.Triangulation_s(face, where)
-    if mesh is None:
-        raise ValueError("the kernel could not mesh a face")
     BRepLib_ToolTriangulatedShape.ComputeNormals_s(face, mesh)
     t = where.Transformation()
-    count = range(1, mesh.NbNodes() + 1)
-    turned = face.Orientation() == TopAbs_REVERSED
-    points = np.array([mesh.Node(i).Transformed(t).Coord() for i in count])
-    normals = np.array([mesh.Normal(i).Transformed(t).Coord() for i in count]) * (-1.0 if turned else 1.0)
-    corners = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1
-    return points, normals, corners[:, ::-1] if turned else corners
+    outwards = -1.0 if face.Orientation() == TopAbs_REVERSED else 1.0
+    normals = outwards * np.array([mesh.Normal(i).Transformed(t).Coord() for i in range(1, len(points) + 1)])
+    return points, normals, corners
 
 
 def _edge(shape: TopoDS_Shape, faces: list[TopoDS_Face]) -> np.ndarray:

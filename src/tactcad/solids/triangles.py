@@ -8,7 +8,7 @@ from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shape
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from .explore import subshapes
 from .occt import as_face
@@ -38,23 +38,32 @@ def triangles(shape: TopoDS_Shape, linear: float, angular: float) -> tuple[np.nd
     ValueError
         Where the kernel cannot mesh a face.
     """
+    meshed = [face_triangles(face) for face in tessellated(shape, linear, angular)]
+    starts = np.cumsum([0, *(len(points) for points, _ in meshed)])
+    faces = [corners + start for (_, corners), start in zip(meshed, starts)]
+    return _merged(np.concatenate([points for points, _ in meshed]), np.concatenate(faces))
+
+
+def tessellated(shape: TopoDS_Shape, linear: float, angular: float) -> list[TopoDS_Face]:
+    """The faces of a shape, meshed anew within these errors, as of `triangles`."""
     BRepTools.Clean_s(shape)
     BRepMesh_IncrementalMesh(shape, linear, False, angular, False)
-    points, faces, offset = [], [], 0
-    for face in subshapes(shape, TopAbs_FACE):
-        where = TopLoc_Location()
-        mesh = BRep_Tool.Triangulation_s(as_face(face), where)
-        if mesh is None:
-            raise ValueError("the kernel could not mesh a face")
-        t = where.Transformation()
-        points += [mesh.Node(i).Transformed(t).Coord() for i in range(1, mesh.NbNodes() + 1)]
-        turned = face.Orientation() == TopAbs_REVERSED
-        for i in range(1, mesh.NbTriangles() + 1):
-            a, b, c = mesh.Triangle(i).Get()
-            faces.append((a, c, b) if turned else (a, b, c))
-            faces[-1] = tuple(v - 1 + offset for v in faces[-1])
-        offset += mesh.NbNodes()
-    return _merged(np.array(points), np.array(faces, dtype=np.int64))
+    return [as_face(face) for face in subshapes(shape, TopAbs_FACE)]
+
+
+def face_triangles(face: TopoDS_Face) -> tuple[np.ndarray, np.ndarray]:
+    """Points (n, 3) in mm of a meshed face, and corners (m, 3) of its triangles, facing outwards.
+
+    Raises ValueError where the kernel could not mesh it.
+    """
+    where = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(face, where)
+    if mesh is None:
+        raise ValueError("the kernel could not mesh a face")
+    t = where.Transformation()
+    points = np.array([mesh.Node(i).Transformed(t).Coord() for i in range(1, mesh.NbNodes() + 1)])
+    corners = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)], np.int64) - 1
+    return points, corners[:, [0, 2, 1]] if face.Orientation() == TopAbs_REVERSED else corners
 
 
 def _merged(points: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
