@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from dataclasses import replace
 from math import sqrt
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from variants import HARDWARE
+from variants import HARDWARE, variant
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import flattened, nested
@@ -200,3 +201,12 @@ def test_what_is_no_export_is_refused(tmp_path: Path):
         subject(str(tmp_path))
     with pytest.raises(InputError, match="no design of that name"):
         subject("no-such-design")
+
+
+def test_figures_that_nobody_knows_are_none_and_can_be_written():
+    """Built arrays have no stiffness where the hinge is thinner than the closed form's range."""
+    design = variant({"element.hinge_thickness": 0.05})
+    found, _, _ = element_facts(design, (make_scene(design, "array"),))
+    assert found.elements["E1"]["built"]["stiffness"] == (None, None)
+    assert found.elements["E1"]["built"]["load_arm"][0] == pytest.approx(3.0, abs=0.01)
+    json.dumps(found.elements, allow_nan=False)

@@ -26,7 +26,9 @@ from .scene_facts import scene_facts
 from .subject import shapes_of, subject
 from .viewer_library import viewer_library
 
-HEIGHT = 720  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen
+HEIGHT = (
+    720  # px of a page in a notebook; chosen: the whole page is seen beside its cell on a laptop's screen
+)
 VSCODE = "ocp_vscode"
 INSTALL = "pip install ocp-vscode, of the same version as the extension OCP CAD Viewer"
 OPEN = "in VS Code run the command 'OCP CAD Viewer: Open viewer', elsewhere `python -m ocp_vscode`"
@@ -118,13 +120,7 @@ def show_in_vscode(design: str | Path | Design, scene: str = "array") -> None:
     CheckFailure
         Where the package ocp-vscode is not installed, or no viewer listens.
     """
-    if find_spec(VSCODE) is None:
-        raise CheckFailure(f"ocp-vscode is not installed: {INSTALL}")
-    viewer = importlib.import_module(VSCODE)
-    if not _listens(viewer):
-        viewer.find_and_set_port()  # one may have been opened since
-        if not _listens(viewer):
-            raise CheckFailure(f"no OCP CAD Viewer listens: {OPEN}")
+    viewer = _listening()
     read, _ = _read(design)
     (name,) = chosen_scenes(read, [scene])
     made, shapes = make_scene(read, name), shapes_of(read, warnings.warn)
@@ -134,9 +130,21 @@ def show_in_vscode(design: str | Path | Design, scene: str = "array") -> None:
     viewer.show(tree.assembly_tree(made, solids, under), progress="")
 
 
-def _listens(viewer: ModuleType) -> bool:
-    port = viewer.get_port()  # looks for one at its first call
-    return port is not None and viewer.port_check(port, viewer.get_host())
+def _listening() -> ModuleType:
+    """The package ocp-vscode, with a viewer that listens. Raises CheckFailure where there is none."""
+    if find_spec(VSCODE) is None:
+        raise CheckFailure(f"ocp-vscode is not installed: {INSTALL}")
+    package = importlib.import_module(VSCODE)
+
+    def listens() -> bool:
+        port = package.get_port()  # looks for one at its first call
+        return port is not None and package.port_check(port, package.get_host())
+
+    if not listens():
+        package.find_and_set_port()  # one may have been opened since
+        if not listens():
+            raise CheckFailure(f"no OCP CAD Viewer listens: {OPEN}")
+    return package
 
 
 def _read(design: str | Path | Design) -> tuple[Design, Mapping[str, str]]:
