@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import io
 import json
 import re
 import socket
@@ -18,6 +19,7 @@ import pytest
 from browser import DRAWN, LOADED
 from faults.command_line import environment, one_by_one, tactcad_run
 from nbclient import NotebookClient
+from PIL import Image
 from test_review_command import carried
 from variants import variant
 from websockets.sync.server import serve
@@ -48,21 +50,6 @@ class Frame(HTMLParser):
 # --- the notebook ---
 
 
-@pytest.fixture(scope="module")
-def outputs(tmp_path_factory):
-    """Of every cell of the notebook, run where nothing lies, by its id; and where it ran."""
-    notebook, folder = nbformat.read(NOTEBOOK, 4), tmp_path_factory.mktemp("notebook")
-    NotebookClient(
-        notebook, timeout=600, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-    ).execute()
-    return {cell.id: cell.outputs for cell in notebook.cells if cell.cell_type == "code"}, folder
-
-
-def framed(outputs, cell: str) -> Frame:
-    (output,) = outputs[0][cell]
-    return Frame(output.data["text/html"])
-
-
 def test_the_notebook_is_committed_as_it_was_written():
     notebook = nbformat.read(NOTEBOOK, 4)
     nbformat.validate(notebook)
@@ -70,66 +57,40 @@ def test_the_notebook_is_committed_as_it_was_written():
     assert code and all(not cell.outputs and cell.execution_count is None for cell in code)
 
 
-def test_the_notebook_shows_both_designs(outputs):
+@pytest.mark.cad
+def test_the_notebook_runs_and_shows_what_it_tells(tmp_path):
+    """Whole, where nothing lies: both designs, what 5 um do to K, what changed, and a refusal."""
+    notebook = nbformat.read(NOTEBOOK, 4)
+    place = {"metadata": {"path": str(tmp_path)}}
+    NotebookClient(notebook, timeout=600, kernel_name="python3", resources=place).execute()
+    said = {cell.id: cell.outputs[0] for cell in notebook.cells if cell.get("outputs")}
+
     for cell, thickness in (("published", 0.25), ("thicker", 0.255)):
-        record = json.loads(carried(framed(outputs, cell).page, "data"))
-        limits = [
-            limit["nominal"]
-            for part in record["parts"]
-            for limit in part["limits"]
-            if limit["name"] == "hinge thickness"
-        ]
-        assert len(limits) == 5 and set(limits) == {thickness}
-        assert len(record["scenes"][0]["placed"]) == 40
+        record = json.loads(carried(framed(said[cell]).page, "data"))
+        assert hinges(record) == {thickness} and len(record["scenes"][0]["placed"]) == 40
 
-
-def test_the_notebook_says_what_5_um_do(outputs):
-    """5 um of 0.25 mm are 5 % of K, between the round hinge's power of 2.5 and the beam's of 3."""
-    (printed,) = outputs[0]["numbers"]
-    changes = re.findall(r"^E\d+ .* ([+-][\d.]+)%$", printed.text, re.MULTILINE)
+    # between the round hinge's power of 2.5 and the beam's of 3, as printed
+    changes = re.findall(r"^E\d+ .* ([+-][\d.]+)%$", said["numbers"].text, re.MULTILINE)
     assert len(changes) == 10
     assert all(100 * (1.02**2.5 - 1) - 0.1 < float(c) < 100 * (1.02**3 - 1) for c in changes)
-    (refused,) = outputs[0]["refused"]
-    assert "legal:" in refused.text and refused.text.count("\n") == 1
 
-
-def test_the_notebook_shows_what_changed_and_writes_it(outputs):
-    page = framed(outputs, "changes").page
-    changes = json.loads(carried(page, "data"))["changes"]
-    (cause,) = changes["causes"]
+    page = framed(said["changes"]).page
+    (cause,) = json.loads(carried(page, "data"))["changes"]["causes"]
     assert cause["what"] == "element.hinge_thickness: 0.25 -> 0.255"
     assert {f"E{n} added" for n in range(1, 11)} <= set(cause["pieces"]["array"])
-    assert (outputs[1] / "changes.html").read_bytes() == page
+    assert (tmp_path / "changes.html").read_bytes() == page
+
+    assert "legal:" in said["refused"].text and said["refused"].text.count("\n") == 1
 
 
-def test_the_page_draws_in_its_frame_and_reaches_nothing_outside(outputs, running, tmp_path):
-    """A notebook's page around it, from a file, with the network off."""
-    (output,) = outputs[0]["thicker"]
-    around = tmp_path / "notebook.html"
-    around.write_text(f"<!doctype html><title>notebook</title>{output.data['text/html']}", "utf-8")
-    context = running.new_context(offline=True, viewport={"width": 1200, "height": 800})
-    page, troubles, asked = context.new_page(), [], []
-    page.on("pageerror", lambda error: troubles.append(str(error)))
-    page.on("console", lambda m: troubles.append(m.text) if m.type in ("error", "warning") else None)
-    page.on("request", lambda request: asked.append(request.url))
-    page.goto(around.as_uri())
-    inside = page.frame_locator("iframe")
-    inside.locator("html[data-ready=true]").wait_for(state="attached", timeout=LOADED)
-    inside.locator("[data-designator=E4] b").first.click()
-    assert "macro-array-element-a8mm" in inside.locator("#part-number").inner_text()
-    inside.locator("#show-about").click()
-    inside.locator("#about button").click()
-    assert not inside.locator("#about").is_visible()
-    page.evaluate(DRAWN)
-    seen = inside.locator("#canvas canvas").first.screenshot()
-    assert len(seen) > 5000  # a blank PNG of that size has some hundred bytes
-    frame = page.frames[1]
-    assert frame.evaluate("() => { try { return parent.document.title; } catch { return 'refused'; } }") == (
-        "refused"
-    )
-    assert troubles == []
-    assert all(url.startswith(("file:", "blob:", "data:")) for url in asked)
-    context.close()
+def framed(output) -> Frame:
+    return Frame(output.data["text/html"])
+
+
+def hinges(record) -> set[float]:
+    """Nominal hinge thicknesses of its parts, mm."""
+    limits = [limit for part in record["parts"] for limit in part["limits"]]
+    return {limit["nominal"] for limit in limits if limit["name"] == "hinge thickness"}
 
 
 # --- the functions ---
@@ -196,6 +157,37 @@ def _with_a_viewer(act, design) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(showing, "_listening", lambda: None)
         act(design)
+
+
+@pytest.mark.cad
+def test_the_page_draws_in_its_frame_and_reaches_nothing_outside(one, running, tmp_path):
+    """A notebook's page around it, from a file, with the network off."""
+    shown = showing.show(one)._repr_html_()
+    around = tmp_path / "notebook.html"
+    around.write_text(f"<!doctype html><title>notebook</title>{shown}", "utf-8")
+    context = running.new_context(offline=True, viewport={"width": 1200, "height": 800})
+    page, troubles, asked = context.new_page(), [], []
+    page.on("pageerror", lambda error: troubles.append(str(error)))
+    page.on("console", lambda m: troubles.append(m.text) if m.type in ("error", "warning") else None)
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(around.as_uri())
+    inside = page.frame_locator("iframe")
+    inside.locator("html[data-ready=true]").wait_for(state="attached", timeout=LOADED)
+    inside.locator("[data-designator=E1] b").first.click()
+    assert "macro-array-element-a6mm" in inside.locator("#part-number").inner_text()
+    inside.locator("#show-about").click()
+    inside.locator("#about button").click()
+    assert not inside.locator("#about").is_visible()
+    page.evaluate(DRAWN)
+    shot = Image.open(io.BytesIO(inside.locator("#canvas canvas").first.screenshot())).convert("RGB")
+    assert len(np.unique(np.asarray(shot).reshape(-1, 3), axis=0)) > 50  # shades; of a blank one it is 1
+    frame = page.frames[1]
+    assert frame.evaluate("() => { try { return parent.document.title; } catch { return 'refused'; } }") == (
+        "refused"
+    )
+    assert troubles == []
+    assert all(url.startswith(("file:", "blob:", "data:")) for url in asked)
+    context.close()
 
 
 # --- OCP CAD Viewer ---
