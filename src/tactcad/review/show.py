@@ -31,7 +31,7 @@ HEIGHT = (
 )
 VSCODE = "ocp_vscode"
 INSTALL = "pip install ocp-vscode, of the same version as the extension OCP CAD Viewer"
-OPEN = "in VS Code run the command 'OCP CAD Viewer: Open viewer', elsewhere `python -m ocp_vscode`"
+OPEN = "in VS Code run the command 'OCP CAD Viewer: Open viewer', elsewhere `python -m ocp_viewer`"
 
 
 @dataclass(frozen=True)
