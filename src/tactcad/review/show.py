@@ -89,8 +89,10 @@ def show_changes(before: str | Path | Design, after: str | Path | Design) -> Sho
 
     Raises
     ------
-    InputError, CheckFailure
-        As `show`; CheckFailure also where the designs have no scene in common.
+    InputError
+        As `show`.
+    CheckFailure
+        As `show`, and where the designs have no scene in common.
     """
     library = viewer_library()
     designs = _read(before)[0], _read(after)[0]
