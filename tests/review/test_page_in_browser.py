@@ -160,6 +160,16 @@ def test_a_rig_has_its_parts_and_moves(fresh, macro):
     moves_and_comes_back(fresh, "#motion-0", 0)
 
 
+def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
+    """The viewer alone moves its light after each picture: the next one differed."""
+    fresh.page.click("#views button >> nth=1")
+    fresh.picture()
+    fresh.page.click("#views button >> nth=2")
+    first = fresh.picture()
+    fresh.page.click("#views button >> nth=2")
+    assert np.abs(fresh.picture() - first).max() <= 1
+
+
 def test_the_tree_works_by_keyboard_alone(fresh):
     fresh.page.focus("#tree [tabindex='0']")
     for key in ("ArrowDown", "ArrowDown", "Enter"):

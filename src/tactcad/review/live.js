@@ -32,6 +32,7 @@ function renewed({view, controls, panel, measure, meshes}, scene, before) {
       if (changed.has(p.part_no)) view.viewer.updatePart(`/s/${n}`, shapes[n], {skipBounds: true});
     });
     if (changed.size) view.viewer.updateBounds();
+    view.thinLines();
   });
   view.byPath = new Map(scene.placed.map((p, n) => [`/s/${n}`, p]));
   for (const one of [view, controls, panel]) one.scene = scene;

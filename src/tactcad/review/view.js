@@ -50,8 +50,25 @@ class View {
       up: 'Z', control: 'orbit', ortho: true, axes: false, collapse: 1, clipObjectColors: true,
     });
     this.viewer.setPickHandler(false);  // clicks are this page's
+    this.lightFromEye();
+    this.thinLines();
     for (const p of scene.placed) this.setBehind(this.group(p.designator), this.parts.get(p.part_no).behind ?? 0);
     this.lookFrom('iso');
+  }
+
+  // The viewer moves its light to the eye after each picture; it is to be there before.
+  lightFromEye() {
+    const {scene, directLight} = this.viewer.rendered;
+    scene.onBeforeRender = (renderer, drawn, camera) => {
+      directLight.position.copy(camera.position);
+      directLight.updateMatrixWorld();
+    };
+  }
+
+  // Of each piece of an edge the line alone is drawn, two triangles of six: thin lines' ends show nothing, and
+  // of a long array edges are most of what is drawn.
+  thinLines() {
+    this.viewer.rendered.nestedGroup.rootGroup.traverse((one) => one.isLineSegments2 && one.geometry.setDrawRange(6, 6));
   }
 
   // Of faces in one place the one that is less far behind (steps of the depth buffer) is seen.
