@@ -74,8 +74,8 @@ def _by_meshes(old: TopoDS_Shape, new: TopoDS_Shape) -> ChangedMaterial:
         exact = measure(side)
         if abs(kept.volume() + other.volume() - exact["volume"]) > CHORD * exact["area"]:
             raise ValueError("the pieces are not the whole")
-    pieces = (None if m.is_empty() else polyhedra(m) for m in (kept, removed, added))
-    return ChangedMaterial(*pieces, by="meshes")
+    stayed, went, came = (None if m.is_empty() else polyhedra(m) for m in (kept, removed, added))
+    return ChangedMaterial(stayed, went, came, "meshes")
 
 
 def _without_films(mesh: manifold3d.Manifold) -> manifold3d.Manifold:
