@@ -5,6 +5,7 @@ class View {
     this.dark = matchMedia('(prefers-color-scheme: dark)');
     this.hidden = new Set();
     this.offsets = new Map();
+    this.strainOf = null;
     this.clips = [null, null, null];
     this.viewer = null;
     this.onPick = () => {};
@@ -119,11 +120,42 @@ class View {
   // Shows all but these designators.
   hide(hidden) {
     this.hidden = new Set(hidden);
+    if (this.strainOf) this.strain.visible = !this.hidden.has(this.strainOf);
     for (const p of this.scene.placed) {
       const state = this.hidden.has(p.designator) ? 0 : 1;
       for (const icon of [0, 1]) this.viewer.setObject(this.paths.get(p.designator), state, icon, false, false);
     }
     this.draw();
+  }
+
+  // Draws a designator as triangles of their own colours in the place of its faces; null: as it is.
+  strained(designator, body = null) {
+    if (this.strainOf) {
+      const group = this.group(this.strainOf);
+      group.remove(this.strain);
+      this.strain.geometry.dispose();
+      this.strain.material.dispose();
+      group.front.visible = group.back.visible = true;
+    }
+    this.strainOf = designator;
+    if (designator) {
+      const {front, back} = this.group(designator);
+      const {geometry} = front;
+      const [Geometry, Attribute] = [Object.getPrototypeOf(geometry).constructor, geometry.getAttribute('position').constructor];
+      this.strain = back.clone();
+      this.strain.geometry = new Geometry();
+      this.strain.geometry.setAttribute('position', new Attribute(body.positions, 3));
+      this.strain.geometry.setAttribute('color', new Attribute(body.colours, 3));
+      this.strain.material = back.material.clone();
+      Object.assign(this.strain.material, {
+        visible: true, vertexColors: true, side: 2, opacity: 1, transparent: false, clippingPlanes: back.material.clippingPlanes,
+      });
+      this.strain.material.color.set(0xffffff);
+      this.strain.layers.set(0);
+      front.visible = back.visible = false;
+      this.group(designator).add(this.strain);
+    }
+    if (this.viewer) this.draw();
   }
 
   select(designator) {
@@ -190,10 +222,10 @@ class View {
     });
   }
 
-  // Centres a point of a designator, with a third of its length around it.
-  closeUp(point, designator) {
+  // Centres a point of a designator, with a share of its length to each side.
+  closeUp(point, designator, share = 1 / 6) {
     const [low, high] = this.box([designator]);
-    const reach = Math.max(...minus(high, low)) / 6;
+    const reach = Math.max(...minus(high, low)) * share;
     this.frame(point, boxCorners(minus(point, [reach, reach, reach]), plus(point, [reach, reach, reach])), 0.9);
   }
 
