@@ -254,6 +254,7 @@ def test_the_pressed_body_is_the_part_and_gives_way_as_estimated(fresh, record, 
 
 def test_the_strain_is_shown_on_the_body_with_its_scale(fresh):
     fresh.page.click("[data-designator=E1] > .row > b")
+    fresh.page.click("#views button >> nth=0")
     before = fresh.picture()
     fresh.page.check("#strain-body")
     shown = fresh.picture()
