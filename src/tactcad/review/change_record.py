@@ -151,7 +151,8 @@ def _placed(label: str, piece: ScenePiece, part_no: str) -> dict[str, Any]:
 def _scene(name: str, placed: Sequence[dict[str, Any]], pieces: Mapping[str, ScenePiece]) -> dict[str, Any]:
     """A scene without motions or steps; what its button takes away is what stayed the same."""
     same = [label for label, piece in pieces.items() if piece.kind == "same"]
-    return {"name": name, "placed": placed, "steps": (), "motions": (), "cover": same, "bill": ()}
+    nothing: dict[str, Any] = {"steps": (), "motions": (), "poses": (), "bill": ()}
+    return {"name": name, "placed": placed, "cover": same, **nothing}
 
 
 def _identity(designs: tuple[Design, Design]) -> dict[str, str]:
