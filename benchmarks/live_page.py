@@ -1,9 +1,10 @@
-"""Seconds from saving a design to its picture in a browser: `tactcad view` of the published 2 x 5 array.
+"""Seconds from saving a design to its picture in a browser: `tactcad view` of the published array and longer
+ones.
 
 usage: python benchmarks/live_page.py [docs/review.md]
 
-The hinge of all elements is changed; Chromium without a graphics card draws by software. With a page it
-writes the table there.
+The hinge of all elements is changed, so that each of their five parts is built anew; Chromium without a
+graphics card draws by software. With a page it writes the table there.
 """
 
 from __future__ import annotations
@@ -20,9 +21,10 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from tactcad.bench.arrays import text
 from tactcad.bench.machine import machine
 
-DESIGN = Path(__file__).parents[1] / "hardware" / "macro-array.toml"
+ELEMENTS = (10, 40, 200)
 HINGE = "hinge_thickness = 0.25"
 SAVES = 11
 SOFTWARE = [
@@ -34,12 +36,13 @@ SOFTWARE = [
 DRAWN = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 
 
-def measured() -> tuple[list[float], list[float]]:
-    """Of each save, seconds until the page has the model, and until it has drawn it."""
-    known, drawn = [], []
+def measured(elements: int) -> tuple[list[float], list[float]]:
+    """Of each save of an array of that many elements, seconds until the page has the model, and until it has
+    drawn it."""
+    known, drawn, design = [], [], text(elements)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
-        path, text = Path(folder) / "array.toml", DESIGN.read_text("utf-8")
-        path.write_text(text, "utf-8")
+        path = Path(folder) / "array.toml"
+        path.write_text(design, "utf-8")
         command = [sys.executable, "-m", "tactcad", "view", str(path)]
         server = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         try:
@@ -52,7 +55,7 @@ def measured() -> tuple[list[float], list[float]]:
             for n in range(1, SAVES + 1):
                 time.sleep(1)
                 started = time.perf_counter()
-                path.write_text(text.replace(HINGE, f"hinge_thickness = {0.25 + 0.005 * n:.3f}", 1), "utf-8")
+                path.write_text(design.replace(HINGE, f"hinge_thickness = {0.25 + 0.005 * n:.3f}", 1), "utf-8")
                 page.wait_for_selector(f"html[data-version='{n}']", state="attached")
                 known.append(time.perf_counter() - started)
                 page.evaluate(DRAWN)
@@ -65,12 +68,15 @@ def measured() -> tuple[list[float], list[float]]:
 
 
 def table() -> str:
-    rows = ["| from the save until | median of 11, s | longest, s |", "|---|---|---|"]
-    for what, seconds in zip(("the page has the model", "it is drawn"), measured(), strict=True):
-        rows.append(f"| {what} | {statistics.median(seconds):.2f} | {max(seconds):.2f} |")
+    rows = ["| array | the page has the model, s | it is drawn, s | longest, s |", "|---|---|---|---|"]
+    for elements in ELEMENTS:
+        known, drawn = measured(elements)
+        seconds = (statistics.median(known), statistics.median(drawn), max(drawn))
+        rows.append(f"| 2 x {elements // 2} | " + " | ".join(f"{s:.2f}" for s in seconds) + " |")
     m = machine()
     where = f"{m['processor']}, {m['cores']} cores, {m['system']}, load {m['load']} when it ended"
-    return "\n".join(rows) + f"\n\n{date.today()}, {where}, drawn without a graphics card."
+    said = f"median of {SAVES} saves, drawn without a graphics card"
+    return "\n".join(rows) + f"\n\n{date.today()}, {where}; {said}."
 
 
 def main(pages: list[str]) -> None:

@@ -45,11 +45,8 @@ def scenes(files):
     return [{p.designator: p for p in make_scene(read(str(f)), "array").placements} for f in files]
 
 
-@pytest.fixture(scope="module")
-def page(files, tmp_path_factory):
-    """The page; its record and arrays made from nothing and again are equal."""
-    chromium()
-    from tactcad.export.cache import Cache
+def written(files, path, cache, times: int = 1):
+    """The page; its record and arrays, made so many times, are equal."""
     from tactcad.export.shapes import Shapes
     from tactcad.export.sides import compare_sides, read_side
     from tactcad.review.change_record import change_record
@@ -58,16 +55,28 @@ def page(files, tmp_path_factory):
     from tactcad.review.viewer_library import viewer_library
 
     old, new = (read_side(str(f)) for f in files)
-    told = compare_sides(old, new), meaning(old, new)
-    cache, made = Cache(tmp_path_factory.mktemp("cache")), []
-    for _ in range(2):  # parts from nothing, then from the cache
+    told, made = (compare_sides(old, new), meaning(old, new)), []
+    for _ in range(times):
         shapes = [Shapes(cache, "tests") for _ in range(2)]
         designs = kept_designs(old, new)
         made.append(change_record((old, new), designs, (shapes[0], shapes[1]), *told, lambda *_: None))
-    assert json.dumps(made[0][0]) == json.dumps(made[1][0]) and made[0][1] == made[1][1]
-    path = tmp_path_factory.mktemp("change") / "changes.html"
+    assert all(json.dumps(m[0]) == json.dumps(made[0][0]) and m[1] == made[0][1] for m in made)
     path.write_bytes(review_page(*made[0], viewer_library()))
     return path
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    from tactcad.export.cache import Cache
+
+    return Cache(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture(scope="module")
+def page(files, cache, tmp_path_factory):
+    """Made of parts from nothing, then from the cache."""
+    chromium()
+    return written(files, tmp_path_factory.mktemp("change") / "changes.html", cache, times=2)
 
 
 @pytest.fixture(scope="module")
@@ -225,3 +234,21 @@ def test_a_place_that_cannot_be_written_is_refused_before_any_work(
     monkeypatch.chdir(tmp_path)
     assert main(["diff", *map(str, files), *asked]) == 2
     assert said in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_material_told_apart_by_meshes_is_labelled(running, files, scenes, cache, tmp_path, monkeypatch):
+    import tactcad.solids.changed as module
+
+    def fails(*_):
+        raise ValueError("injected")
+
+    monkeypatch.setattr(module, "_by_kernel", fails)
+    opened = Opened(running, written(files, tmp_path / "meshes.html", cache))
+    assert "by meshes, for the kernel's boolean failed" in opened.text("#panel")
+    pieces = opened.page.evaluate(EACH)
+    before, after = (scenes[n]["E1"].part.volume for n in (0, 1))
+    assert float(pieces["E1 added"][2].split()[0]) == pytest.approx(after - before, rel=1e-3)
+    opened.page.click("[data-designator='E1 added'] > .row > b")
+    assert "by meshes" in opened.text("#panel") and opened.troubles == []
+    assert pixels(opened, GREEN) > 50
+    opened.close()

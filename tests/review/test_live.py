@@ -21,6 +21,7 @@ from tactcad.design.messages import InputError
 TEXT = one_by_one(6, "A")
 HINGE = "hinge_thickness = 0.25"
 THICKER = TEXT.replace(HINGE, "hinge_thickness = 0.3", 1)
+THICK = TEXT.replace(HINGE, "hinge_thickness = 0.4", 1)
 BROKEN = TEXT.replace(HINGE, "hinge_thickness = 3.0", 1)
 HOSTILE = TEXT.replace("[element]\n", "[element]\n\"<img src=x onerror='alert(1)'>\" = 1\n", 1)
 
@@ -48,7 +49,7 @@ def serving(live, port: int = 0):
     from tactcad.review.live_server import LiveServer
     from tactcad.review.viewer_library import viewer_library
 
-    with LiveServer(live, viewer_library(), port) as server:
+    with LiveServer(lambda: live, viewer_library(), port) as server:
         thread = threading.Thread(target=server.serve_forever, args=(0.05,))
         thread.start()
         try:
@@ -83,6 +84,17 @@ def answer(server, path: str, host: str | None = None, method: str = "GET"):
 
 def stiffness(record) -> float:
     return record["array"]["elements"]["E1"]["estimate"]["stiffness"]
+
+
+def estimates(text: str) -> tuple[float, float, float]:
+    """K in N/mm, rated force and force at yield in N of the one element, as `tactcad estimate` has them."""
+    from tactcad.design.load import parse
+    from tactcad.lab.array_estimate import estimate
+    from tactcad.mechanics.ladder import DEFAULT_RUNG
+    from tactcad.parts.layout import Layout
+
+    row = estimate(Layout(parse(text, "d.toml")), DEFAULT_RUNG)[0]
+    return row.stiffness, row.rated_force, row.yield_force
 
 
 def test_only_who_has_the_token_is_answered_and_no_path_is_a_file(server):
@@ -213,6 +225,30 @@ def test_a_taken_port_and_bad_starts_are_one_line(live, server, capsys):
         assert said in capsys.readouterr().err
 
 
+def test_a_taken_port_is_refused_before_a_model_is_made(live, server, monkeypatch):
+    import tactcad.review.live as module
+
+    made = []
+    monkeypatch.setattr(module, "live_record", lambda *_: made.append(1))
+    assert main(["view", str(live.path), "--port", str(server.server_port)]) == 2
+    assert not made
+
+
+def test_a_port_is_given_back_where_the_design_has_no_model(live):
+    from tactcad.review.live_server import LiveServer
+
+    with serving(live) as one:
+        port, library = one.server_port, one.library
+
+    def fails():
+        raise InputError("d.toml", "no model", legal="one")
+
+    with pytest.raises(InputError, match="no model"):
+        LiveServer(fails, library, port)
+    with LiveServer(lambda: live, library, port) as again:
+        assert again.server_port == port
+
+
 def test_the_command_prints_its_address_and_ends_on_ctrl_c(tmp_path):
     (tmp_path / "d.toml").write_text(TEXT, "utf-8")
     command = [sys.executable, "-m", "tactcad", "view", "d.toml"]
@@ -255,15 +291,20 @@ def test_the_page_follows_the_file(running, live, server):
     page.wait_for_selector("html[data-ready]", timeout=LOADED)
     page.click("[data-designator=E1] > .row > b")
     page.keyboard.press("i")
-    for _ in range(2):  # the light follows the eye one picture later
-        page.click("#views button >> nth=1")
-        first = picture()
+    page.click("#views button >> nth=1")
+    first = picture()
     # the same part, thicker: the picture changes at the hinge alone, so the eye stays
-    thick = follows(TEXT.replace(HINGE, "hinge_thickness = 0.4", 1), 1)
+    thick = follows(THICK, 1)
     assert 0 < differ(first, thick) < 0.02
     k = f"{stiffness(live.record):.4g} N/mm"
     assert k in page.inner_text("#panel") and page.inner_text("#part-number") == "macro-array-element-a6mm"
     assert "element.hinge_thickness 0.25 \u2192 0.4" in page.inner_text("#live-first")
+    page.click("#live summary")
+    told = [row.split("\t") for row in page.inner_text("#live-all").splitlines()]
+    for what, estimated in zip(("K, N/mm", "rated, N", "yields at, N"), zip(*map(estimates, (TEXT, THICK)))):
+        rows = [row[2:5:2] for row in told if row[:2] == ["E1", what]]
+        assert rows == ([[f"{value:.4g}" for value in estimated]] if len(set(estimated)) > 1 else [])
+    page.click("#live summary")
     assert page.locator("#tree [data-designator] > .row > input:checked").count() == 1
     # another part: it is drawn anew, and what was chosen and hidden stays so
     page.click("#views button >> nth=1")
@@ -277,7 +318,15 @@ def test_the_page_follows_the_file(running, live, server):
         assert said in page.inner_text("#live.broken") and "last good model" in page.inner_text("#live-said")
         assert page.inner_text("#part-number") == "macro-array-element-a8mm"
     assert page.locator("#live img").count() == 0
-    back = follows(TEXT, 5)
+    # the file is gone: one line, and the page as it stood
+    live.path.unlink()
+    live.look()
+    live.look()
+    page.wait_for_selector("html[data-version='5']", state="attached", timeout=LOADED)
+    assert "no such file" in page.inner_text("#live-said") and "\n" not in page.inner_text("#live-said")
+    assert len(np.unique(picture().reshape(-1, 3), axis=0)) > 10
+    assert page.inner_text("#part-number") == "macro-array-element-a8mm"
+    back = follows(TEXT, 6)
     assert page.locator("#live.broken").count() == 0 and differ(back, longer) > 0.005
     assert troubles == [] and all(u.startswith((server.url, "blob:", "data:")) for u in asked)
     page.close()

@@ -157,6 +157,26 @@ def test_a_scene_tells_places_steps_ways_and_bill(macro):
     }
 
 
+def test_each_pose_brings_an_elements_pad_to_where_the_first_ones_stands(macro):
+    """Read off the parts' own faces: a pad's middle, turned and placed."""
+    scene = make_scene(macro, "calibration")
+    told = scene_facts(macro, scene)
+    placed = {p.designator: p for p in scene.placements}
+
+    def pad(designator, offset=(0.0, 0.0, 0.0)):
+        p = placed[designator]
+        (face,) = (f for f in part_facts(p.part, {}, []).features if f.name == "pad_face")
+        return np.asarray(p.rotation) @ face.middle + p.origin + np.asarray(offset)
+
+    assert [pose.name for pose in told.poses] == [f"E{n}" for n in range(1, 11)]
+    for pose in told.poses:
+        offsets = {d: offset for group, offset in pose.ways for d in group}
+        assert pad(pose.name, offsets.get(pose.name, (0.0, 0.0, 0.0))) == pytest.approx(pad("E1"))
+        # the array is one piece: all of it moves alike
+        assert len({offsets.get(f"E{n}") for n in range(1, 11)}) == 1
+    assert told.poses[0].ways == () and scene_facts(macro, make_scene(macro, "array")).poses == ()
+
+
 def test_findings_are_told_with_their_parts(macro_scene):
     def told(part: str, check: str = "hinge", subject: str = "x", place=(1.0, 2.0)):
         record = vars(Finding("c", "flag", part, place, 0, 0, "m"))

@@ -12,7 +12,7 @@ from browser import Opened, chromium
 
 from tactcad.scenes import make_scene
 
-SCENES = ("array", "sample-stiffness")
+SCENES = ("array", "sample-stiffness", "calibration")
 EACH = """() => [...document.querySelectorAll('#tree [data-designator]')].map((leaf) => {
   leaf.querySelector('b').click();
   return [leaf.dataset.designator, document.getElementById('part-number').textContent];
@@ -145,6 +145,28 @@ def moves_and_comes_back(opened, slider: str, value: float) -> None:
     assert differ(opened.picture(), at_rest) < MOVED
 
 
+def test_the_strain_is_shown_on_the_body_with_its_scale(fresh):
+    fresh.page.click("[data-designator=E1] > .row > b")
+    fresh.page.click("#views button >> nth=0")
+    before = fresh.picture()
+    fresh.page.check("#strain-body")
+    shown = fresh.picture()
+    red, blue = shown[..., 0] - shown[..., 2] > 60, shown[..., 2] - shown[..., 0] > 60
+    assert red[80:].sum() > 10 and blue[80:].sum() > 10  # below the scale
+    assert fresh.text("#strain-scale .ends").split("\n") == fresh.text("#panel .ends").split("\n")
+    fresh.set("[aria-label='Force on the pad, N']", 0)
+    assert differ(fresh.picture(), shown) > MOVED
+    still = fresh.picture()
+    assert not (still[80:, :, 0] - still[80:, :, 2] > 60).any()
+    # another part is chosen: the body is a part again
+    fresh.page.click("[data-designator=E2] > .row > b")
+    assert fresh.page.locator("#strain-scale").is_hidden()
+    fresh.page.click("#show-all")
+    fresh.page.click("[data-designator=E1] > .row > b")
+    fresh.page.click("#views button >> nth=0")
+    assert not fresh.page.is_checked("#strain-body") and differ(fresh.picture(), before) < MOVED
+
+
 @pytest.mark.parametrize("slider, value", [("#explode", 4), ("#cut-y", 1)])
 def test_sliders_move_the_picture_and_bring_it_back(fresh, slider, value):
     moves_and_comes_back(fresh, slider, value)
@@ -154,6 +176,28 @@ def test_a_rig_has_its_parts_and_moves(fresh, macro):
     fresh.page.click("[data-scene=sample-stiffness]")
     tree_holds(fresh, make_scene(macro, "sample-stiffness").placements)
     moves_and_comes_back(fresh, "#motion-0", 0)
+
+
+def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
+    """The viewer alone moves its light after each picture: the next one differed."""
+    fresh.page.click("#views button >> nth=1")
+    fresh.picture()
+    fresh.page.click("#views button >> nth=2")
+    first = fresh.picture()
+    fresh.page.click("#views button >> nth=2")
+    assert np.abs(fresh.picture() - first).max() <= 1
+
+
+def test_each_element_is_brought_under_the_sensor(fresh):
+    fresh.page.click("[data-scene=calibration]")
+    at_rest = fresh.picture()
+    fresh.page.select_option("#pose", label="E9")
+    assert differ(fresh.picture(), at_rest) > MOVED
+    fresh.set("#motion-0", 0.5)  # motions are declared with the first element under the sensor
+    assert fresh.page.input_value("#pose") == "0"
+    fresh.page.select_option("#pose", label="E9")
+    fresh.page.select_option("#pose", label="E1")
+    assert differ(fresh.picture(), at_rest) < MOVED
 
 
 def test_the_tree_works_by_keyboard_alone(fresh):
@@ -170,6 +214,7 @@ def test_the_tree_works_by_keyboard_alone(fresh):
     fresh.page.keyboard.press("ArrowLeft")
     fresh.page.keyboard.press("ArrowLeft")
     assert fresh.page.locator("#tree > [aria-expanded=false]").count() == 1
+    fresh.page.keyboard.press("ArrowRight")
 
 
 def test_measuring_reads_the_descriptions(fresh):
@@ -207,10 +252,35 @@ def test_the_strain_is_drawn_in_colours_with_its_scale(fresh, record):
     blues = [c for c in drawn if int(c.split()[2]) > int(c.split()[0]) + 2]
     assert reds and blues and len(drawn) > 10
     estimate = record[0]["array"]["elements"]["E1"]
-    said = fresh.text(".ends").split("\n")
+    said = fresh.text("#panel .ends").split("\n")
     most = float(said[-1])
     # the picture's largest strain is at the fillet: the estimate's there, within its stated error and a tenth
     assert most == pytest.approx(1e6 * estimate["fillet_per_newton"] * 2.0, rel=0.16)
+
+
+BODY = """(share) => started.then((page) => {
+  const part = page.panel.placed.get('E1').part_no;
+  const {rated_force} = page.record.array.elements.E1.estimate;
+  const field = page.panel.on.strain(part);
+  return [...strainBody(field, page.meshes.get(part), share * rated_force, 1).positions];
+})"""
+
+
+def test_the_pressed_body_is_the_part_and_gives_way_as_estimated(fresh, record, macro_scene):
+    """Without force the triangles cover the part's profile but for the rounded corners at both ends of the
+    finite elements; at the rated force the load line moves by the estimate's K, drawn five times."""
+    still, pressed = (np.array(fresh.page.evaluate(BODY, share)).reshape(-1, 3, 3) for share in (0, 1))
+    part = next(p.part for p in macro_scene.placements if p.designator == "E1")
+    front = still[np.ptp(still[..., 2], axis=1) == 0.0][..., :2]
+    areas = np.linalg.det(np.stack([front[:, 1] - front[:, 0], front[:, 2] - front[:, 0]], axis=1)) / 2.0
+    for side in (areas[areas > 0], -areas[areas < 0]):
+        assert side.sum() == pytest.approx(part.volume / part.body.thickness, rel=1e-3)
+    e = record[0]["array"]["elements"]["E1"]["estimate"]
+    line = record[0]["strains"][part.part_no]["hinge_x"] - e["load_arm"]
+    moved = (pressed - still)[np.abs(still[..., 0] - line) < 1e-3][:, 1].mean() / 5.0
+    # the field is of plane stress; the hinge, wider than thick, bends between that and plane strain
+    assert 1.0 < moved / (e["rated_force"] / e["stiffness"]) < 1.0 / (1.0 - 0.33**2)
+    assert np.allclose((pressed - still)[still[..., 0] > still[..., 0].max() - 5.0], 0.0)
 
 
 def test_texts_are_never_markup(running, record, tmp_path):

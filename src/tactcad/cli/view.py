@@ -41,11 +41,14 @@ def run(args: argparse.Namespace) -> int:
     say = progress(sys.stderr)
     path, library = find(args.design), viewer_library()
     known = shapes_of(load(path), say.line)
-    live = Live(path, args.scene, lambda: Shapes(known.cache, known.made_by))
-    with LiveServer(live, library, args.port) as server:
+
+    def followed() -> Live:
+        return Live(path, args.scene, lambda: Shapes(known.cache, known.made_by))
+
+    with LiveServer(followed, library, args.port) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         print(f"{path}: {server.url}", flush=True)
         load_kernel()
         while True:
             time.sleep(POLL)
-            live.look()
+            server.live.look()

@@ -14,7 +14,7 @@ from tactcad.export.difference import Change
 from tactcad.export.shapes import Shapes
 from tactcad.export.sides import Side, not_compared
 
-from .changed_scene import LOOKS, WHOLE, ScenePiece, changed_scenes
+from .changed_scene import LOOKS, ScenePiece, changed_scenes
 from .consequences import Meaning
 from .effect import SensorEffect
 from .mesh_pack import mesh_bytes, pack
@@ -132,7 +132,7 @@ def _part(piece: ScenePiece, number: int, volume: float) -> dict[str, Any]:
         "behind": BEHIND * list(LOOKS).index(piece.kind),
         "kind": piece.kind,
         "volume_mm3": volume,
-        "remark": WHOLE if piece.whole else "",
+        "remark": piece.remark,
     }
 
 
@@ -151,7 +151,8 @@ def _placed(label: str, piece: ScenePiece, part_no: str) -> dict[str, Any]:
 def _scene(name: str, placed: Sequence[dict[str, Any]], pieces: Mapping[str, ScenePiece]) -> dict[str, Any]:
     """A scene without motions or steps; what its button takes away is what stayed the same."""
     same = [label for label, piece in pieces.items() if piece.kind == "same"]
-    return {"name": name, "placed": placed, "steps": (), "motions": (), "cover": same, "bill": ()}
+    nothing: dict[str, Any] = {"steps": (), "motions": (), "poses": (), "bill": ()}
+    return {"name": name, "placed": placed, "cover": same, **nothing}
 
 
 def _identity(designs: tuple[Design, Design]) -> dict[str, str]:
@@ -200,9 +201,18 @@ def _changes(
         },
         "counts": {name: Counter(p.kind for p in pieces.values()) for name, pieces in scenes.items()},
         "interactions": meaning.interactions,
+        "remarks": _remarks(scenes),
         "not_compared": notes,
         "differences": [str(change) for change in differences],
     }
+
+
+def _remarks(scenes: Mapping[str, Mapping[str, ScenePiece]]) -> list[str]:
+    """Of each remark the designators that it is of."""
+    about: dict[str, dict[str, None]] = {}
+    for piece in (p for pieces in scenes.values() for p in pieces.values() if p.remark):
+        about.setdefault(piece.remark, {})[piece.designator] = None
+    return [f"{' '.join(designators)}: {remark}" for remark, designators in about.items()]
 
 
 def _all_about(scenes: Mapping[str, Mapping[str, ScenePiece]], effect: SensorEffect) -> dict[str, list[str]]:

@@ -28,7 +28,12 @@ LOOKS: dict[PieceKind, tuple[str, int]] = {
     "kept": ("#b0b4ba", 60),
     "same": ("#c8ccd0", 85),
 }
-WHOLE = "whole part: the kernel could not tell kept from changed material"
+# What is said of a piece that the kernel did not tell apart, by what did.
+REMARKS = {
+    "kernel": "",
+    "meshes": "by meshes, for the kernel's boolean failed: curved faces are within 0.001 mm",
+    "nothing": "whole part: neither kernel nor meshes could tell kept from changed material",
+}
 CLOSE = 1e-9  # mm, and of directions: places that agree so far are one
 
 
@@ -36,8 +41,8 @@ CLOSE = 1e-9  # mm, and of directions: places that agree so far are one
 class ScenePiece:
     """Material of one placed part: all of it where it is the `same`, else what was kept, added or removed.
 
-    `shape` is in the frame that `origin` (mm) and `rotation` place. `whole` says that the kernel could not
-    tell kept from changed material, and the piece is the whole part before or after.
+    `shape` is in the frame that `origin` (mm) and `rotation` place. `remark`, of REMARKS, says where the
+    kernel could not tell kept from changed material.
     """
 
     designator: str
@@ -46,7 +51,7 @@ class ScenePiece:
     shape: TopoDS_Shape
     origin: Vector
     rotation: Rotation
-    whole: bool = False
+    remark: str = ""
 
 
 def changed_scenes(
@@ -108,7 +113,7 @@ def changed_scene(
                 ("removed", m.removed),
                 ("added", m.added),
             )
-            yield from (_piece(b, kind, shape, m.whole) for kind, shape in kinds if shape is not None)
+            yield from (_piece(b, kind, shape, REMARKS[m.by]) for kind, shape in kinds if shape is not None)
         elif a:
             yield _piece(a, "removed", shapes[0].of(a.part))
         elif b:
@@ -117,8 +122,8 @@ def changed_scene(
     return [piece for a, b in _pairs(designs, scenes) for piece in pieces(a, b)]
 
 
-def _piece(p: Placement, kind: PieceKind, shape: TopoDS_Shape, whole: bool = False) -> ScenePiece:
-    return ScenePiece(p.designator, p.part.part_no, kind, shape, p.origin, p.rotation, whole)
+def _piece(p: Placement, kind: PieceKind, shape: TopoDS_Shape, remark: str = "") -> ScenePiece:
+    return ScenePiece(p.designator, p.part.part_no, kind, shape, p.origin, p.rotation, remark)
 
 
 def _solid(part: Part) -> tuple[object, ...]:

@@ -29,6 +29,7 @@ class ChangePanel extends Panel {
     }
     if (together.length && causes.length > 1) made.push(section('All together', ...lines(together)));
     if (interactions.length) made.push(section('Not the sum', ...lines(interactions)));
+    if (this.record.changes.remarks.length) made.push(section('How material was told apart', ...lines(this.record.changes.remarks)));
     if (this.record.changes.not_compared.length) made.push(section('Not compared', ...lines(this.record.changes.not_compared)));
     if (differences.length) {
       const all = section(`Every difference (${differences.length})`, ...lines(differences));

@@ -8,10 +8,12 @@ class Controls {
     this.scene = scene;
     this.exploded = 0;
     this.shares = scene.motions.map((m) => m.rest);
+    this.pose = 0;
     const steps = scene.steps.length;
     const made = [];
     if (steps) made.push(this.explode(steps));
-    if (scene.motions.length) made.push(el('fieldset', {}, el('legend', {}, 'Motions'), ...scene.motions.map((m, n) => this.motion(m, n))));
+    const moves = [...(scene.poses.length ? [this.poses()] : []), ...scene.motions.map((m, n) => this.motion(m, n))];
+    if (moves.length) made.push(el('fieldset', {}, el('legend', {}, 'Motions'), ...moves));
     made.push(el('fieldset', {}, el('legend', {}, 'Cut'), ...['x', 'y', 'z'].map((name, axis) => this.cut(name, axis, low[axis], high[axis]))));
     this.box.replaceChildren(...made);
   }
@@ -42,16 +44,34 @@ class Controls {
     output.title = text;
   }
 
+  // Which element is under the force sensor; motions start at the first.
+  poses() {
+    const pick = el('select', {id: 'pose'}, ...this.scene.poses.map((pose, n) => el('option', {value: n}, pose.name)));
+    pick.addEventListener('input', () => {
+      this.pose = Number(pick.value);
+      this.atRest();
+      this.on.moved(false);
+    });
+    return el('div', {className: 'slider'}, el('label', {for: 'pose'}, 'under the sensor'), pick);
+  }
+
+  // Takes all motions back but that of a number.
+  atRest(but = null) {
+    this.shares = this.scene.motions.map((m, k) => (k === but ? this.shares[k] : m.rest));
+    for (const [k, slider] of [...this.box.querySelectorAll('[id^=motion-]')].entries()) {
+      if (k === but) continue;
+      slider.value = this.scene.motions[k].rest ?? 0;
+      slider.nextElementSibling.textContent = this.scene.motions[k].rest === null ? 'off' : 'at rest';
+    }
+  }
+
   motion(motion, n) {
     const rest = motion.rest;
     const [label, input, said] = this.slider(`motion-${n}`, motion.name, 0, 1, 0.01, rest ?? 0, (share, output) => {
-      this.shares = this.scene.motions.map((m, k) => (k === n ? share : m.rest));
-      for (const [k, other] of [...this.box.querySelectorAll('[id^=motion-]')].entries()) {
-        if (k !== n) {
-          other.value = this.scene.motions[k].rest ?? 0;
-          other.nextElementSibling.textContent = this.scene.motions[k].rest === null ? 'off' : 'at rest';
-        }
-      }
+      this.shares[n] = share;
+      this.atRest(n);
+      this.pose = 0;
+      if (byId('pose')) byId('pose').value = 0;
       output.textContent = this.far(motion, share);
       this.on.moved(false);
     });
@@ -98,6 +118,9 @@ class Controls {
     for (const p of this.scene.placed) {
       const share = Math.min(Math.max(this.exploded - (steps - 1 - p.step), 0), 1);
       if (share > 0) add(p.designator, times(p.way, share));
+    }
+    for (const [designators, by] of this.scene.poses[this.pose]?.ways ?? []) {
+      for (const d of designators) add(d, by);
     }
     this.scene.motions.forEach((motion, n) => {
       if (this.shares[n] === null || this.shares[n] === motion.rest) return;

@@ -9,7 +9,7 @@ from typing import Any
 from tactcad.design.tree import Design
 from tactcad.export.shapes import Shapes
 
-from .changed_scene import LOOKS, WHOLE, PieceKind, ScenePiece, changed_scenes
+from .changed_scene import LOOKS, PieceKind, ScenePiece, changed_scenes
 from .freecad_file import made_by_freecad, program
 from .freecad_record import Row, part_file
 
@@ -81,7 +81,7 @@ def changes_record(
 
 def _part(piece: ScenePiece, number: int) -> dict[str, Any]:
     colour, transparency = LOOKS[piece.kind]
-    remark = WHOLE if piece.whole else piece.kind
+    remark = f"{piece.kind}, {piece.remark}" if piece.remark else piece.kind
     return {
         "part_no": f"{piece.part_no} {piece.kind} {number}",
         "file": part_file(number),

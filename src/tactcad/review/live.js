@@ -1,5 +1,5 @@
 // Follows the design while it is written: asks what changed, and shows it where the reader stands.
-const SLIDERS = '#controls input';
+const SLIDERS = '#controls input, #controls select';
 
 function liveBar(live) {
   const shown = (value) => (value === null ? '\u2013' : typeof value === 'number' ? figures(value) : String(value));
@@ -32,6 +32,7 @@ function renewed({view, controls, panel, measure, meshes}, scene, before) {
       if (changed.has(p.part_no)) view.viewer.updatePart(`/s/${n}`, shapes[n], {skipBounds: true});
     });
     if (changed.size) view.viewer.updateBounds();
+    view.thinLines();
   });
   view.byPath = new Map(scene.placed.map((p, n) => [`/s/${n}`, p]));
   for (const one of [view, controls, panel]) one.scene = scene;
@@ -53,8 +54,9 @@ function redrawn(page, scene) {
   const rest = new Map([...document.querySelectorAll(SLIDERS)].map((i) => [i.id, i.value]));
   for (const [id, value, checked] of sliders) {
     const input = byId(id);
-    if (input?.type === 'range' && !id.startsWith('cut-') && value !== rest.get(id)) {
+    if (['range', 'select-one'].includes(input?.type) && !id.startsWith('cut-') && value !== rest.get(id)) {
       input.value = value;
+      if (input.value === '') continue;  // the element is gone
       input.dispatchEvent(new Event('input'));
     }
     if (input?.type === 'checkbox' && checked) {

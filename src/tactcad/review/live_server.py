@@ -10,6 +10,7 @@ import hmac
 import json
 import re
 import secrets
+from collections.abc import Callable
 from dataclasses import asdict
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -37,9 +38,11 @@ class LiveServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, live: Live, library: ViewerLibrary, port: int) -> None:
-        """`port` 0 takes a free one. Raises InputError where the port is taken or not allowed."""
-        self.live, self.library = live, library
+    def __init__(self, live: Callable[[], Live], library: ViewerLibrary, port: int) -> None:
+        """`port` 0 takes a free one; `live`, which takes seconds, is made once the port is this server's.
+
+        Raises InputError where the port is taken or not allowed, and what `live` raises."""
+        self.library = library
         self.token = secrets.token_urlsafe(24)
         try:
             super().__init__((ADDRESS, port), _Answer)
@@ -47,6 +50,11 @@ class LiveServer(ThreadingHTTPServer):
             why = getattr(error, "strerror", None) or str(error)
             legal = "a free port from 1024 to 65535, or 0 for any"
             raise InputError("--port", f"cannot be used: {why}", value=port, legal=legal) from None
+        try:
+            self.live = live()
+        except BaseException:
+            self.server_close()
+            raise
         # a page elsewhere whose name is made to mean this machine asks under that name
         self.hosts = {f"{name}:{self.server_port}" for name in (ADDRESS, "localhost")}
 

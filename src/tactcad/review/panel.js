@@ -160,7 +160,7 @@ class Panel {
       ]), el('p', {className: 'hint'}, `${fit.count} arrays built virtually, normal parts, seed ${fit.seed}.`)));
     }
     if (pairs.length) made.push(section('Pairs', this.pairTable(pairs)));
-    made.push(section('Strain when pressed', strainPicture(this.on.strain(part.part_no), e)));
+    made.push(section('Strain when pressed', strainPicture(this.on.strain(part.part_no), e, this.on.strainBody(placed))));
     return made;
   }
 

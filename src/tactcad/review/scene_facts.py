@@ -9,8 +9,10 @@ from typing import Any
 from tactcad.design.tree import Design
 from tactcad.drawing.guide import exploded
 from tactcad.parts.description import Vector, vector
+from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
-from tactcad.scenes.scene import Motion, Rotation, Scene
+from tactcad.scenes.poses import under_sensor
+from tactcad.scenes.scene import Motion, Pose, Rotation, Scene
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,15 @@ class MotionFact:
 
 
 @dataclass(frozen=True)
+class PoseFact:
+    """An element under the force sensor: of each group of designators that stands elsewhere than at rest the
+    offset, mm."""
+
+    name: str
+    ways: tuple[tuple[tuple[str, ...], Vector], ...]
+
+
+@dataclass(frozen=True)
 class SceneFacts:
     """One scene; `bill` by item, each row as the bill of materials has it."""
 
@@ -45,6 +56,7 @@ class SceneFacts:
     placed: tuple[PlacedFact, ...]
     steps: tuple[tuple[str, str], ...]
     motions: tuple[MotionFact, ...]
+    poses: tuple[PoseFact, ...]
     cover: tuple[str, ...]
     bill: tuple[dict[str, Any], ...]
 
@@ -71,6 +83,7 @@ def scene_facts(design: Design, scene: Scene) -> SceneFacts:
         placed,
         tuple((step.title, step.text) for step in scene.steps),
         tuple(_motion(m, groups) for m in scene.motions),
+        tuple(_pose(design, scene, pose) for pose in under_sensor(design, scene.name)),
         tuple(sorted(scene.cover)),
         tuple(asdict(row) for row in bom_rows(scene, design.design.revision, {})),
     )
@@ -97,6 +110,16 @@ def _under(scene: Scene, designator: str) -> tuple[str, ...]:
 def _motion(motion: Motion, groups: Mapping[str, frozenset[str]]) -> MotionFact:
     ways = tuple((tuple(sorted(groups.get(g, ()))), start, end) for g, start, end in motion.ways)
     return MotionFact(motion.name, ways, _rest(motion))
+
+
+def _pose(design: Design, scene: Scene, pose: Pose) -> PoseFact:
+    there = {p.designator: p.origin for p in make_scene(design, scene.name, pose).placements}
+    groups: dict[Vector, list[str]] = {}
+    for p in scene.placements:
+        offset = vector(round(b - a, 9) for a, b in zip(p.origin, there[p.designator]))
+        if any(offset):
+            groups.setdefault(offset, []).append(p.designator)
+    return PoseFact(f"E{pose.element}", tuple((tuple(group), offset) for offset, group in groups.items()))
 
 
 def _rest(motion: Motion) -> float | None:

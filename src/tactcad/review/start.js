@@ -24,6 +24,7 @@ async function start() {
   let scene = record.scenes[0];
 
   const select = (designator) => {
+    if (view.strainOf !== designator) showStrain(null);
     view.select(designator);
     tree.select(designator);
     view.mark(null);
@@ -49,8 +50,25 @@ async function start() {
     zoom: (designator) => view.fit([designator], 0.6),
     measure: () => measure.page(panel.selected),
     strain: (number) => strains.get(number),
+    strainBody: (placed) => ({
+      shown: () => view.strainOf === placed.designator,
+      show: (newton, full) => showStrain(newton === null ? null : placed, newton, full),
+    }),
     finding: (finding) => showFinding(finding),
   });
+
+  // The strain on a placed element's body, alone and close at first; null takes it off.
+  function showStrain(placed, newton, full) {
+    const first = placed && view.strainOf !== placed.designator;
+    const field = placed && strains.get(placed.part_no);
+    view.strained(placed && placed.designator, placed && strainBody(field, meshes.get(placed.part_no), newton, full));
+    byId('strain-scale').hidden = !placed;
+    if (!first) return;
+    byId('strain-scale').replaceChildren(el('p', {}, 'Strain along the arm, \u00b5\u03b5'), ...strainScale(full));
+    tree.isolate([placed.designator]);
+    view.select(null);
+    view.closeUp(view.toScene([field.hinge_x, 0, 0], placed), placed.designator, 1 / 10);
+  }
 
   function showFinding(finding) {
     const who = finding.designators.filter((d) => panel.placed.has(d));
@@ -71,6 +89,7 @@ async function start() {
   }
 
   function showScene(name) {
+    showStrain(null);
     scene = record.scenes.find((s) => s.name === name) ?? scene;
     view.show(scene);
     tree.show(scene);

@@ -2,38 +2,48 @@
 const EXAGGERATED = 5;  // deflections in the picture: at the rated force a tip gives way by a tenth of a millimetre
 
 // From blue (pressed) over grey to red (stretched): both ends differ in lightness too little for one to hide.
-function strainColour(share) {
+function strainShade(share) {
   const [low, middle, high] = [[33, 102, 172], [232, 232, 228], [178, 24, 43]];
   const end = share < 0 ? low : high;
   const s = Math.min(Math.abs(share), 1) ** 0.8;
-  return `rgb(${middle.map((m, k) => Math.round(m + (end[k] - m) * s)).join(' ')})`;
+  return middle.map((m, k) => Math.round(m + (end[k] - m) * s));
 }
 
-function strainPicture(field, estimate) {
+const strainColour = (share) => `rgb(${strainShade(share).join(' ')})`;
+
+// `body` shows it in three dimensions too: `shown()`, and `show(newton, full)` or `show(null)`.
+function strainPicture(field, estimate, body) {
   if (!field) return el('p', {}, 'No finite elements of this part.');
   if (field.why_not) return el('p', {}, field.why_not);
   const rated = estimate?.rated_force ?? 1;
   const canvas = el('canvas', {className: 'strain', width: 720, height: 360, role: 'img'});
   const caption = el('p', {className: 'hint'});
-  const scale = el('canvas', {className: 'scale', width: 360, height: 14, 'aria-hidden': 'true'});
-  const ends = el('div', {className: 'ends'});
   const force = el('input', {type: 'range', min: 0, max: rated, step: rated / 50, value: rated, 'aria-label': 'Force on the pad, N'});
   const hinge = el('input', {type: 'checkbox', checked: true});
+  const solid = el('input', {type: 'checkbox', id: 'strain-body', checked: body.shown()});
   const most = field.strain.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
-  drawScale(scale);
   const draw = () => {
     const newton = Number(force.value);
     drawStrain(canvas, field, newton, most * rated, hinge.checked);
     const peak = figures(1e6 * most * newton, 3);
+    if (solid.checked) body.show(newton, most * rated);
     canvas.setAttribute('aria-label', `Strain along the arm at ${figures(newton, 3)} N: at most ${peak} microstrain`);
     caption.textContent = `${figures(newton, 3)} N on the pad, at most ${peak} \u00b5\u03b5 along the arm. Plane-stress finite elements on the part\u2019s contour, `
       + `held at the clamp edge, pressed at the load line, load arm ${figures(field.load_arm)} mm; ${field.quads.length / 4} facets; deflection drawn ${EXAGGERATED} times.`;
   };
-  ends.append(...[-1, -0.5, 0, 0.5, 1].map((s) => el('span', {}, `${figures(1e6 * most * rated * s, 3)}`)));
   force.addEventListener('input', draw);
   hinge.addEventListener('change', draw);
+  solid.addEventListener('change', () => (solid.checked ? draw() : body.show(null)));
   draw();
-  return el('div', {}, canvas, scale, ends, el('label', {}, 'Force ', force), el('label', {}, hinge, ' the hinge alone'), caption);
+  return el('div', {}, canvas, ...strainScale(most * rated), el('label', {}, 'Force ', force), el('label', {}, hinge, ' the hinge alone'),
+    el('label', {}, solid, ' on the body'), caption);
+}
+
+// The colours from the largest strain pressed to the largest stretched, with figures below.
+function strainScale(full) {
+  const scale = el('canvas', {className: 'scale', width: 360, height: 14, 'aria-hidden': 'true'});
+  drawScale(scale);
+  return [scale, el('div', {className: 'ends'}, ...[-1, -0.5, 0, 0.5, 1].map((s) => el('span', {}, figures(1e6 * full * s, 3))))];
 }
 
 function drawScale(canvas) {

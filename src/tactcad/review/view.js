@@ -5,6 +5,7 @@ class View {
     this.dark = matchMedia('(prefers-color-scheme: dark)');
     this.hidden = new Set();
     this.offsets = new Map();
+    this.strainOf = null;
     this.clips = [null, null, null];
     this.viewer = null;
     this.onPick = () => {};
@@ -50,8 +51,25 @@ class View {
       up: 'Z', control: 'orbit', ortho: true, axes: false, collapse: 1, clipObjectColors: true,
     });
     this.viewer.setPickHandler(false);  // clicks are this page's
+    this.lightFromEye();
+    this.thinLines();
     for (const p of scene.placed) this.setBehind(this.group(p.designator), this.parts.get(p.part_no).behind ?? 0);
     this.lookFrom('iso');
+  }
+
+  // The viewer moves its light to the eye after each picture; it is to be there before.
+  lightFromEye() {
+    const {scene, directLight} = this.viewer.rendered;
+    scene.onBeforeRender = (renderer, drawn, camera) => {
+      directLight.position.copy(camera.position);
+      directLight.updateMatrixWorld();
+    };
+  }
+
+  // Of each piece of an edge the line alone is drawn, two triangles of six: thin lines' ends show nothing, and
+  // of a long array edges are most of what is drawn.
+  thinLines() {
+    this.viewer.rendered.nestedGroup.rootGroup.traverse((one) => one.isLineSegments2 && one.geometry.setDrawRange(6, 6));
   }
 
   // Of faces in one place the one that is less far behind (steps of the depth buffer) is seen.
@@ -102,11 +120,42 @@ class View {
   // Shows all but these designators.
   hide(hidden) {
     this.hidden = new Set(hidden);
+    if (this.strainOf) this.strain.visible = !this.hidden.has(this.strainOf);
     for (const p of this.scene.placed) {
       const state = this.hidden.has(p.designator) ? 0 : 1;
       for (const icon of [0, 1]) this.viewer.setObject(this.paths.get(p.designator), state, icon, false, false);
     }
     this.draw();
+  }
+
+  // Draws a designator as triangles of their own colours in the place of its faces; null: as it is.
+  strained(designator, body = null) {
+    if (this.strainOf) {
+      const group = this.group(this.strainOf);
+      group.remove(this.strain);
+      this.strain.geometry.dispose();
+      this.strain.material.dispose();
+      group.front.visible = group.back.visible = true;
+    }
+    this.strainOf = designator;
+    if (designator) {
+      const {front, back} = this.group(designator);
+      const {geometry} = front;
+      const [Geometry, Attribute] = [Object.getPrototypeOf(geometry).constructor, geometry.getAttribute('position').constructor];
+      this.strain = back.clone();
+      this.strain.geometry = new Geometry();
+      this.strain.geometry.setAttribute('position', new Attribute(body.positions, 3));
+      this.strain.geometry.setAttribute('color', new Attribute(body.colours, 3));
+      this.strain.material = back.material.clone();
+      Object.assign(this.strain.material, {
+        visible: true, vertexColors: true, side: 2, opacity: 1, transparent: false, clippingPlanes: back.material.clippingPlanes,
+      });
+      this.strain.material.color.set(0xffffff);
+      this.strain.layers.set(0);
+      front.visible = back.visible = false;
+      this.group(designator).add(this.strain);
+    }
+    if (this.viewer) this.draw();
   }
 
   select(designator) {
@@ -173,10 +222,10 @@ class View {
     });
   }
 
-  // Centres a point of a designator, with a third of its length around it.
-  closeUp(point, designator) {
+  // Centres a point of a designator, with a share of its length to each side.
+  closeUp(point, designator, share = 1 / 6) {
     const [low, high] = this.box([designator]);
-    const reach = Math.max(...minus(high, low)) / 6;
+    const reach = Math.max(...minus(high, low)) * share;
     this.frame(point, boxCorners(minus(point, [reach, reach, reach]), plus(point, [reach, reach, reach])), 0.9);
   }
 

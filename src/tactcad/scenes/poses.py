@@ -48,6 +48,13 @@ def poses(design: Design, name: str) -> tuple[Pose, ...]:
     return ()
 
 
+def under_sensor(design: Design, name: str) -> tuple[Pose, ...]:
+    """Each element under the force sensor and touched, by number; none of a scene without a sensor that goes
+    from one to the next."""
+    count = sum(len(row) for row in design.array.row_arms) if name == "calibration" else 0
+    return tuple(Pose(element=n) for n in range(1, count + 1))
+
+
 def _pressed_in(design: Design) -> tuple[Pose, ...]:
     """The pads in the sample: by its travel, but no deeper than they stand out of the arms' root fillets."""
     e = design.element
