@@ -92,6 +92,14 @@ class Netlist:
         return (c for c in self.components if c.kind == kind)
 
     def on_board(self, kind: Kind, board: int) -> Component:
-        """The one component of that kind on a board. Raises ValueError where there is not just one."""
-        (found,) = (c for c in self.of_kind(kind) if c.board == board and not c.element)
-        return found
+        """The amplifier, multiplexer or decoder of a board. Raises KeyError where there is none."""
+        return self._once["board", kind, board]
+
+    def of_element(self, kind: Kind, element: int) -> Component:
+        """The gauge, terminal or switch of an element. Raises KeyError where there is none."""
+        return self._once["element", kind, element]
+
+    @cached_property
+    def _once(self) -> dict[tuple[str, Kind, int], Component]:
+        own = {("element", c.kind, c.element): c for c in self.components if c.element}
+        return own | {("board", c.kind, c.board): c for c in self.components if not c.element}

@@ -60,7 +60,7 @@ class Amplifier(Bought):
         return (self.noise_in**2 + (self.noise_out / gain) ** 2) ** 0.5
 
     def bandwidth(self, gain: float) -> float:
-        """-3 dB, Hz: that at a gain of 100 falls with larger gains; smaller ones have up to `gain_bandwidth`."""
+        """-3 dB, Hz: that at a gain of 100 falls with larger gains, and rises to `gain_bandwidth`."""
         return min(self.bandwidth_100 * 100 / gain, self.gain_bandwidth)
 
 

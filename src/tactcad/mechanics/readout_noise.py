@@ -1,7 +1,10 @@
 """Noise of one sample, from the amplifier's and the resistors before it.
 
 White noise e of the amplifier, referred to its input, and Johnson noise 4 k T R of what lies before it (any
-text on electronic noise), through one pole at the amplifier's bandwidth B: e_out = G sqrt((e^2 + 4 k T R) pi/2 B).
+text on electronic noise), through one pole at the amplifier's bandwidth B:
+
+    e_out = G sqrt((e^2 + 4 k T R) pi/2 B)
+
 Flicker noise is left out: a reading lasts too short a time for it.
 """
 

@@ -12,18 +12,18 @@ from .layout import ElementPlace, Layout
 
 
 @dataclass(frozen=True)
-class Board:
+class ReadBoard:
     """A board by its number from 1, and its elements in the order of the multiplexer's channels."""
 
     number: int
     places: tuple[ElementPlace, ...]
 
 
-def boards(layout: Layout) -> tuple[Board, ...]:
+def boards(layout: Layout) -> tuple[ReadBoard, ...]:
     """Every board of the array."""
     channels = MULTIPLEXERS[layout.design.readout.multiplexer].channels
     taken = []
     for row in (1, 2):
         own = [p for p in layout.elements if p.row == row]
         taken += [tuple(own[i : i + channels]) for i in range(0, len(own), channels)]
-    return tuple(Board(number, places) for number, places in enumerate(taken, start=1))
+    return tuple(ReadBoard(number, places) for number, places in enumerate(taken, start=1))

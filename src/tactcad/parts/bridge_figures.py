@@ -70,18 +70,26 @@ def imbalance(layout: Layout, tolerance: float | None = None) -> tuple[float, fl
     tolerance
         Of the completing resistances; by default the design's.
     """
-    design = layout.design
+    design, lead = layout.design, longest_lead_resistance(layout)
     arm = completion_tolerance(design) if tolerance is None else tolerance
-    ends = [amplified(layout, 0.0, sign, arm) for sign in (-1.0, 1.0)]
+    ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
     return min(ends), max(ends)
 
 
-def amplified(layout: Layout, x: float, sign: float, arm: float | None = None) -> float:
-    """The amplifier's output (V) at a dR/R of x, every tolerance at its worst in one direction (sign)."""
-    design = layout.design
-    arm = completion_tolerance(design) if arm is None else arm
+def amplified(design: Design, lead: float, x: float, sign: float, arm: float) -> float:
+    """The amplifier's output (V) at a dR/R of x, every tolerance at its worst in one direction (sign).
+
+    Parameters
+    ----------
+    design, lead, x
+        As for `bridge_signal`.
+    sign
+        1 or -1.
+    arm
+        Tolerance of the completing resistances.
+    """
     gauge = sign * design.gauge.resistance_tolerance
-    plus, minus = bridge_signal(design, longest_lead_resistance(layout), x, gauge, sign * arm)
+    plus, minus = bridge_signal(design, lead, x, gauge, sign * arm)
     return design.readout.gain * (plus - minus + sign * AMPLIFIERS[design.readout.amplifier].offset)
 
 

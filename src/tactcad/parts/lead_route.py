@@ -14,7 +14,7 @@ from math import ceil, dist
 
 from tactcad.design.electronics import WIRES
 
-from .boards import Board, boards
+from .boards import ReadBoard, boards
 from .description import Vector
 from .layout import ElementPlace, Layout
 
@@ -41,7 +41,7 @@ def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
     return tuple(sorted(found, key=lambda route: route.place.number))
 
 
-def _route(layout: Layout, board: Board, place: ElementPlace) -> LeadRoute:
+def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
     d, side = layout.design, 1.0 if place.row == 1 else -1.0
     face, recess = layout.body_bottom(place.hinge), d.element.recess_depth
     terminal = min(place.hinge_x + d.gauge.carrier_body_side, layout.recess_start)
