@@ -44,7 +44,8 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
 
     def extremes(x: float) -> tuple[float, float]:
         """Of either sign: which one a load gives depends on the arm of the bridge."""
-        return amplified(design, lead, -x, -1.0, arm), amplified(design, lead, x, 1.0, arm)
+        least = max(-x, -1.0)  # no resistance is negative
+        return amplified(design, lead, least, -1.0, arm), amplified(design, lead, x, 1.0, arm)
 
     found = []
     for i, state in enumerate(overloads(layout)):

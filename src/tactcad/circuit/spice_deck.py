@@ -78,9 +78,9 @@ def _lines(c: Component) -> list[str]:
     if c.kind == "capacitor":
         return [f"{c.designator} {_node(c.net('1'))} {_node(c.net('2'))} {c.figure('farad')!r}"]
     if c.kind == "multiplexer":
-        out = {side: _node(c.net(f"out_{side.lower()}")) for side in "AB"}
+        ends = {side: _node(c.net(f"out_{side.lower()}")) for side in "AB"}
         channels = [pin for pin in c.pins if pin.role[0] == "S"]
-        return [f"R{c.designator}{p.role} {_node(p.net)} {out[p.role[-1]]} {OPEN!r}" for p in channels]
+        return [f"R{c.designator}{p.role} {_node(p.net)} {ends[p.role[-1]]} {OPEN!r}" for p in channels]
     if c.kind == "amplifier":
         inner, name = c.designator.lower(), c.designator
         noise = c.figure("noise") ** 2 / FOUR_K_T

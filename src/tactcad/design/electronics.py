@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -114,12 +115,12 @@ def _rows(name: str) -> list[dict[str, str]]:
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
 
 
-def _bought(row: dict[str, str]) -> dict:
+def _bought(row: dict[str, str]) -> dict[str, Any]:
     verified = {"true": True, "false": False}[row["source_verified"]]
     return {"name": row["name"], "maker": row["maker"], "mpn": row["mpn"], "verified": verified}
 
 
-def _numbers(row: dict[str, str], *names: str) -> dict[str, float]:
+def _numbers(row: dict[str, str], *names: str) -> dict[str, Any]:
     return {name: float(row[name]) for name in names}
 
 

@@ -76,8 +76,7 @@ def nets_in_table(data: bytes) -> Nets:
 
 def _compare(what: str, read: Nets, circuit: Netlist) -> None:
     meant = {
-        name: frozenset((c.designator, pin.number) for c, pin in nodes)
-        for name, nodes in circuit.nets.items()
+        name: frozenset((c.designator, p.number) for c, p in nodes) for name, nodes in circuit.nets.items()
     }
     wrong = sorted(name for name in {*read, *meant} if read.get(name) != meant.get(name))
     if wrong:

@@ -22,11 +22,11 @@ from .rule import Rule
 ARRAY = (
     "element_rules",
     "gauge_rules",
-    "readout_rules",
     "stop_rules",
     "clamp_rules",
     "pressed_rules",
     "slot_gauge_rules",
+    "readout_rules",
 )
 RIGS = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules", "stiffness_rules")
 

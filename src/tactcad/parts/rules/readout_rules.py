@@ -102,7 +102,8 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     own = d.readout.completion_tolerance is not None
     same = d.readout.completion_resistance in (None, d.gauge.resistance)
     least, most = imbalance(layout, 0.0)
-    path, value, legal = "readout.gain", d.readout.gain, "a gain, or an excitation, that keeps it inside"
+    path, legal = "readout.gain", "a gain, or an excitation, that keeps it inside"
+    value: object = d.readout.gain
     if not same:
         path, value = "readout.completion_resistance", present_resistance(layout)
         legal = f"{d.gauge.resistance:g} ohm, the gauge's"
@@ -178,7 +179,7 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule(after="override_names_element")
+@rule(after="recess_fits_rear")
 def leads_are_relieved(layout: Layout) -> Iterator[Finding]:
     """The leads are bonded into the recess over a length that holds them."""
     bonded, least, room = layout.design.wiring.bonded, RELIEF * lead(layout), recess_length(layout)
