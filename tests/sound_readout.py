@@ -1,5 +1,5 @@
-"""Read-outs that keep every rule, drawn after the array that they read: bridges, amplifiers and times by their
-own closed forms, each bound with a factor of 2 for what these leave out.
+"""Read-outs that keep every rule, drawn after the array that they read: bridges, amplifiers and times by
+their own closed forms, each bound with a factor of 2 for what these leave out.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from math import pi
 
 from sound_designs import Draw
 
-# As design/data has them: supplies (V), V inside the negative and the positive one, gains, uV of offset, Hz at
-# a gain of 100.
+# As design/data has them: supplies (V), V inside the negative and the positive one, gains, uV of offset,
+# Hz at a gain of 100.
 AMPLIFIERS = {
     "AD621": (4.6, 36, 1.9, 1.2, (10.0, 100.0), 125, 2e5),
     "AD620": (4.6, 36, 1.9, 1.2, (1.0, 1000.0), 125, 1.2e5),

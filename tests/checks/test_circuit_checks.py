@@ -57,8 +57,7 @@ def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauge
 
 
 def test_the_resolution_by_hand():
-    """E1 of the shipped array: two standard deviations of ten averaged samples, drift of three arms, amplifier and
-    leads, over the slope of the bridge."""
+    """Two standard deviations of ten averaged samples, drift of three arms, amplifier and leads, in volts."""
     d = read("macro-array")
     noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
     drifts = (67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)

@@ -73,8 +73,8 @@ def test_bridges_agree_with_dividers(ohm, switch, connection, tmp_path):
 
 
 def test_three_wires_are_the_better_connection(tmp_path):
-    """The leads' resistance unbalances a bridge with two wires, and not one with three; both lose the same of the
-    signal."""
+    """The leads' resistance unbalances a bridge with two wires, and not one with three, and takes twice as much
+    of the signal."""
     found = {}
     for connection in ("two-wire", "three-wire"):
         circuit = netlist(Layout(variant({"readout.connection": connection})))
@@ -89,7 +89,7 @@ def test_three_wires_are_the_better_connection(tmp_path):
 
 
 def test_the_papers_gain(tmp_path):
-    """2.7 V x 100 x 2.1/4 = 142 V per strain, as mechanics/readout has it; leads and switch take 0.3 % of it."""
+    """2.7 V x 100 x 2.1/4 = 142 V per strain, as in mechanics; leads and switch take 0.3 % of it."""
     design = read("macro-array")
     assert float(readout.volts_per_strain(2.1, design_readout(design))) == pytest.approx(141.75)
     circuit = netlist(Layout(design))

@@ -96,10 +96,11 @@ def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
 
 def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], foot: str) -> list[str]:
     """Gauges among the four arms between the bridges' supply and a switch; none where there are other than
-    four, or their two middles are no channel's pair."""
+    four, their middles carry others too, or are no channel's pair."""
     upper, lower = arms.get(EXCITATION, {}), arms.get(foot, {})
     middles = [net for net in lower if net in upper]
     around = [c for net in middles for c in (*upper[net], *lower[net])]
-    if len(middles) != 2 or len(around) != 4 or frozenset(middles) not in pairs:
+    ends = sum(len(found) for net in middles for found in arms[net].values())
+    if len(middles) != 2 or len(around) != 4 or ends != 4 or frozenset(middles) not in pairs:
         return []
     return [c.designator for c in around if c.kind == "gauge"]

@@ -86,7 +86,9 @@ def _lines(c: Component) -> list[str]:
         noise = c.figure("noise") ** 2 / FOUR_K_T
         farad = 1 / (2 * pi * POLE_OHM * c.figure("bandwidth"))
         out = _node(c.net("out"))
+        set_by = {pin.net for pin in c.pins if pin.role.startswith("rg") and pin.net}
         return [
+            *(f"R{name}{net} {_node(net)} 0 {OPEN!r}" for net in sorted(set_by)),  # none floats
             f"R{name}N {_node(c.net('plus'))} {inner}n {noise!r}",
             f"E{name} {inner}e {_node(c.net('ref'))} {inner}n {_node(c.net('minus'))} {c.figure('gain')!r}",
             f"R{name}P {inner}e {out} {POLE_OHM!r}",
