@@ -73,8 +73,8 @@ def test_bridges_agree_with_dividers(ohm, switch, connection, tmp_path):
 
 
 def test_three_wires_are_the_better_connection(tmp_path):
-    """The leads' resistance unbalances a bridge with two wires, and not one with three, and takes twice as much
-    of the signal."""
+    """Of two wires the leads' resistance unbalances the bridge, of three not, and takes twice as much of the
+    signal."""
     found = {}
     for connection in ("two-wire", "three-wire"):
         circuit = netlist(Layout(variant({"readout.connection": connection})))

@@ -188,6 +188,7 @@ def _rebuild(
 
     from .products import (
         assembly_products,
+        circuit_drawing,
         circuit_products,
         drawing_products,
         guide_products,
@@ -208,6 +209,8 @@ def _rebuild(
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
         products += assembly_products(design, scenes, shapes, progress.step, options.draft)
+        if "array" in options.scenes:
+            products += circuit_drawing(design, shapes, progress.step, options.draft)
     folder = work.folder
     made = _write_products(folder, products, cache, progress)
     records = [_record(folder, p, design) for p in products]

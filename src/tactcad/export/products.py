@@ -241,6 +241,17 @@ def assembly_products(
     return _drawn(wanted, assembly_written, shapes, say)
 
 
+def circuit_drawing(
+    design: Design, shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+) -> list[Output]:
+    """The circuit's sheets, as PDF and SVG."""
+    from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
+
+    stem = f"{design.name}-circuit_{design.design.revision}"
+    key = digest(("circuit drawing", shapes.made_by, design, draft))
+    return _drawn([_Wanted(stem, "", key, lambda: CircuitOrder(design, draft))], circuit_written, shapes, say)
+
+
 def _drawn(
     wanted: Sequence[_Wanted],
     make: Callable[..., Written],
