@@ -44,6 +44,7 @@ def plan_page(layout: Layout, says: list[str]) -> Page:
         flat = [on(x, y) for x, y, _ in route.points[:-1]]
         items += [segment(a, b, LEAD, "leader") for a, b in zip(flat, flat[1:]) if a != b]
         items.append(DrawnArc(flat[0], 0.6, line=VISIBLE, role="leader"))
+    named: dict[float, float] = {}
     for board in boards(layout):
         side = 1.0 if board.places[0].row == 1 else -1.0
         tie = on(side * half_x, (board.places[0].y + board.places[-1].y) / 2)
@@ -52,6 +53,9 @@ def plan_page(layout: Layout, says: list[str]) -> Page:
             DrawnArc(tie, 1.2, line=VISIBLE, role="leader"),
             segment((tie[0] + side * 1.2, tie[1]), end, VISIBLE, "leader"),
         ]
+        if abs(tie[1] - named.get(side, 1e9)) < 2 * LETTERS:
+            continue  # a long row: those between are named in the list
+        named[side] = tie[1]
         name = f"J{10 * board.number + 2}"
         start = end[0] + side * 1.5 - (width(name, LETTERS) if side < 0 else 0.0)
         items.append(Text((start, tie[1] - LETTERS / 2), name, LETTERS))
