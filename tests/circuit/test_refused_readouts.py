@@ -66,7 +66,7 @@ def refused(design: str, field: str, value: str, legal: str, tmp_path, capsys) -
             {"readout.completion_tolerance": 0.03, "readout.bridge_offset": 0.01},
             "readout.completion_tolerance",
         ),
-        ({"readout.excitation": 6.0}, "readout.excitation"),
+        ({"readout.on_time": 0.3}, "readout.excitation"),
         ({"readout.samples": 1000}, "readout.on_time"),
         ({"readout.samples": 10, "readout.on_time": 2e-5}, "readout.on_time"),
     ],
