@@ -61,6 +61,26 @@ def rigidity() -> list[Finding]:
     return check_rigidity(variant({"holder.lid_thickness": 2.0}), ["grasping"], [])
 
 
+def circuit(**changes) -> list[Finding]:
+    from tactcad.checks.wired import check_circuit
+
+    return list(check_circuit(variant({path.replace("__", "."): v for path, v in changes.items()})))
+
+
+def signals(**changes) -> list[Finding]:
+    from tactcad.checks.signals import check_signals
+
+    return list(check_signals(variant({path.replace("__", "."): v for path, v in changes.items()})))
+
+
+def missoldered() -> list[Finding]:
+    from test_circuit_checks import moved
+
+    from tactcad.checks.wired import check_bridges
+
+    return list(check_bridges(moved("W31", "2", "E2_RED")))
+
+
 def assembly() -> list[Finding]:
     from tactcad.checks.goes_together import check_assembly
 
@@ -238,6 +258,7 @@ def golden() -> list[Finding]:
 
 
 BREP, CLEARANCE = "tests/checks/test_brep_and_mesh.py", "tests/checks/test_clearance.py"
+CIRCUIT = "tests/checks/test_circuit_checks.py"
 MACHINING = {
     "mill-corner": "a pocket with sharp corners",
     "mill-groove": "a groove of 0.9 mm",
@@ -314,6 +335,25 @@ BAD: dict[str, Bad] = {
         "arms' tips within 0.2 mm of their place",
         assembly,
         "tests/assembly/test_virtual_build.py",
+    ),
+    "one-bridge": Bad("circuit", "a lead of E3 soldered to E2's pin", missoldered, CIRCUIT),
+    "channels": Bad("circuit", "one input for ten elements", lambda: circuit(readout__inputs=1), CIRCUIT),
+    "bridge-balance": Bad(
+        "circuit", "resistors within 2 %", lambda: circuit(readout__completion_tolerance=0.02), CIRCUIT
+    ),
+    "common-mode": Bad(
+        "circuit",
+        "the negative supply 0.4 V below ground",
+        lambda: circuit(readout__supply_negative=-0.4),
+        CIRCUIT,
+    ),
+    "gauge-power": Bad("circuit", "bridges fed with 7 V", lambda: circuit(readout__excitation=7.0), CIRCUIT),
+    "settling": Bad("circuit", "10 us for a reading", lambda: circuit(readout__on_time=1e-5), CIRCUIT),
+    "lead-room": Bad("circuit", "a recess 0.2 mm deep", lambda: circuit(element__recess_depth=0.2), CIRCUIT),
+    "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
+    "signal-range": Bad("signals", "a converter of 1.4 V", lambda: signals(readout__adc_range=1.4), CIRCUIT),
+    "force-resolution": Bad(
+        "signals", "3 mN wished for", lambda: signals(readout__force_resolution=3.0), CIRCUIT
     ),
     "deflection": Bad("rigidity", "a holder's lid of 2 mm", rigidity, "tests/checks/test_rigidity.py"),
     "calibration": Bad(

@@ -124,7 +124,10 @@ def sound_table(seed: int, row_lengths: tuple[int, ...], rigs: bool = False) -> 
     _clamp(d)
     thinnest = min(t for path, t in d.table.items() if path.endswith(".hinge_thickness"))
     d.most = {"tolerance.hinge_thickness": thinnest / 4}
-    for section in ("gauge", "readout", "tolerance", "rating"):
+    from sound_readout import draw_readout
+
+    draw_readout(d)
+    for section in ("tolerance", "rating"):
         d.rest(section)
     if rigs:
         from sound_rigs import sound_rigs
@@ -345,11 +348,14 @@ def _clamp(d: Draw) -> None:
     d.put("holes.dowel_offsets", [x for x, kind in zip(spots, order) if kind == "dowel"])
     offset = d.number("clamp.carrier_screw_offset", counterbore + mounted.d + 1.5, d.deepest)
     rear_end = max(spots[-1] + max(web + widest / 2, head + 1), offset + counterbore / 2 + 1)
-    length = d.number("element.rear_length", rear_end, 1.5 * d.deepest)
     over = max(d.ledge - recess, 0.0)
-    start = d.number(
-        "element.recess_offset", sqrt(max(web**2 - over**2, 0.0)) + 0.001, length - corner - 0.01
-    )
+    behind = sqrt(max(web**2 - over**2, 0.0)) + 0.001
+    # ten diameters of the leads are bonded in the recess
+    glued = corner + 10 * LEAD + 0.2
+    length = d.number("element.rear_length", max(rear_end, behind + glued), 1.5 * d.deepest)
+    start = d.number("element.recess_offset", behind, length - glued)
+    d.recess = length - start
+    d.longest_way = d.table["array.row_pitch"] + max(map(max, d.arms)) + seat + length + d.longest_stack
     d.number("gauge.carrier_body_side", d.carrier_least, min(d.carrier_most, seat + 0.35 * d.l + start))
 
     # plates

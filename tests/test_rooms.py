@@ -18,6 +18,7 @@ ROOMS = (
     "parts",
     "scenes",
     "assembly",
+    "circuit",
     "solids",
     "checks",
     "drawing",

@@ -159,6 +159,48 @@ WITNESSES = {
             "element.seat_length",
         ),
     ],
+    "reading_within_period": [({"readout.period": 0.004}, "readout.on_time")],
+    "amplifier_has_gain": [
+        ({"readout.gain": 50}, "readout.gain"),
+        ({"readout.amplifier": "AD620", "readout.gain": 2000}, "readout.gain"),
+    ],
+    "supplies_suit_parts": [
+        ({"readout.supply_positive": 30.0}, "readout.supply_positive"),
+        ({"readout.amplifier": "AD623", "readout.supply_positive": 8.0}, "readout.supply_positive"),
+    ],
+    "boards_have_inputs": [({"readout.inputs": 1}, "readout.inputs")],
+    "gauge_bears_power": [
+        ({"readout.on_time": 0.2}, "readout.excitation"),
+        (
+            {"readout.excitation": 7.0, "readout.gain": 10, "readout.supply_positive": 9.0},
+            "readout.excitation",
+        ),
+    ],
+    "bridge_stays_in_range": [
+        ({"readout.completion_tolerance": 0.02}, "readout.completion_tolerance"),
+        ({"readout.completion": "film-1", "gauge.resistance_tolerance": 0.03}, "readout.completion"),
+        ({"readout.completion_resistance": 130.0}, "readout.completion_resistance"),
+        ({"readout.bridge_offset": 0.08}, "readout.gain"),
+    ],
+    "inputs_within_common_mode": [
+        (
+            {
+                "readout.supply_negative": -0.4,
+                "readout.supply_positive": 9.6,
+                "readout.headroom": 0.0,
+                "readout.gain": 10,
+            },
+            "readout.supply_negative",
+        )
+    ],
+    "switching_settles": [
+        ({"readout.samples": 1000}, "readout.on_time"),
+        ({"readout.on_time": 1e-5}, "readout.on_time"),
+    ],
+    "leads_are_relieved": [
+        ({"wiring.bonded": 0.0}, "wiring.bonded"),
+        ({"wiring.bonded": 20.0}, "wiring.bonded"),
+    ],
     "recess_fits_rear": [
         ({"clamp.spacer_bottom": 0.7}, "clamp.spacer_bottom"),
         ({"element.recess_depth": 0.28}, "element.recess_depth"),

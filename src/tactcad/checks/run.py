@@ -29,8 +29,10 @@ from .motion import check_motions
 from .moving_weight import check_moving_weight
 from .rigidity import check_rigidity
 from .shop import DEFAULT, load_shop
+from .signals import check_signals
 from .tools import check_tools
 from .wirecut import check_wirecut
+from .wired import check_circuit
 
 
 def run_checks(
@@ -66,6 +68,8 @@ def run_checks(
     report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
     if "calibration" in scene_names:
         report.run("calibration travel", check_calibration, design)
+    report.run("circuit", check_circuit, design)
+    report.run("signals", check_signals, design)
     scenes = [make_scene(design, name) for name in scene_names]
     report.run("assembly", check_assembly, design, scenes)
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())

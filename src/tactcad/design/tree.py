@@ -10,9 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
+from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, given
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
 from .rigs import Calibration, Cart, Grasping, Holder, Sample
+from .sensing import Readout, StrainGauge, Wiring
 from .stock import OTHER_SHEET
 
 # Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
@@ -200,49 +201,6 @@ class Clamp:
 
 
 @dataclass(frozen=True)
-class StrainGauge:
-    """[gauge]: the strain gauge at each hinge."""
-
-    resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
-    factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
-    grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
-    grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
-    grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
-    carrier_arm_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the pad"), 1.2)
-    carrier_body_side: float = given(
-        Number("mm", 0.01, 50, "carrier from hinge centre towards the clamp"), 2.8
-    )
-    carrier_width: float = given(Number("mm", 0.01, 20, "carrier across the element"), 1.5)
-    carrier_modulus: float = given(Number("MPa", 0, 2e5, "Young's modulus of backing and adhesive"), 3000.0)
-    carrier_conductivity: float = given(Number("W/(m K)", 0.01, 50, "of backing and adhesive"), 0.2)
-    foil_thickness: float = given(Number("mm", 0, 0.1, "grid foil"), 0.005)
-    foil_modulus: float = given(Number("MPa", 0, 5e5, "Young's modulus of the foil"), 162000.0)
-    foil_coverage: float = given(Number("", 0, 1, "share of the grid's area that is metal"), 0.5)
-    resistance_per_kelvin: float = given(Number("1/K", -0.01, 0.01, "on a free gauge"), -17e-6)
-
-
-@dataclass(frozen=True)
-class Readout:
-    """[readout]: quarter bridge, amplifier and converter."""
-
-    excitation: float = given(Number("V", 0.01, 20, "bridge supply while reading"), 2.7)
-    gain: float = given(Number("", 1, 10000, "amplifier gain"), 100.0)
-    supply_positive: float = given(Number("V", 1, 30, "amplifier supply"), 5.0)
-    supply_negative: float = given(Number("V", -30, 0, "amplifier supply"), -5.0)
-    headroom: float = given(Number("V", 0, 5, "output stays this far inside the supplies"), 1.5)
-    bridge_offset: float = given(Number("", -0.1, 0.1, "dR/R of the unloaded bridge"), 0.0)
-    noise: float = given(Number("V", 0, 1, "rms of one sample at the amplifier's output"), 0.0005)
-    adc_bits: int = given(Whole(1, 32, "converter resolution"), 16)
-    adc_range: float = given(Number("V", 0.01, 30, "converter's range, plus and minus"), 5.0)
-    samples: int = given(Whole(1, 1_000_000, "samples averaged for a reading"), 10)
-    on_time: float = given(Number("s", 1e-6, 100, "bridge powered for one reading"), 0.005)
-    period: float = given(Number("s", 1e-5, 1e5, "time between readings"), 1.0)
-    reference_mismatch: float = given(
-        Number("", 0, 1, "share of self-heating that the reference gauges do not cancel"), 0.2
-    )
-
-
-@dataclass(frozen=True)
 class Tolerance:
     """[tolerance]: plus and minus, taken as two standard deviations; on drawings, in bands and budget.
 
@@ -339,6 +297,7 @@ class Design:
     stop: Stop = Stop()
     rating: Rating = Rating()
     readout: Readout = Readout()
+    wiring: Wiring = Wiring()
     tolerance: Tolerance = Tolerance()
     cart: Cart | None = None
     holder: Holder | None = None

@@ -21,6 +21,8 @@ KINDS = {f.kind for f in PART_FORMATS} | {
     "drawing",
     "inspection",
     "report",
+    "netlist",
+    "wiring",
 }
 
 

@@ -26,7 +26,19 @@ if TYPE_CHECKING:
     from .shapes import Shapes
 
 # Rooms and libraries that an exported file may depend on: a change in any of them rebuilds.
-ROOMS = ("", "design", "contour", "mechanics", "parts", "scenes", "assembly", "solids", "drawing", "export")
+ROOMS = (
+    "",
+    "design",
+    "contour",
+    "mechanics",
+    "parts",
+    "scenes",
+    "assembly",
+    "circuit",
+    "solids",
+    "drawing",
+    "export",
+)
 # The kernel's binding comes with VTK or, as the extra `cad` of PyPI has it, without; in a checkout the second
 # is an empty stand-in for the first.
 KERNEL = first_installed("cadquery-ocp", "cadquery-ocp-novtk")
@@ -176,6 +188,8 @@ def _rebuild(
 
     from .products import (
         assembly_products,
+        circuit_drawing,
+        circuit_products,
         drawing_products,
         guide_products,
         part_products,
@@ -190,10 +204,13 @@ def _rebuild(
     products = [p for part in parts for p in part_products(design, part, shapes)]
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
     products += stack_products(design, options.scenes, shapes)
+    products += circuit_products(design, shapes) if "array" in options.scenes else []
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
         products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
         products += assembly_products(design, scenes, shapes, progress.step, options.draft)
+        if "array" in options.scenes:
+            products += circuit_drawing(design, shapes, progress.step, options.draft)
     folder = work.folder
     made = _write_products(folder, products, cache, progress)
     records = [_record(folder, p, design) for p in products]

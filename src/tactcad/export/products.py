@@ -119,6 +119,23 @@ def stack_products(design: Design, names: Sequence[str], shapes: Shapes) -> list
     ]
 
 
+def circuit_products(design: Design, shapes: Shapes) -> list[Output]:
+    """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
+    from . import circuit_files as files
+
+    stem = f"circuit/{design.name}-circuit_{design.design.revision}"
+    key = digest(("circuit", shapes.made_by, design))
+    return [
+        Output(path, kind, "", f"{key} {path}", partial(make, design))
+        for path, kind, make in (
+            (f"{stem}.net", "netlist", files.kicad_file),
+            (f"{stem}.csv", "netlist", files.table_file),
+            (f"{stem}.cir", "netlist", files.deck_file),
+            (f"circuit/{design.name}-wiring_{design.design.revision}.csv", "wiring", files.wiring_file),
+        )
+    ]
+
+
 def guide_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:
     """The scene's assembly guide: an exploded view, a picture a step, and the page that shows them."""
     from tactcad.drawing import guide
@@ -222,6 +239,17 @@ def assembly_products(
         key = digest(("assembly drawing", shapes.made_by, scene, *common))
         wanted.append(_Wanted(f"{design.name}-{scene.name}_{revision}", "", key, partial(order, scene)))
     return _drawn(wanted, assembly_written, shapes, say)
+
+
+def circuit_drawing(
+    design: Design, shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+) -> list[Output]:
+    """The circuit's sheets, as PDF and SVG."""
+    from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
+
+    stem = f"{design.name}-circuit_{design.design.revision}"
+    key = digest(("circuit drawing", shapes.made_by, design, draft))
+    return _drawn([_Wanted(stem, "", key, lambda: CircuitOrder(design, draft))], circuit_written, shapes, say)
 
 
 def _drawn(

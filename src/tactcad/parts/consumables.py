@@ -4,37 +4,33 @@ resistors.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import ceil
-
+from tactcad.design.electronics import WIRES
 from tactcad.design.materials import family
 
+from .electronic_parts import (
+    GAUGE,
+    LEAD,
+    TERMINAL,
+    Supply,
+    board_supplies,
+    bonded_spares,
+    completion_supply,
+    wire_metres,
+)
 from .layout import Layout
-
-
-@dataclass(frozen=True)
-class Supply:
-    """A bill-of-materials line without a solid. Quantities count the array once; spares come on top."""
-
-    part_no: str
-    description: str
-    qty: float
-    unit: str
-    designation: str
-    alternates: str = ""
-    spares: float = 0
-    consumable: bool = True
+from .lead_route import leads
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """Gauge, wiring and bonding supplies of the array, none of them verified in a maker's own data."""
+    """Gauges, what they are bonded and wired with, and the boards' parts."""
     g, material = layout.design.gauge, layout.design.material
     n = len(layout.elements)
-    spare_gauges = max(1, ceil(n / 5))  # chosen: one in five is lost in bonding or soldering
+    spare_gauges = bonded_spares(n)
+    wire = WIRES[layout.design.wiring.wire]
     ohm = f"{g.resistance:g} ohm"
     return (
         Supply(
-            "STRAIN-GAUGE",
+            GAUGE,
             f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, "
             f"for {family(material.density) or material.alloy}",
             n,
@@ -45,18 +41,9 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             spares=spare_gauges,
             consumable=False,
         ),
+        completion_supply(layout),
         Supply(
-            "BRIDGE-RESISTOR",
-            f"bridge completion, {ohm}, or a reference gauge on the same alloy",
-            3 * n,
-            "pcs",
-            f"precision resistor {ohm}, 0.1 %, 5 ppm/K",
-            alternates="strain gauge as above, unloaded",
-            spares=3,
-            consumable=False,
-        ),
-        Supply(
-            "TERMINAL",
+            TERMINAL,
             "solder terminal pair, self-adhesive",
             n,
             "pcs",
@@ -72,10 +59,12 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             "polyurethane or silicone gauge coating",
         ),
         Supply(
-            "LEAD-WIRE",
-            "lead wire, three per gauge",
-            round(3 * 0.5 * n, 1),
+            LEAD,
+            f"lead wire, {leads(layout)} per gauge, in their colours",
+            wire_metres(layout),
             "m",
-            "AWG 36 stranded, polyimide or PTFE insulated",
+            f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation",
+            spares=round(wire_metres(layout) * spare_gauges / n, 1),
         ),
+        *board_supplies(layout),
     )

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TypeVar
 
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder
 from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
+from tactcad.mechanics.readout_noise import sample_noise
 from tactcad.mechanics.section import HingeSection
 
 from .layout import ElementPlace, HingeShape, Layout
@@ -89,7 +92,23 @@ def design_gauge(design: Design) -> Gauge:
 
 def design_readout(design: Design) -> ReadOut:
     """The design's bridge, amplifier and converter."""
-    return _filled(ReadOut, design.readout)
+    given = design.readout
+    noise = derived_noise(design) if given.noise is None else given.noise
+    return _filled(ReadOut, replace(given, noise=noise))
+
+
+def derived_noise(design: Design) -> float:
+    """Rms of one sample at the amplifier's output, V, by the electronic parts of the design."""
+    r, amplifier = design.readout, AMPLIFIERS[design.readout.amplifier]
+    arm, gauge = completion_resistance(design), design.gauge.resistance
+    source = gauge * arm / (gauge + arm) + arm / 2 + 2 * MULTIPLEXERS[r.multiplexer].on_ohm
+    return sample_noise(r.gain, amplifier.noise_density(r.gain), amplifier.bandwidth(r.gain), source)
+
+
+def completion_resistance(design: Design) -> float:
+    """Of each of the three other arms, ohm."""
+    own = design.readout.completion_resistance
+    return design.gauge.resistance if own is None else own
 
 
 def _filled(kind: Callable[..., T], table: object) -> T:

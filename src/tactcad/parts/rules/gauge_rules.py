@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import floor
 
+from tactcad.design.electronics import WIRES
+
 from ..finding import SAME, Finding
 from ..layout import LEAST_GAP, Layout
+from ..lead_route import leads
 from ..spacer import SPACER_TOLERANCE
 from .rule import at_least, at_most, rule, wrong
 
-# A lead is AWG 36 (0.127 mm, ASTM B258) with 0.06 mm of insulation around it: 0.25 mm; chosen: three a
-# gauge, so that the leads' own resistance cancels in the bridge.
-LEAD, LEADS = 0.25, 3
 # Neighbouring arms, and arm and end plate, stand a spacer apart; chosen: a thin gauge wire must not jam. Air
 # that stays where all tolerances add up, mm; chosen: burrs of the wire are smaller.
 LEAST_ARM_GAP = 0.1
@@ -83,14 +83,14 @@ def leads_have_room(layout: Layout) -> Iterator[Finding]:
     """The leads fit: in the wire recess, as wide as element and spacer; in front of it under the face, beside
     the gauge.
     """
-    d, e = layout.design, layout.design.element
-    if leads_that_fit(layout) < LEADS:
-        rows = -(-LEADS // max(1, floor(d.array.pitch / LEAD + SAME)))
+    d, e, wire, count = layout.design, layout.design.element, lead(layout), leads(layout)
+    if leads_that_fit(layout) < count:
+        rows = -(-count // max(1, floor(d.array.pitch / wire + SAME)))
         yield wrong(
             "element.recess_depth",
-            f"{LEADS} leads of {LEAD:g} mm do not fit into the wire recess of {d.array.pitch:g} mm width",
+            f"{count} leads of {wire:g} mm do not fit into the wire recess of {d.array.pitch:g} mm width",
             e.recess_depth,
-            f"at least {LEAD * rows:g} mm, and a pitch of {LEAD:g} mm or more",
+            f"at least {wire * rows:g} mm, and a pitch of {wire:g} mm or more",
         )
     out, room = gauge_stands_out(layout), gauge_room(layout)
     if LEAST_GAP - SAME <= room:  # less than that breaks another rule
@@ -104,14 +104,19 @@ def leads_have_room(layout: Layout) -> Iterator[Finding]:
 
 def leads_that_fit(layout: Layout) -> int:
     """How many leads lie in the recess of one element."""
-    depth = layout.design.element.recess_depth
-    return floor(layout.design.array.pitch / LEAD + SAME) * floor(depth / LEAD + SAME)
+    depth, wire = layout.design.element.recess_depth, lead(layout)
+    return floor(layout.design.array.pitch / wire + SAME) * floor(depth / wire + SAME)
+
+
+def lead(layout: Layout) -> float:
+    """Diameter of a lead over its insulation, mm."""
+    return WIRES[layout.design.wiring.wire].outer
 
 
 def gauge_stands_out(layout: Layout) -> float:
     """How far gauge and leads stand out of the faces that they lie on, mm."""
     gauge = layout.design.gauge
-    return LEAD + gauge.grid_height if layout.design.element.sides == "one" else LEAD
+    return lead(layout) + (gauge.grid_height if layout.design.element.sides == "one" else 0.0)
 
 
 def gauge_room(layout: Layout) -> float:

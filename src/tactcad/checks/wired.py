@@ -1,0 +1,106 @@
+"""Whether the circuit reads what it is to read: every gauge in one bridge, and the rules on what reads it.
+
+The rules (parts/rules/readout_rules.py) refuse a design that fails here; the netlist is looked at as it is
+written.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from tactcad.circuit.bridges import EXCITATION, netlist
+from tactcad.circuit.netlist import Component, Netlist
+from tactcad.design.tree import Design
+from tactcad.parts.finding import Finding
+from tactcad.parts.layout import Layout
+from tactcad.parts.rules.gauge_rules import leads_have_room
+from tactcad.parts.rules.readout_rules import (
+    boards_have_inputs,
+    bridge_stays_in_range,
+    gauge_bears_power,
+    inputs_within_common_mode,
+    leads_are_relieved,
+    switching_settles,
+)
+
+
+def check_circuit(design: Design) -> Iterator[Finding]:
+    """Findings on the array's netlist, and on its bridges, inputs, power, times and leads."""
+    layout = Layout(design)
+    yield from check_bridges(netlist(layout))
+    for check, rule in (
+        ("channels", boards_have_inputs),
+        ("bridge-balance", bridge_stays_in_range),
+        ("common-mode", inputs_within_common_mode),
+        ("gauge-power", gauge_bears_power),
+        ("settling", switching_settles),
+        ("lead-room", leads_have_room),
+        ("strain-relief", leads_are_relieved),
+    ):
+        for f in rule(layout):
+            message = f"{f.message} ({f.part} = {f.value}; legal: {f.limit})"
+            yield Finding(check, "fail", design.name, (), f.value, f.limit, message)
+
+
+def check_bridges(circuit: Netlist) -> Iterator[Finding]:
+    """A failure for every gauge that is not in just one whole bridge, whose outputs are one channel's."""
+    joined = _joined_by_leads(circuit)
+    arms, pairs = _arms(circuit, joined), _channels(circuit, joined)
+    found: Counter[str] = Counter()
+    for switch in circuit.of_kind("switch"):
+        found.update(_gauges_of_bridge(arms, pairs, joined[switch.net("drain")]))
+    for gauge in circuit.of_kind("gauge"):
+        count = found[gauge.designator]
+        if count != 1:
+            message = f"gauge {gauge.designator} of E{gauge.element} is in {count} bridges that are read"
+            yield Finding("one-bridge", "fail", gauge.designator, (), count, 1, message)
+
+
+def _joined_by_leads(circuit: Netlist) -> dict[str, str]:
+    """One name for all nets that leads and terminals join."""
+    parent = {net: net for net in circuit.nets}
+
+    def root(net: str) -> str:
+        while parent[net] != net:
+            net = parent[net]
+        return net
+
+    for lead in circuit.of_kind("lead"):
+        parent[root(lead.net("2"))] = root(lead.net("1"))
+    return {net: root(net) for net in parent}
+
+
+Arms = dict[str, dict[str, list[Component]]]
+
+
+def _arms(circuit: Netlist, joined: dict[str, str]) -> Arms:
+    """Resistors and gauges by the nets at their two ends, either way round."""
+    arms: Arms = {}
+    for component in (*circuit.of_kind("resistor"), *circuit.of_kind("gauge")):
+        first, second = (joined[component.net(role)] for role in "12")
+        for a, b in ((first, second), (second, first)):
+            arms.setdefault(a, {}).setdefault(b, []).append(component)
+    return arms
+
+
+def _channels(circuit: Netlist, joined: dict[str, str]) -> set[frozenset[str]]:
+    """The two nets of every channel of the multiplexers."""
+    pairs: dict[tuple[str, str], set[str]] = {}
+    for multiplexer in circuit.of_kind("multiplexer"):
+        for pin in multiplexer.pins:
+            if pin.role.startswith("S"):
+                pairs.setdefault((multiplexer.designator, pin.role[:-1]), set()).add(joined[pin.net])
+    return set(map(frozenset, pairs.values()))
+
+
+def _gauges_of_bridge(arms: Arms, pairs: set[frozenset[str]], foot: str) -> list[str]:
+    """Gauges among the four arms between the bridges' supply and a switch; none where there are other than
+    four, their middles carry others too, or are no channel's pair."""
+    upper, lower = arms.get(EXCITATION, {}), arms.get(foot, {})
+    middles = [net for net in lower if net in upper]
+    around = [c for net in middles for c in (*upper[net], *lower[net])]
+    ends = sum(len(found) for net in middles for found in arms[net].values())
+    if len(middles) != 2 or len(around) != 4 or ends != 4 or frozenset(middles) not in pairs:
+        return []
+    return [c.designator for c in around if c.kind == "gauge"]

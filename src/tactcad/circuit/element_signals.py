@@ -1,0 +1,60 @@
+"""What every element's channel gives: volts at its loads, and the smallest force that it tells from none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tactcad.mechanics import gauge_signal, readout
+from tactcad.parts.bridge_figures import amplified, completion_tolerance, drift
+from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
+from tactcad.parts.layout import ElementPlace, Layout
+from tactcad.parts.lead_route import longest_lead_resistance
+from tactcad.parts.overload import overloads
+
+
+@dataclass(frozen=True)
+class ElementSignal:
+    """One element's.
+
+    per_force   V/N behind the amplifier, at no load
+    rated       least and largest output at the rated force, V, of either sign, tolerances at their worst
+    overload    likewise with the stop closed under the overload force
+    resolution  N: noise and quantisation at two standard deviations, and drift, by the root of their squares
+    """
+
+    place: ElementPlace
+    per_force: float
+    rated: tuple[float, float]
+    overload: tuple[float, float]
+    resolution: float
+
+
+def element_signals(layout: Layout) -> list[ElementSignal]:
+    """Every element's, by number. Raises CheckFailure where one is out of the estimator's range."""
+    design, places = layout.design, layout.elements
+    section, gauge, chain = hinge_section(layout, places), design_gauge(design), design_readout(design)
+    shape = (len(places),)
+    foil = np.broadcast_to(gauge_signal.foil_strain_per_force(section, gauge), shape)
+    bent = np.broadcast_to(gauge_signal.foil_strain_per_deflection(section, gauge), shape)
+    volts = float(readout.volts_per_strain(gauge.factor, chain))
+    least = ((2 * chain.averaged_noise) ** 2 + drift(layout) ** 2) ** 0.5
+    lead, arm = longest_lead_resistance(layout), completion_tolerance(design)
+
+    def extremes(x: float) -> tuple[float, float]:
+        """Of either sign: which one a load gives depends on the arm of the bridge."""
+        least = max(-x, -1.0)  # no resistance is negative
+        return amplified(design, lead, least, -1.0, arm), amplified(design, lead, x, 1.0, arm)
+
+    found = []
+    for i, state in enumerate(overloads(layout)):
+        per_force = volts * float(foil[i])
+        at_rated = gauge.factor * float(foil[i]) * state.rated_force
+        at_overload = gauge.factor * float(bent[i]) * state.deflection
+        found.append(
+            ElementSignal(
+                state.place, per_force, extremes(at_rated), extremes(at_overload), least / abs(per_force)
+            )
+        )
+    return found

@@ -1,0 +1,105 @@
+"""A netlist: components with designators, values and part numbers, and what is connected by their pins.
+
+Designators by IEC 81346-2: B gauges, C capacitors, J connectors, Q transistors, R resistors, U integrated
+circuits, W leads, X terminals. Those of element n: Bn, Qn, Xn, R(10 n + 1) to R(10 n + 3), W likewise; those
+of board b: U(10 b + 1) and on, C, J likewise, and the resistor R(10 b) that sets its gain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+Kind = Literal[
+    "gauge",
+    "resistor",
+    "lead",
+    "terminal",
+    "switch",
+    "multiplexer",
+    "decoder",
+    "amplifier",
+    "capacitor",
+    "connector",
+]
+GROUND = "GND"
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A pin by its number or letter, what it is for, and the net that it is on; "" where it stays open."""
+
+    number: str
+    role: str
+    net: str
+
+
+@dataclass(frozen=True)
+class Component:
+    """One component. `part_no` is its line of the bill. `figures` in V, ohm, F, Hz by name, for the deck.
+
+    `element` and `board` are the numbers of those that it belongs to; 0 for none.
+    """
+
+    designator: str
+    kind: Kind
+    value: str
+    part_no: str
+    pins: tuple[Pin, ...]
+    figures: tuple[tuple[str, float], ...] = ()
+    element: int = 0
+    board: int = 0
+
+    def net(self, role: str) -> str:
+        """The net of the pin with that role; raises KeyError where it has none."""
+        return {pin.role: pin.net for pin in self.pins}[role]
+
+    def figure(self, name: str) -> float:
+        """Raises KeyError where it has none of that name."""
+        return dict(self.figures)[name]
+
+
+@dataclass(frozen=True)
+class Netlist:
+    """All components; equal designs give equal netlists, in the same order.
+
+    Raises ValueError where two components share a designator.
+    """
+
+    name: str
+    excitation: float
+    supplies: tuple[tuple[str, float], ...]
+    components: tuple[Component, ...] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        names = [c.designator for c in self.components]
+        if len(set(names)) != len(names):
+            raise ValueError(f"netlist {self.name}: designators are not unique")
+
+    @cached_property
+    def nets(self) -> dict[str, tuple[tuple[Component, Pin], ...]]:
+        """What is on every net, by its name, in the order of the components."""
+        nets: dict[str, list[tuple[Component, Pin]]] = {}
+        for component in self.components:
+            for pin in component.pins:
+                if pin.net:
+                    nets.setdefault(pin.net, []).append((component, pin))
+        return {name: tuple(nodes) for name, nodes in nets.items()}
+
+    def of_kind(self, kind: Kind) -> Iterator[Component]:
+        return (c for c in self.components if c.kind == kind)
+
+    def on_board(self, kind: Kind, board: int) -> Component:
+        """The amplifier, multiplexer or decoder of a board. Raises KeyError where there is none."""
+        return self._once["board", kind, board]
+
+    def of_element(self, kind: Kind, element: int) -> Component:
+        """The gauge, terminal or switch of an element. Raises KeyError where there is none."""
+        return self._once["element", kind, element]
+
+    @cached_property
+    def _once(self) -> dict[tuple[str, Kind, int], Component]:
+        own = {("element", c.kind, c.element): c for c in self.components if c.element}
+        return own | {("board", c.kind, c.board): c for c in self.components if not c.element}

@@ -1,0 +1,108 @@
+"""Tables of the design file on gauges, read-out and wiring; lengths in mm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
+from .fields import Number, OneOf, Whole, given
+
+
+@dataclass(frozen=True)
+class StrainGauge:
+    """[gauge]: the strain gauge at each hinge."""
+
+    resistance: float = given(Number("ohm", 10, 10000, "gauge resistance"), 120.0)
+    factor: float = given(Number("", 0.5, 200, "gauge factor"), 2.1)
+    grid_length: float = given(Number("mm", 0.01, 10, "active grid length, centred on the hinge"), 0.5)
+    grid_width: float = given(Number("mm", 0.01, 20, "grid width"), 0.65)
+    grid_height: float = given(Number("mm", 0, 0.5, "backing and adhesive: foil over the hinge's face"), 0.03)
+    carrier_arm_side: float = given(Number("mm", 0.01, 50, "carrier from hinge centre towards the pad"), 1.2)
+    carrier_body_side: float = given(
+        Number("mm", 0.01, 50, "carrier from hinge centre towards the clamp"), 2.8
+    )
+    carrier_width: float = given(Number("mm", 0.01, 20, "carrier across the element"), 1.5)
+    carrier_modulus: float = given(Number("MPa", 0, 2e5, "Young's modulus of backing and adhesive"), 3000.0)
+    carrier_conductivity: float = given(Number("W/(m K)", 0.01, 50, "of backing and adhesive"), 0.2)
+    foil_thickness: float = given(Number("mm", 0, 0.1, "grid foil"), 0.005)
+    foil_modulus: float = given(Number("MPa", 0, 5e5, "Young's modulus of the foil"), 162000.0)
+    foil_coverage: float = given(Number("", 0, 1, "share of the grid's area that is metal"), 0.5)
+    resistance_per_kelvin: float = given(Number("1/K", -0.01, 0.01, "on a free gauge"), -17e-6)
+    resistance_tolerance: float = given(
+        Number("", 0, 0.1, "of the resistance once it is bonded, relative, plus and minus"), 0.003
+    )
+    power_density: float = given(
+        Number("kW/m2", 0.01, 1000, "of the grid, that its backing bears on this metal, mean over a period"),
+        7.8,
+    )
+    rise: float = given(Number("K", 0.1, 200, "of the grid over the leaf, that its backing bears"), 20.0)
+
+
+@dataclass(frozen=True)
+class Readout:
+    """[readout]: quarter bridge, amplifier and converter."""
+
+    excitation: float = given(Number("V", 0.01, 20, "bridge supply while reading"), 2.7)
+    gain: float = given(Number("", 1, 10000, "amplifier gain"), 100.0)
+    supply_positive: float = given(Number("V", 1, 30, "amplifier supply"), 5.0)
+    supply_negative: float = given(Number("V", -30, 0, "amplifier supply"), -5.0)
+    headroom: float = given(Number("V", 0, 5, "output stays this far inside the supplies"), 1.5)
+    bridge_offset: float = given(Number("", -0.1, 0.1, "dR/R of the unloaded bridge"), 0.0)
+    noise: float | None = given(
+        Number("V", 0, 1, "rms of one sample at the amplifier's output"),
+        None,
+        "from the amplifier's noise and bandwidth, and that of the resistors before it",
+    )
+    adc_bits: int = given(Whole(1, 32, "converter resolution"), 16)
+    adc_range: float = given(Number("V", 0.01, 30, "converter's range, plus and minus"), 5.0)
+    samples: int = given(Whole(1, 1_000_000, "samples averaged for a reading"), 10)
+    on_time: float = given(Number("s", 1e-6, 100, "bridge powered for one reading"), 0.005)
+    period: float = given(Number("s", 1e-5, 1e5, "time between readings"), 1.0)
+    reference_mismatch: float = given(
+        Number("", 0, 1, "share of self-heating that the reference gauges do not cancel"), 0.2
+    )
+    amplifier: str = given(OneOf(tuple(AMPLIFIERS), "instrumentation amplifier of a board"), "AD621")
+    switch: str = given(OneOf(tuple(SWITCHES), "MOSFET in the return of each bridge"), "IRLML6244")
+    multiplexer: str = given(
+        OneOf(tuple(MULTIPLEXERS), "that leads the bridges of a board to its amplifier"), "ADG1407"
+    )
+    completion: str = given(
+        OneOf(tuple(COMPLETIONS), "the three arms that complete each bridge"), "reference-gauge"
+    )
+    completion_resistance: float | None = given(
+        Number("ohm", 10, 10000, "of each of these three"), None, "the gauge's"
+    )
+    completion_tolerance: float | None = given(
+        Number("", 0, 0.1, "of this resistance, relative, plus and minus"), None, "the completion's"
+    )
+    completion_drift: float | None = given(
+        Number("1/K", 0, 0.01, "by which this resistance changes otherwise than the gauge's"),
+        None,
+        "the completion's",
+    )
+    connection: str = given(OneOf(("three-wire", "two-wire"), "leads of each gauge"), "three-wire")
+    temperature_span: float = given(
+        Number("K", 0, 100, "by which the temperature changes between taking the zero and a reading"), 1.0
+    )
+    force_resolution: float | None = given(
+        Number("mN", 1e-4, 1e6, "smallest force that each element is to tell from none"),
+        None,
+        "none is asked for",
+    )
+    inputs: int | None = given(
+        Whole(1, 4096, "differential inputs of the converter's card"), None, "one for each board"
+    )
+    sample_rate: float = given(Number("Hz", 1, 1e8, "samples of one input, at most"), 1e5)
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """[wiring]: leads from the gauges' terminals to the boards."""
+
+    wire: str = given(OneOf(tuple(WIRES), "lead wire, by its gauge"), "AWG36")
+    bonded: float = given(
+        Number("mm", 0, 50, "of the leads in the wire recess, up to its end: their strain relief"), 4.0
+    )
+    gather: float = given(Number("mm", 1, 500, "from the rear ends to the tie around a row's leads"), 15.0)
+    to_board: float = given(Number("mm", 1, 5000, "from there to the connector on the board"), 150.0)
+    slack: float = given(Number("", 0, 1, "added to each lead's way, relative"), 0.1)

@@ -1,0 +1,83 @@
+"""The circuit's files: KiCad's netlist, the same as a table, the SPICE deck, the leads to cut; read back and
+compared with the netlist before they leave.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.kicad import kicad_bytes
+from tactcad.circuit.netlist import Netlist
+from tactcad.circuit.netlist_table import netlist_csv
+from tactcad.circuit.spice_deck import deck_bytes
+from tactcad.circuit.wiring_list import wiring_csv
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.parts.layout import Layout
+
+Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
+
+
+def kicad_file(design: Design) -> bytes:
+    """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
+    circuit, d = netlist(Layout(design)), design.design
+    data = kicad_bytes(circuit, d.title, d.date, d.revision)
+    _compare("KiCad's netlist", nets_in_kicad(data), circuit)
+    return data
+
+
+def table_file(design: Design) -> bytes:
+    """The netlist as CSV. Raises CheckFailure where it does not read back as the circuit."""
+    circuit = netlist(Layout(design))
+    data = netlist_csv(circuit)
+    _compare("the netlist's table", nets_in_table(data), circuit)
+    return data
+
+
+def deck_file(design: Design) -> bytes:
+    """The SPICE deck."""
+    return deck_bytes(netlist(Layout(design)))
+
+
+def wiring_file(design: Design) -> bytes:
+    """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
+    layout = Layout(design)
+    data = wiring_csv(layout)
+    rows = list(csv.DictReader(io.StringIO(data.decode(), newline="")))
+    if sorted(row["lead"] for row in rows) != sorted(c.designator for c in netlist(layout).of_kind("lead")):
+        raise CheckFailure("the wiring list does not name every lead of the circuit once")
+    return data
+
+
+def nets_in_kicad(data: bytes) -> Nets:
+    """Nets of a KiCad netlist."""
+    _, _, text = data.decode().partition("(nets")
+    nets: dict[str, set[tuple[str, str]]] = {}
+    name = ""
+    for key, word, pin in re.findall(r'\((name|node \(ref) "([^"]*)"\)?(?: \(pin "([^"]*)"\))?', text):
+        if key == "name":
+            name = word.removeprefix("/")
+        else:
+            nets.setdefault(name, set()).add((word, pin))
+    return {name: frozenset(nodes) for name, nodes in nets.items()}
+
+
+def nets_in_table(data: bytes) -> Nets:
+    """Nets of a netlist as CSV."""
+    nets: dict[str, set[tuple[str, str]]] = {}
+    for row in csv.DictReader(io.StringIO(data.decode(), newline=""), strict=True):
+        if row["net"]:
+            nets.setdefault(row["net"], set()).add((row["designator"], row["pin"]))
+    return {name: frozenset(nodes) for name, nodes in nets.items()}
+
+
+def _compare(what: str, read: Nets, circuit: Netlist) -> None:
+    meant = {
+        name: frozenset((c.designator, p.number) for c, p in nodes) for name, nodes in circuit.nets.items()
+    }
+    wrong = sorted(name for name in {*read, *meant} if read.get(name) != meant.get(name))
+    if wrong:
+        raise CheckFailure(f"{what} reads back with other nets: {', '.join(wrong[:3])}")

@@ -1,0 +1,79 @@
+"""The way of each element's leads: from the terminal behind its gauge through the wire recess, to the tie
+around the leads of its board, to the board.
+
+    gauge  terminal        recess                 rear end      tie           connector
+    =====    o______      ________________________                .-----------[]
+                    |_____|///bonded: strain relief ____________.'
+    hinge                                           gather          to board
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, dist
+
+from tactcad.design.electronics import WIRES
+
+from .boards import ReadBoard, boards
+from .description import Vector
+from .layout import ElementPlace, Layout
+
+WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
+
+
+@dataclass(frozen=True)
+class LeadRoute:
+    """The way of one element's leads, mm in the scene's frame, and what each is cut to."""
+
+    place: ElementPlace
+    points: tuple[Vector, ...]
+    cut: float
+
+    @property
+    def length(self) -> float:
+        """mm, without slack."""
+        return sum(dist(a, b) for a, b in zip(self.points, self.points[1:]))
+
+
+def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
+    """Every element's leads, by number."""
+    found = [_route(layout, board, place) for board in boards(layout) for place in board.places]
+    return tuple(sorted(found, key=lambda route: route.place.number))
+
+
+def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
+    d, side = layout.design, 1.0 if place.row == 1 else -1.0
+    face, recess = layout.body_bottom(place.hinge), d.element.recess_depth
+    terminal = min(place.hinge_x + d.gauge.carrier_body_side, layout.recess_start)
+    middle = (board.places[0].y + board.places[-1].y) / 2
+    tie = layout.rear_end + d.wiring.gather
+    points = (
+        (side * terminal, place.y, face),
+        (side * layout.recess_start, place.y, face),
+        (side * layout.recess_start, place.y, recess),
+        (side * layout.rear_end, place.y, recess),
+        (side * tie, middle, recess),
+        (side * (tie + d.wiring.to_board), middle, recess),
+    )
+    way = LeadRoute(place, points, 0.0).length
+    return LeadRoute(place, points, WHOLE * ceil(way * (1 + d.wiring.slack) / WHOLE - 1e-9))
+
+
+def recess_length(layout: Layout) -> float:
+    """Of the wire recess, mm."""
+    return layout.rear_end - layout.recess_start
+
+
+def leads(layout: Layout) -> int:
+    """How many each gauge has."""
+    return 3 if layout.design.readout.connection == "three-wire" else 2
+
+
+def longest_lead_resistance(layout: Layout) -> float:
+    """Of one lead, ohm."""
+    return max(route.cut for route in lead_routes(layout)) * lead_ohm(layout)
+
+
+def lead_ohm(layout: Layout) -> float:
+    """Of a millimetre of lead."""
+    return WIRES[layout.design.wiring.wire].ohm_per_metre * 1e-3

@@ -1,0 +1,77 @@
+"""Checks of circuit and signals: each on a bad design or netlist, and none on the shipped ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from bad_parts import BAD
+from variants import variant
+
+from tactcad.checks.signals import check_signals
+from tactcad.checks.wired import check_bridges, check_circuit
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.netlist import Netlist
+from tactcad.design.load import names, read
+from tactcad.parts.layout import Layout
+
+OURS = [name for name, bad in BAD.items() if bad.run in ("circuit", "signals")]
+SHIPPED = netlist(Layout(read("macro-array")))
+
+
+def moved(designator: str, role: str, net: str) -> Netlist:
+    """The shipped circuit with one pin on another net."""
+    changed = tuple(
+        replace(c, pins=tuple(replace(p, net=net) if p.role == role else p for p in c.pins))
+        if c.designator == designator
+        else c
+        for c in SHIPPED.components
+    )
+    return replace(SHIPPED, components=changed)
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_shipped_designs_pass(name):
+    assert [*check_circuit(read(name)), *check_signals(read(name))] == []
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_each_check_finds_its_bad_design(name):
+    found = {f.check for f in BAD[name].find()}
+    assert name in found and {f.severity for f in BAD[name].find()} == {"fail"}
+
+
+@pytest.mark.parametrize(
+    ("designator", "role", "net", "gauges"),
+    [
+        ("W31", "2", "E2_RED", {"B2", "B3"}),  # two gauges hang on one arm
+        ("R31", "1", "GND", {"B3"}),  # an arm that the supply does not feed
+        ("R33", "2", "E4_FOOT", {"B3", "B4"}),  # an arm in the next bridge
+        ("Q7", "drain", "E8_FOOT", {"B7", "B8"}),  # a bridge that nothing switches, one switched twice
+        ("U12", "S2A", "E1_PLUS", {"B2"}),  # a bridge that no channel reads
+        ("U12", "S2B", "E3_MINUS", {"B2"}),  # a channel across two bridges
+    ],
+)
+def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauges):
+    assert {f.part for f in check_bridges(moved(designator, role, net))} == gauges
+
+
+def test_the_resolution_by_hand():
+    """Two standard deviations of ten averaged samples, drift of three arms, amplifier and leads, in volts."""
+    d = read("macro-array")
+    noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
+    drifts = (67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
+    volts = (4 * noise**2 + sum(v**2 for v in drifts)) ** 0.5
+    from tactcad.circuit.element_signals import element_signals
+
+    for signal in element_signals(Layout(d)):
+        assert signal.resolution * signal.per_force == pytest.approx(volts, rel=1e-5)
+
+
+def test_two_wires_drift_more():
+    """Their whole resistance lies in the gauge's arm, and warms with the room."""
+    from tactcad.parts.bridge_figures import drift
+
+    wires = {c: drift(Layout(variant({"readout.connection": c}))) for c in ("two-wire", "three-wire")}
+    by_hand = 67.5 * 2 * 0.210 * 1.361 / 120 * 0.0039
+    assert wires["two-wire"] > wires["three-wire"] + 0.9 * by_hand > 2 * wires["three-wire"]

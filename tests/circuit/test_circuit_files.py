@@ -1,0 +1,222 @@
+"""The circuit's files, read by readers of their own; the leads against a rule and a compass on the scene."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+import subprocess
+import sys
+from collections import Counter
+
+import pytest
+from variants import variant
+
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.wiring_list import wiring
+from tactcad.design.load import names, read
+from tactcad.design.messages import CheckFailure
+from tactcad.export import circuit_files
+from tactcad.parts.consumables import array_supplies
+from tactcad.parts.layout import Layout
+from tactcad.parts.lead_route import lead_routes
+from tactcad.scenes import make_scene
+
+
+def expression(text: str) -> list:
+    """A KiCad file's S-expression as nested lists, by a reader that knows nothing but brackets and quotes."""
+    stack: list[list] = [[]]
+    i = 0
+    while i < len(text):
+        c = text[i]
+        if c == "(":
+            stack.append([])
+        elif c == ")":
+            done = stack.pop()
+            stack[-1].append(done)
+        elif c == '"':
+            word = ""
+            i += 1
+            while text[i] != '"':
+                i += text[i] == "\\"
+                word += text[i]
+                i += 1
+            stack[-1].append(word)
+        elif not c.isspace():
+            end = min(j for j in range(i, len(text)) if text[j] in ' ()"\n')
+            stack[-1].append(text[i:end])
+            i = end - 1
+        i += 1
+    (only,) = stack
+    (whole,) = only
+    return whole
+
+
+def part(node: list, name: str) -> list:
+    return next(x for x in node if isinstance(x, list) and x[0] == name)
+
+
+@pytest.mark.parametrize("name", names())
+def test_kicads_netlist_read_by_another_reader(name):
+    design = read(name)
+    whole = expression(circuit_files.kicad_file(design).decode())
+    assert whole[0] == "export" and part(whole, "version") == ["version", "E"]
+    components = part(whole, "components")[1:]
+    refs = [part(c, "ref")[1] for c in components]
+    assert len(set(refs)) == len(refs)
+    n = sum(map(len, design.array.row_arms))
+    kinds = Counter(ref.rstrip("0123456789") for ref in refs)
+    assert (kinds["B"], kinds["Q"], kinds["X"], kinds["W"]) == (n, n, n, 3 * n)
+    assert kinds["R"] == 3 * n  # the AD621's gain needs no resistor
+    nets = {
+        part(net, "name")[1]: [(part(x, "ref")[1], part(x, "pin")[1]) for x in net if x[0] == "node"]
+        for net in part(whole, "nets")[1:]
+    }
+    nodes = Counter(node for pins in nets.values() for node in pins)
+    assert set(nodes.values()) == {1}, "a pin on two nets"
+    assert {ref for ref, _ in nodes} == set(refs)
+    known = {part(lib, "part")[1]: lib for lib in part(whole, "libparts")[1:]}
+    for component in components:
+        pins = part(known[part(part(component, "libsource"), "part")[1]], "pins")[1:]
+        numbers = {part(pin, "num")[1] for pin in pins}
+        ref = part(component, "ref")[1]
+        assert {pin for r, pin in nodes if r == ref} <= numbers
+    # the gauge of E1 by hand: both ends at its terminals and leads, and nothing else
+    ends = [sorted(pins) for pins in nets.values() if any(r == "B1" for r, _ in pins)]
+    assert sorted(ends) == [
+        [("B1", "1"), ("W11", "1"), ("W12", "1"), ("X1", "1")],
+        [("B1", "2"), ("W13", "1"), ("X1", "2")],
+    ]
+
+
+def test_table_and_kicads_file_say_the_same():
+    design = read("macro-array")
+    kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design))
+    assert kicad == circuit_files.nets_in_table(circuit_files.table_file(design))
+
+
+def test_a_damaged_netlist_is_refused(monkeypatch):
+    kept = circuit_files.kicad_bytes
+    monkeypatch.setattr(
+        circuit_files,
+        "kicad_bytes",
+        lambda *args: kept(*args).replace(b'(node (ref "B1") (pin "1")', b'(node (ref "B1") (pin "2")'),
+    )
+    with pytest.raises(CheckFailure, match="E1_TOP"):
+        circuit_files.kicad_file(read("macro-array"))
+
+
+def test_equal_bytes_under_any_hash_seed():
+    script = (
+        "import hashlib\nfrom tactcad.design.load import read\n"
+        "from tactcad.export import circuit_files as f\n"
+        "d = read('macro-array')\nfor make in (f.kicad_file, f.table_file, f.deck_file, f.wiring_file):\n"
+        "    print(hashlib.sha256(make(d)).hexdigest())"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("0", "1", "12345")
+    }
+    assert len(said) == 1 and said.pop().count("\n") == 4
+
+
+@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("connection", ["three-wire", "two-wire"])
+def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
+    """Measured on the placed elements: the body's end and recess are read off the part's contour."""
+    design = variant({"readout.connection": connection}, base=name)
+    scene = make_scene(design, "array")
+    placed = {
+        p.designator: p for p in scene.placements if p.designator[0] == "E" and p.designator[1:].isdigit()
+    }
+    routes = {f"E{r.place.number}": r for r in lead_routes(Layout(design))}
+    assert set(routes) == set(placed)
+    groups: dict[tuple[float, int], list[float]] = {}
+    rows = design.array.row_arms
+    for i, designator in enumerate(sorted(placed, key=lambda d: int(d[1:]))):
+        row = 0 if i < len(rows[0]) else 1
+        index = i - (len(rows[0]) if row else 0)
+        groups.setdefault((row, index // 8), []).append(_middle(placed[designator]))
+    for i, designator in enumerate(sorted(placed, key=lambda d: int(d[1:]))):
+        p, route = placed[designator], routes[designator]
+        row, index = (0, i) if i < len(rows[0]) else (1, i - len(rows[0]))
+        own = groups[row, index // 8]
+        corners = [q for s in p.part.extrusion.outer for q in (s.start, s.end)]
+        end = max(x for x, _ in corners)
+        wall = [s for s in p.part.extrusion.outer if s.name == "recess_wall"]
+        start = wall[0].start[0]
+        arm = rows[row][index]
+        tip = min(x for x, _ in corners)
+        terminal = tip + arm + design.gauge.carrier_body_side
+        middle = (own[0] + own[-1]) / 2
+        along = (start - terminal) + design.element.recess_depth + (end - start)
+        along += math.hypot(design.wiring.gather, _middle(p) - middle) + design.wiring.to_board
+        assert route.length == pytest.approx(along, abs=1e-6)
+        assert route.cut % 5 == 0 and 0 <= route.cut - 1.1 * along < 5
+        # the bundle leaves the array on its row's side
+        assert math.copysign(1, route.points[-1][0]) == math.copysign(1, p.rotation[0][0])
+    rows_listed = list(csv.DictReader(io.StringIO(circuit_files.wiring_file(design).decode())))
+    count = 3 if connection == "three-wire" else 2
+    assert len(rows_listed) == count * len(placed)
+    for row_listed in rows_listed:
+        assert float(row_listed["cut_length_mm"]) == routes[f"E{row_listed['element']}"].cut
+
+
+def _middle(placement) -> float:
+    """y of an element's mid-plane: half its thickness along its third axis from its origin."""
+    half = placement.part.extrusion.thickness / 2
+    return placement.origin[1] + placement.rotation[1][2] * half
+
+
+def test_every_lead_joins_a_terminal_and_a_pin_of_its_own():
+    leads = wiring(Layout(read("macro-array")))
+    assert len({lead.end for lead in leads}) == len(leads) == 30
+    assert {lead.colour for lead in leads if lead.start.endswith(".1")} == {"RD", "WH"}
+    assert {lead.colour for lead in leads if lead.start.endswith(".2")} == {"BK"}
+    assert {lead.bundle for lead in leads} == {1, 2}, "a bundle a row"
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"readout.connection": "two-wire"},
+        {"readout.multiplexer": "ADG1409"},
+        {"readout.amplifier": "AD8221"},
+        {"array.row_arms": [[4, 7, 6] * 5, [8, 5]]},
+    ],
+)
+def test_the_bill_counts_the_netlist(changes):
+    """Every component but a lead is a piece of its line of the bill, and no line has more."""
+    layout = Layout(variant(changes))
+    counted = Counter(c.part_no for c in netlist(layout).components if c.kind != "lead")
+    bill = {s.part_no: s for s in array_supplies(layout)}
+    billed = {n: s.qty for n, s in bill.items() if n not in ("ADHESIVE", "COATING", "LEAD-WIRE")}
+    assert counted == billed
+    metres = sum(float(lead.length) for lead in wiring(layout)) / 1000
+    assert bill["LEAD-WIRE"].qty == pytest.approx(metres)
+    assert all(s.spares >= 1 for n, s in bill.items() if n in billed)
+    assert bill["STRAIN-GAUGE"].spares == max(1, math.ceil(bill["STRAIN-GAUGE"].qty / 5))
+
+
+@pytest.mark.parametrize(
+    ("design", "boards"), [({}, 2), ({"array.row_arms": [[4]]}, 1), ({"array.row_arms": [[4] * 9, [5]]}, 3)]
+)
+def test_boards_take_a_rows_elements(design, boards):
+    circuit = netlist(Layout(variant(design)))
+    assert len(list(circuit.of_kind("amplifier"))) == boards
+
+
+def test_a_gain_resistor_of_the_series():
+    """AD8221 at a gain of 100: 49.4 kohm/99 = 499 ohm, which E192 has."""
+    circuit = netlist(Layout(variant({"readout.amplifier": "AD8221"})))
+    resistor = next(c for c in circuit.components if c.part_no == "GAIN-RESISTOR")
+    assert resistor.figure("ohm") == pytest.approx(499.0)
+    assert circuit.on_board("amplifier", 1).figure("gain") == pytest.approx(1 + 49400 / 499)

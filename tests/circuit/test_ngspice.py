@@ -1,0 +1,145 @@
+"""The circuit's deck, solved by ngspice, against closed forms that know nothing of the netlist."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, sqrt
+
+import pytest
+from ngspice import solved
+from variants import variant
+
+from tactcad.circuit.bridges import netlist
+from tactcad.circuit.netlist import Netlist
+from tactcad.circuit.spice_deck import closed, deck, deck_bytes, reading
+from tactcad.design.load import read
+from tactcad.mechanics import readout
+from tactcad.paper import gain, published
+from tactcad.paper.array_model import from_design
+from tactcad.parts.hinge_section import design_readout
+from tactcad.parts.layout import Layout
+
+SWITCHES = {"IRLML6244": 0.021, "BSS138": 3.5, "2N7002": 7.5}
+FULL_SCALE = 0.035  # V at a bridge: the converter's 3.5 V over a gain of 100
+
+
+def strained(circuit: Netlist, x: dict[int, float]) -> Netlist:
+    """The circuit with relative changes of gauges' resistances, by element."""
+    changed = tuple(
+        replace(c, figures=(("ohm", c.figure("ohm") * (1 + x.get(c.element, 0.0))),))
+        if c.kind == "gauge"
+        else c
+        for c in circuit.components
+    )
+    return replace(circuit, components=changed)
+
+
+def read_all(circuit: Netlist, tmp_path) -> dict[str, float]:
+    return solved(deck(circuit, list(reading(circuit))), tmp_path)
+
+
+def bridge(volts: float, R: float, x: float, lead: float, on: float, three: bool) -> float:
+    """A quarter bridge by voltage dividers: supply, switch below, both halves beside each other."""
+    active = R * (1 + x) + (lead if three else 2 * lead)
+    upper = R + (lead if three else 0.0)
+    halves = 1 / (1 / (active + upper) + 1 / (2 * R))
+    across = volts * halves / (halves + on)
+    return across * (active / (active + upper) - 0.5)
+
+
+@pytest.mark.parametrize("ohm", [120.0, 350.0, 1000.0])
+@pytest.mark.parametrize("switch", SWITCHES)
+@pytest.mark.parametrize("connection", ["three-wire", "two-wire"])
+def test_bridges_agree_with_dividers(ohm, switch, connection, tmp_path):
+    """Within a millionth of full scale, over strains, self-heating's drift, leads of 0.04 to 7 ohm."""
+    for to_board in (150.0, 4900.0):
+        design = variant(
+            {
+                "gauge.resistance": ohm,
+                "readout.switch": switch,
+                "readout.connection": connection,
+                "wiring.to_board": to_board,
+                "wiring.wire": "AWG36" if to_board > 1000 else "AWG30",
+            }
+        )
+        # strains of the hinge, and the drift of a warm gauge: 4.5 K at 17 ppm/K
+        x = {1: 0.0, 2: 1e-4, 3: -1e-4, 4: 4.5 * -17e-6, 5: 1e-2, 6: -1e-2, 7: 2e-2, 8: -2e-2}
+        circuit = netlist(Layout(design))
+        found = read_all(strained(circuit, x), tmp_path)
+        for n in range(1, 11):
+            cut = circuit.of_element("lead", n).figure("mm")
+            lead = cut * 1e-3 * {"AWG36": 1.361, "AWG30": 0.3387}[design.wiring.wire]
+            exact = bridge(2.7, ohm, x.get(n, 0.0), lead, SWITCHES[switch], connection == "three-wire")
+            assert found[f"bridge{n}"] == pytest.approx(exact, abs=1e-6 * FULL_SCALE)
+            assert found[f"output{n}"] == pytest.approx(100 * exact, abs=1e-4 * FULL_SCALE)
+
+
+def test_three_wires_are_the_better_connection(tmp_path):
+    """Of two wires the leads' resistance unbalances the bridge, of three not, and takes twice as much of the
+    signal."""
+    found = {}
+    for connection in ("two-wire", "three-wire"):
+        circuit = netlist(Layout(variant({"readout.connection": connection})))
+        still, loaded = (read_all(strained(circuit, {1: x}), tmp_path)["output1"] for x in (0.0, 1e-3))
+        found[connection] = (still, loaded - still)
+    lead = 0.210 * 1.361
+    assert abs(found["three-wire"][0]) < 1e-6
+    assert found["two-wire"][0] == pytest.approx(67.5 * 2 * lead / 120, rel=0.01)
+    lost = {c: 1 - signal / (67.5e-3 / (1 + 0.5e-3)) for c, (_, signal) in found.items()}
+    assert lost["three-wire"] == pytest.approx(lead / 120, rel=0.1)
+    assert lost["two-wire"] == pytest.approx(2 * lead / 120, rel=0.1)
+
+
+def test_the_papers_gain(tmp_path):
+    """2.7 V x 100 x 2.1/4 = 142 V per strain, as in mechanics; leads and switch take 0.3 % of it."""
+    design = read("macro-array")
+    assert float(readout.volts_per_strain(2.1, design_readout(design))) == pytest.approx(141.75)
+    circuit = netlist(Layout(design))
+    strain = 1e-6
+    found = read_all(strained(circuit, dict.fromkeys(range(1, 11), 2.1 * strain)), tmp_path)
+    for n in range(1, 11):
+        assert found[f"output{n}"] / strain == pytest.approx(141.75, rel=4e-3)
+        assert found[f"output{n}"] / strain < 141.75
+
+
+def test_a_switch_of_some_ohm_explains_what_the_papers_table_lacks(tmp_path):
+    """134 V per strain, the fit of Table 1, is 142 less 5.5 %: a 2N7002 of 7.5 ohm takes 5.9 % of 120 ohm."""
+    table1 = gain.fit(published.load(), from_design(read("macro-array")))
+    assert table1.fitted_gain == pytest.approx(134, abs=0.5)
+    circuit = netlist(Layout(variant({"readout.switch": "2N7002"})))
+    found = read_all(strained(circuit, {1: 2.1e-6}), tmp_path)
+    assert found["output1"] / 1e-6 == pytest.approx(table1.fitted_gain, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"readout.gain": 10},
+        {"gauge.resistance": 1000.0},
+        {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG407"},
+        {"readout.amplifier": "AD620", "readout.gain": 20.0},
+        {"readout.amplifier": "AD623", "readout.gain": 300.0},
+    ],
+)
+def test_the_netlists_noise_is_that_of_mechanics(changes, tmp_path):
+    """ngspice adds up Johnson noise of every resistor and the amplifier's, up to 100 MHz, within 1 %."""
+    design = variant(changes)
+    circuit = netlist(Layout(design))
+    commands = [*closed(circuit, 1), "noise v(out1) VEXC dec 100 1 1e8", "print onoise_total"]
+    found = solved(deck(circuit, commands), tmp_path)["onoise_total"]
+    assert found == pytest.approx(design_readout(design).noise, rel=0.01)
+
+
+def test_the_noise_of_the_shipped_array_by_hand():
+    """AD621: 9 nV/rtHz, 200 kHz at a gain of 100; 120 ohm of bridge and 2 x 25 ohm of multiplexer."""
+    density = sqrt(9e-9**2 + 4 * 1.380649e-23 * 300.15 * 170)
+    by_hand = 100 * density * sqrt(pi / 2 * 200e3)
+    assert design_readout(read("macro-array")).noise == pytest.approx(by_hand, rel=1e-6)
+    assert by_hand == pytest.approx(0.513e-3, rel=1e-3)
+
+
+def test_the_written_deck_reads_every_element(tmp_path):
+    found = solved(deck_bytes(netlist(Layout(read("soft-tissue")))).decode(), tmp_path)
+    assert set(found) == {f"{what}{n}" for what in ("bridge", "output") for n in range(1, 9)}
+    assert all(abs(v) < 1e-7 for v in found.values())

@@ -1,0 +1,81 @@
+"""Read-outs that cannot be: one line with field, value and what is legal, exit status 2, nothing written."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from variants import BARE_TEXT, variant
+
+from tactcad.cli.main import main
+from tactcad.parts.rules import broken_rules
+
+REFUSED = {
+    "an unknown amplifier": ('amplifier = "AD622"', "readout.amplifier", "AD622", "'AD621'"),
+    "a gain that it lacks": ("gain = 50", "readout.gain", "50", "10 or 100"),
+    "more power than the backing bears": ("excitation = 6.0", "readout.excitation", "6", "at most 5.68 V"),
+    "more channels than inputs": ("inputs = 1", "readout.inputs", "1", "at least 2"),
+    "resistors out of the bridge's range": (
+        "completion_tolerance = 0.05",
+        "readout.completion_tolerance",
+        "0.05",
+        "within 0.0159",
+    ),
+    "another resistance than the gauge's": (
+        "completion_resistance = 350",
+        "readout.completion_resistance",
+        "350",
+        "120 ohm",
+    ),
+}
+
+
+def text(line: str) -> str:
+    """The published array's text with a line of [readout] set."""
+    name = line.split(" = ")[0]
+    kept = [row for row in BARE_TEXT.splitlines() if not row.startswith(f"{name} = ")]
+    at = kept.index("[readout]")
+    return "\n".join([*kept[: at + 1], line, *kept[at + 1 :]]) + "\n"
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_one_line_says_field_value_and_what_is_legal(what, tmp_path, capsys):
+    line, field, value, legal = REFUSED[what]
+    refused(text(line), field, value, legal, tmp_path, capsys)
+
+
+def test_a_gauge_longer_than_the_leaf_allows(tmp_path, capsys):
+    longer = BARE_TEXT.replace("carrier_arm_side = 1.2", "carrier_arm_side = 1.9")
+    refused(longer, "gauge.carrier_arm_side", "1.9", "at most 1.7 mm", tmp_path, capsys)
+
+
+def refused(design: str, field: str, value: str, legal: str, tmp_path, capsys) -> None:
+    file = tmp_path / "design.toml"
+    file.write_text(design, encoding="utf-8")
+    assert main(["export", str(file), "--out", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err.strip()
+    assert "\n" not in said and field in said and value in said and legal in said
+    assert [p.name for p in tmp_path.iterdir()] == ["design.toml"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "path"),
+    [
+        ({"readout.completion_tolerance": 0.05}, "readout.completion_tolerance"),
+        (
+            {"readout.completion_tolerance": 0.03, "readout.bridge_offset": 0.01},
+            "readout.completion_tolerance",
+        ),
+        ({"readout.on_time": 0.3}, "readout.excitation"),
+        ({"readout.samples": 1000}, "readout.on_time"),
+        ({"readout.samples": 10, "readout.on_time": 2e-5}, "readout.on_time"),
+    ],
+)
+def test_what_is_said_to_be_legal_is_accepted(changes, path):
+    """And is close to the bound: a twentieth beyond it is refused again."""
+    (found,) = broken_rules(variant(changes))
+    assert found.part == path
+    bound = float(re.search(r"\d[\d.e-]*", found.limit)[0])
+    assert broken_rules(variant({**changes, path: bound})) == []
+    beyond = bound / 1.05 if "at least" in found.limit else bound * 1.05
+    assert [f.part for f in broken_rules(variant({**changes, path: beyond}))] == [path]
