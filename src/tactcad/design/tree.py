@@ -12,7 +12,7 @@ from typing import Any
 
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, Whole, given
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
-from .rigs import Calibration, Cart, Grasping, Holder, Sample
+from .rigs import Bonding, Calibration, Cart, Grasping, Holder, Sample
 from .stock import OTHER_SHEET
 
 # Without control characters, line ends, characters that turn the direction of text, and those that XML (SVG)
@@ -345,6 +345,7 @@ class Design:
     calibration: Calibration | None = None
     sample: Sample | None = None
     grasping: Grasping | None = None
+    bonding: Bonding | None = None
     origin: dict[str, str] = field(default_factory=dict)
 
     @property
