@@ -17,7 +17,7 @@ from .scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
-LIFTED = 60.0  # exploded view: what comes from above
+LIFTED = 40.0  # exploded view: what comes from above
 
 
 def bonding(design: Design, pose: Pose = REST) -> Scene:
@@ -35,12 +35,17 @@ def bonding(design: Design, pose: Pose = REST) -> Scene:
         _element(b, rig, y, n)
     b.step("Element on the tongue", (0, 0, LIFTED), text.element_in(stations[0]))
     b.step("Gauge", (0, 0, 0), text.gauge(stations), tools=text.GAUGE_TOOLS)
-    for n, (rig, y) in enumerate(zip(stations, middles), start=1):
-        _clamp(b, rig, y, n)
-    b.step("Clamp and cure", (0, 0, 2 * LIFTED), text.clamp(stations))
-    b.step("Trim and terminals", (0, 0, 0), text.terminals(stations[0]), tools=text.TRIM_TOOLS)
-    b.step("Solder and coat", (0, 0, 0), text.solder(stations[0]), tools=text.SOLDER_TOOLS)
-    b.step("Check each gauge", (0, 0, 0), text.checks(stations[0]), tools=text.CHECK_TOOLS)
+    pads = [_pad(b, rig, y) for rig, y in zip(stations, middles)]
+    for rig, y, pad in zip(stations, middles, pads):
+        _bar(b, rig, y, pad)
+    b.step("Clamp and cure", (0, 0, 2 * LIFTED), text.clamp(stations), fan=len(stations))
+    first = stations[0]
+    b.step("Trim and terminals", (0, 0, 0), text.terminals(first), tools=text.TRIM_TOOLS)
+    b.step("Solder", (0, 0, 0), text.solder(first), tools=text.SOLDER_TOOLS)
+    b.step("Check resistance and insulation", (0, 0, 0), text.resistance(first), tools=text.OHMS_TOOLS)
+    b.step("Coat", (0, 0, 0), text.coat(first))
+    b.step("Check zero and sign", (0, 0, 0), text.zero(first), tools=text.SIGN_TOOLS)
+    b.step("Check creep after 24 h", (0, 0, 0), text.creep(first))
     return b.scene("bonding", cover=[p.designator for p in b.placements if p.designator[:2] in ("CB", "RP")])
 
 
@@ -65,10 +70,11 @@ def _first(rig: BondingLayout) -> ElementPlace:
     return next(p for p in rig.array.elements if p.hinge == rig.hinge)
 
 
-def _clamp(b: Builder, rig: BondingLayout, y: float, station: int) -> None:
+def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
     pad = b.place("RP", rigs.bonding_pad(rig), (0, y, rig.gauge_face), UPRIGHT)
-    bar = b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y)
     b.meet(pad, _first(rig).designator)
-    b.meet(pad, bar)
+    return pad
 
 
+def _bar(b: Builder, rig: BondingLayout, y: float, pad: str) -> None:
+    b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))

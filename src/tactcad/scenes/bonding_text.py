@@ -15,7 +15,8 @@ SURFACE_TOOLS = ("nitrile gloves",)
 GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
 TRIM_TOOLS = ("scalpel",)
 SOLDER_TOOLS = ("soldering iron with a 0.4 mm tip, temperature controlled",)
-CHECK_TOOLS = ("ohmmeter, four wires, 0.01 ohm", "insulation tester, 50 V at most", "weight of 20 g")
+OHMS_TOOLS = ("ohmmeter, four wires, 0.01 ohm", "insulation tester, 50 V at most")
+SIGN_TOOLS = ("weight of 20 g", "the array's read-out, or a bridge amplifier")
 THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
@@ -130,34 +131,51 @@ def solder(rig: BondingLayout) -> str:
         "Tin tabs and terminals, then join each tab to its terminal with one bare strand in a loose arc, so "
         "that no lead pulls on the gauge. Solder three leads to the terminals, two on one of them: the third "
         "takes the leads' own resistance out of the bridge. Lay them in the recess to the rear end. Each "
-        "joint within 2 s; clean off all flux. Check resistance and insulation now (next step), then coat "
-        "gauge, jumpers and terminals, no thicker than "
-        f"{_coat(rig):.2g} mm over the face and not over the slot's walls."
+        "joint within 2 s; clean off all flux."
     )
 
 
-def _coat(rig: BondingLayout) -> float:
-    """Half of what the pads stand out, at most a tenth of a millimetre: a coating stiffens, too; mm."""
-    return min(0.1, rig.design.element.pad_height / 2)
+def resistance(rig: BondingLayout) -> str:
+    c = gauge_checks(rig.array)
+    low, high = c.resistance
+    return (
+        f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
+        f"ohm, which is the gauge's own within {100 * HURT:g} %; more says that the grid was hurt. "
+        f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
+        f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: a "
+        "leak of that, which comes and goes, reads as all of tolerance.zero_drift."
+    )
 
 
-def checks(rig: BondingLayout) -> str:
-    """Limits of every bonded gauge, with where each is from."""
+def coat(rig: BondingLayout) -> str:
+    """Half of what the pads stand out, at most a tenth of a millimetre, since a coating stiffens, too."""
+    thick = min(0.1, rig.design.element.pad_height / 2)
+    return (
+        f"Coat gauge, jumpers and terminals, no thicker than {thick:.2g} mm over the face and clear of the "
+        "slot's walls and of the contact pad. Let it cure as its own sheet says."
+    )
+
+
+def zero(rig: BondingLayout) -> str:
     c = gauge_checks(rig.array)
     arms = ", ".join(
         f"{1e3 * rise:.2g} permille ({1e3 * volts(rig.array, rise):.0f} mV) at arm {arm:g}"
         for arm, rise in c.rise
     )
-    creep = f"{100 * c.creep:.2g} %"
     return (
-        f"Record for every element. Resistance: {c.resistance[0]:g} to {c.resistance[1]:g} ohm at the "
-        f"terminals (the gauge's own within {100 * HURT:g} %: more says that the grid is hurt). Insulation, grid to "
-        f"element: at least {c.insulation / 1e9:g} Gohm fresh and dry (gauge makers' least for a laboratory); never "
-        f"use one below {c.leak / 1e6:.2g} Mohm: a leak that comes and goes then reads as tolerance.zero_drift. Zero: the "
-        f"unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full before rating.force "
-        f"is. Sign: hold the rear body, pad up, and set the 20 g weight ({PUSH:g} N) on the pad: that is how the "
-        f"object pushes; the resistance must rise, by about {arms} (beam theory); if it falls, leads are exchanged. Creep: after "
-        "24 h of curing hold the rated force on the pad; between "
-        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {creep} at most (tolerance.creep a "
-        "decade of time); then the zero must come back within the same. Bond a spare where one of these fails."
+        f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
+        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of 20 g "
+        f"({PUSH:g} N) on the pad, which is how the object pushes. The resistance must rise, by about {arms} "
+        "(beam theory); where it falls, two leads are exchanged or the gauge is not on the pads' side."
+    )
+
+
+def creep(rig: BondingLayout) -> str:
+    c, d = gauge_checks(rig.array), rig.design
+    return (
+        "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
+        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at most "
+        f"(tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero must "
+        "come back within as much. Where a gauge fails here or before, take it off with solvent and bond a "
+        "spare; the hinge's thickness is then measured anew."
     )

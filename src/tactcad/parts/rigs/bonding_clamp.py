@@ -60,7 +60,7 @@ def bonding_clamp(rig: BondingLayout) -> Part:
         notes=(BREAK_EDGES, f"its weight presses: {rig.bar_mass:.3g} g within {WEIGHT:.0%}, weighed"),
         characteristics=(
             within("nose length", behind - before, NOSE, between=("nose_front", "nose_back")),
-            within("width", rig.width, THICKNESS, between=FACES),
+            within("thickness", rig.width, THICKNESS, between=FACES),
         ),
         geometric=(Geometric("pin holes", "position", PLACE, ("pin_hole",), ("A", "B", "C"), True),),
         datums=(DatumFeature("A", "top"), DatumFeature("B", FACES[0]), DatumFeature("C", "right")),

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, pi, sqrt
+from math import ceil, floor, pi, sqrt
 
 from tactcad.design.present import present
 from tactcad.design.tree import Bonding, Design
@@ -122,8 +122,9 @@ class BondingLayout:
 
     @property
     def tongue(self) -> float:
-        """Width: it enters the shortest slot at any limits."""
-        return round(self.hinge.l - self.design.tolerance.hinge_length - TONGUE - LEAST_PLAY, 6)
+        """Width, to a hundredth: it enters the shortest slot at any limits."""
+        most = self.hinge.l - self.design.tolerance.hinge_length - TONGUE - LEAST_PLAY
+        return floor(100 * most + 1e-6) / 100
 
     @property
     def least_tongue(self) -> float:

@@ -27,7 +27,7 @@ def bonding_nest(rig: BondingLayout) -> Part:
     """Nest for elements with one kind of hinge: contour in (x, height over its foot), extruded across."""
     outer = _outline(rig)
     names = {s.name for s in outer}
-    tip = "tongue_tip" if "tongue_tip" in names else "tongue_edge"
+    tip = "tongue_tip" if "tongue_tip" in names else "tongue_back_edge"
     width = rig.tongue
     limits = [
         within(TONGUE_WIDTH, width, TONGUE, True, ("tongue_front", "tongue_back")),
@@ -36,7 +36,8 @@ def bonding_nest(rig: BondingLayout) -> Part:
     ]
     if tip == "tongue_tip":  # a full round's width defines it
         r = rig.tongue_radius
-        limits.append(Characteristic(EDGE_RADIUS, r, r + EDGE_MORE, r, between=("tongue_edge",)))
+        edges = ("tongue_back_edge", "tongue_front_edge")
+        limits.append(Characteristic(EDGE_RADIUS, r, round(r + EDGE_MORE, 9), r, between=edges))
     return Part(
         part_no=f"{rig.design.name}-bonding-nest{kind_suffix(rig)}",
         name="Bonding fixture, nest",
@@ -86,8 +87,8 @@ def _outline(rig: BondingLayout) -> Contour:
             Corner((back, BASE), edge="rest"),
             *step,
             Corner((half, floor), ROOT, "tongue_back", "tongue_root"),
-            Corner((half, top), r, "tongue_tip", "tongue_edge"),
-            Corner((-half, top), r, "tongue_front", "tongue_edge"),
+            Corner((half, top), r, "tongue_tip", "tongue_back_edge"),
+            Corner((-half, top), r, "tongue_front", "tongue_front_edge"),
             Corner((-half, floor), ROOT, "floor_front", "tongue_root"),
             Corner((front, floor), edge="front"),
         ]
