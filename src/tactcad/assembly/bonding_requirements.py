@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 
 import numpy as np
 
-from tactcad.mechanics import gauge_place
 from tactcad.parts.end_plate import pressed
-from tactcad.parts.hinge_section import hinge_section
+from tactcad.parts.gauge_checks import allowed_places
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.library.fits import general
 from tactcad.parts.plate import PLACE
-from tactcad.parts.rigs.bonding_layout import PLAY, TIP, TONGUE, BondingLayout, bonding_kinds, kind_suffix
+from tactcad.parts.rigs.bonding_layout import PLAY, TIP, TONGUE, BondingLayout, bonding_rigs, kind_suffix
 from tactcad.parts.rigs.bonding_nest import TIP_OVER_REST, TONGUE_WIDTH
 
 from .mechanic import Assembled
@@ -21,29 +21,33 @@ from .requirement import LEAST_PRESS, Requirement, summed
 from .variables import Array, DimensionLimits, variable
 
 PLACE_ON_HINGE = "gauge lies on its hinge"
-SHARE, EYE = "bonding: element in its play on the tongue, share", "bonding: gauge set between the tongue's edges"
+SHARE, EYE = (
+    "bonding: element in its play on the tongue, share",
+    "bonding: gauge set between the tongue's edges",
+)
 TONGUE_ = "bonding nest: tongue width"
 
 
 def bonding_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     """Requirements on a design with [bonding]; adds the variables they depend on to `known`."""
-    rigs = [BondingLayout(layout.design, hinge) for hinge in bonding_kinds(layout.design)]
+    rigs = bonding_rigs(layout.design)
     wanted = [_on_hinge(layout, rigs, known)]
     for rig in rigs:
         wanted += [_on_backing(rig, known), _between_pins(rig, known), *_clamp_slides(rig, known)]
     return wanted
 
 
-def _on_hinge(layout: Layout, rigs: list[BondingLayout], known: dict[str, DimensionLimits]) -> Requirement:
+def _on_hinge(
+    layout: Layout, rigs: Sequence[BondingLayout], known: dict[str, DimensionLimits]
+) -> Requirement:
     """Each gauge within what bonding.signal_share lets it err along its hinge."""
-    d, places = layout.design, layout.elements
+    places = layout.elements
     table = rigs[0].table
     nests = tuple((_nest(rig), TONGUE_WIDTH) for rig in rigs)
     known[TONGUE_] = variable(TONGUE_, -TONGUE, TONGUE, len(rigs), nests)
     known[SHARE] = variable(SHARE, -1.0, 1.0, len(places))
     known[EYE] = variable(EYE, -table.sight, table.sight, len(places))
-    sections = hinge_section(layout, places)
-    allowed = gauge_place.allowed(sections, d.gauge.grid_length, table.signal_share)
+    allowed = allowed_places(layout)
     kind = np.array([next(i for i, rig in enumerate(rigs) if rig.hinge == p.hinge) for p in places])
     play = np.array([rig.play for rig in rigs])[kind]
 

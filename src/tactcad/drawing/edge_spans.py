@@ -18,7 +18,7 @@ SIDES: tuple[Side, Side] = ("bottom", "left")  # of distances along x and along 
 
 
 @dataclass(frozen=True)
-class Stand:
+class EdgeStand:
     """Where a dimension stands on an outline's edge: its level along an axis, and a point of it, mm."""
 
     level: Level
@@ -40,7 +40,7 @@ def edge_spans(sketch: Sketch, view: View, part: Part) -> list[Linear]:
     return linears
 
 
-def _between(part: Part, c: Characteristic) -> tuple[int, tuple[Stand, Stand]] | None:
+def _between(part: Part, c: Characteristic) -> tuple[int, tuple[EdgeStand, EdgeStand]] | None:
     """Axis and stands of a limit between two edges that are its nominal size apart; None where it is no such
     limit."""
     if len(c.between) != 2:
@@ -54,13 +54,13 @@ def _between(part: Part, c: Characteristic) -> tuple[int, tuple[Stand, Stand]] |
     return None
 
 
-def _stands(part: Part, name: str, k: int) -> Iterator[Stand]:
+def _stands(part: Part, name: str, k: int) -> Iterator[EdgeStand]:
     """Where edges of that name stand along axis k: lines square to it; of a full round its summit."""
     for i, s in enumerate(part.extrusion.outer):
         if s.name != name:
             continue
         if isinstance(s, Line) and abs(s.start[k] - s.end[k]) < ALIKE:
-            yield Stand(level(Spot(OUTER, i).place(k)), s.start[k], s.start)
+            yield EdgeStand(level(Spot(OUTER, i).place(k)), s.start[k], s.start)
         elif isinstance(s, Arc) and _half_turn(s, k):
             yield _summit(s, i, k)
 
@@ -70,7 +70,7 @@ def _half_turn(s: Segment, k: int) -> bool:
     return isinstance(s, Arc) and all(abs(p[k] - s.centre[k]) < ALIKE for p in (s.start, s.end))
 
 
-def _summit(s: Arc, i: int, k: int) -> Stand:
+def _summit(s: Arc, i: int, k: int) -> EdgeStand:
     """The summit of half a turn: its centre and its radius, which its start has across the axis."""
     start, centre = Spot(OUTER, i), Spot(OUTER, i, centre=True)
     across = 1 - k
@@ -78,4 +78,4 @@ def _summit(s: Arc, i: int, k: int) -> Stand:
     top = s.at(0.5)
     way = 1.0 if top[k] > s.centre[k] else -1.0
     terms = ((centre.place(k), 1.0), (start.place(across), way * out), (centre.place(across), -way * out))
-    return Stand(Level(terms), top[k], top)
+    return EdgeStand(Level(terms), top[k], top)

@@ -1,7 +1,8 @@
 """What a gauge reads that does not lie on the middle of its hinge.
 
-Along the leaf the moment of the load falls towards the pad, and at both roots the strain of the face fades. A
-grid that is bonded `shift` mm towards the pad (negative: towards the clamp) takes the mean of another stretch.
+Along the leaf the moment of the load falls towards the pad, and at both roots the strain of the face fades.
+A grid that is bonded `shift` mm towards the pad (negative: towards the clamp) takes the mean of another
+stretch.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
-from tactcad.parts.gauge_layers import gauge_layers
+from tactcad.paper.gauge_layers import gauge_layers
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
 

@@ -101,9 +101,7 @@ def _bonded(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     ]
     if bond:
         adhesive = array.layers[0]
-        how = (
-            f"adhesive of {adhesive.thickness * 1e3:g} µm and {adhesive.modulus:g} MPa by plane elements"
-        )
+        how = f"adhesive of {adhesive.thickness * 1e3:g} µm and {adhesive.modulus:g} MPa by plane elements"
         effects.append(
             Effect(
                 "bond line stiffens the leaf",

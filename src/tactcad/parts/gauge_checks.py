@@ -8,7 +8,8 @@ from math import log10
 
 import numpy as np
 
-from tactcad.mechanics import gauge_signal, readout, strain
+from tactcad.design.present import present
+from tactcad.mechanics import gauge_place, gauge_signal, readout, strain
 from tactcad.mechanics.section import Array, HingeSection
 
 from .hinge_section import design_gauge, design_readout, hinge_section
@@ -67,6 +68,13 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
         d.tolerance.creep * log10(CREEP_TO / CREEP_FROM),
         tuple(sorted((arm, float(rise)) for arm, rise in arms.items())),
     )
+
+
+def allowed_places(layout: Layout) -> Array:
+    """How far off its hinge's middle each element's gauge may lie, along the element, for its signal to err by
+    bonding.signal_share at most; mm, in the elements' order."""
+    share = present(layout.design.bonding).signal_share
+    return gauge_place.allowed(hinge_section(layout, layout.elements), layout.design.gauge.grid_length, share)
 
 
 def volts(layout: Layout, change: float) -> float:

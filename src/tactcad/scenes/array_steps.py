@@ -111,7 +111,8 @@ def _gauges(layout: Layout) -> str:
         "says; lay its leads in the wire recess towards the rear end."
         if bonded
         else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
-        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three leads, and lay "
+        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
+        f"leads, and lay "
         "them in the wire recess towards the rear end."
     )
     return (

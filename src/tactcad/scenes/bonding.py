@@ -9,7 +9,7 @@ from tactcad.parts.consumables import bonding_supplies
 from tactcad.parts.element import element
 from tactcad.parts.layout import ElementPlace
 from tactcad.parts.library.dowels import dowel
-from tactcad.parts.rigs.bonding_layout import BASE, BondingLayout, bonding_kinds
+from tactcad.parts.rigs.bonding_layout import BASE, BondingLayout, bonding_rigs
 
 from . import bonding_text as text
 from .builder import Builder
@@ -23,7 +23,7 @@ LIFTED = 40.0  # exploded view: what comes from above
 def bonding(design: Design, pose: Pose = REST) -> Scene:
     """Scene `bonding`: every kind of hinge in its fixture, the first element of that kind; it has no pose
     but rest."""
-    stations = [BondingLayout(design, hinge) for hinge in bonding_kinds(design)]
+    stations = bonding_rigs(design)
     b = Builder()
     b.supplies += bonding_supplies()
     middles = [n * (rig.width + BETWEEN) for n, rig in enumerate(stations)]

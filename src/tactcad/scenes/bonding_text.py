@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import floor
 
-from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, PUSH, gauge_checks, volts
-from tactcad.parts.rigs.bonding_layout import BondingLayout
-from tactcad.parts.rules.bonding_rules import AHEAD_OF_LEADS
+from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, PUSH, allowed_places, gauge_checks, volts
+from tactcad.parts.rigs.bonding_layout import AHEAD_OF_LEADS, BondingLayout
 
 LOUPE = "stereo microscope or loupe, 20x"
 FIXTURE_TOOLS = ("arbor press or vice with soft jaws", "balance, 1 g")
@@ -30,11 +29,13 @@ def fixture(rigs: Sequence[BondingLayout]) -> str:
     )
     return (
         f"Press the pins square into the nest from above, {rig.pin_depth:g} mm deep: "
-        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's nose, edges "
+        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's "
+        f"nose, edges "
         f"flush, with silicone adhesive; weigh the bar: {rig.bar_mass:.3g} g within 5 %, which "
         f"press {rig.bar_pressure:.2g} MPa on the gauge. It must slide down on the pins by its own weight, "
         "either way round. Hold the nest in a vice by its foot, level. The tongue's ends stand out at both "
-        f"sides of an element: they are the marks that the gauge is set by, so do not break their edges.{kinds}"
+        f"sides of an element: they are the marks that the gauge is set by, so do not break their "
+        f"edges.{kinds}"
     )
 
 
@@ -57,28 +58,27 @@ def element_in(rig: BondingLayout) -> str:
         "Lay the element on its back into the nest, between the pins, its slot over the tongue, the rear "
         f"body down on its rest, which is {rig.drop:g} mm low: the leaf lies on the tongue, and the rear end "
         "on the rest. Tap the rear body with a plastic rod: it must lie still. Along the tongue the element "
-        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it lies from now "
+        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it "
+        f"lies from now "
         "on."
     )
 
 
 def gauge(rigs: Sequence[BondingLayout]) -> str:
     """How the gauge is set on the hinge, and how near."""
-    from tactcad.mechanics import gauge_place  # numpy
-    from tactcad.parts.hinge_section import hinge_section
-
     rig = rigs[0]
     d, table = rig.design, rig.table
-    sections = hinge_section(rig.array, rig.array.elements)
-    allowed = float(gauge_place.allowed(sections, d.gauge.grid_length, table.signal_share).min())
+    allowed = float(allowed_places(rig.array).min())
     return (
         f"Trim the gauge's carrier to {d.gauge.carrier_arm_side:g} mm before its grid's middle and "
         f"{d.gauge.carrier_body_side:g} mm behind it, {d.gauge.carrier_width:g} mm wide, solder tabs to the "
         "rear. Pick it up with tape and set it on the face under the microscope, the marks of its grid's "
         "middle halfway between the tongue's two edges, which stand out at both sides of the element, within "
         f"{table.sight:g} mm, and in the middle of its width. The grid must lie on the hinge's middle within "
-        f"{floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest arm's signal is "
-        f"more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the gauge, then lift it from "
+        f"{floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest "
+        f"arm's signal is "
+        f"more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the gauge, "
+        f"then lift it from "
         "the arm's side with the gauge on it. Put one thin drop of adhesive on the face, lay gauge and tape "
         "down again from the rear with one stroke of a finger on release film, and let go."
     )
@@ -92,10 +92,12 @@ def clamp(rigs: Sequence[BondingLayout]) -> str:
     safe = "the leaf bears that too, backed" if thumb < backed else "never do that"
     return (
         "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. "
-        f"Let it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 degrees "
+        f"Let it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to "
+        f"30 degrees "
         "C and 30 to 65 % relative humidity for cyanoacrylates. It presses "
         f"{rig.bar_pressure:.2g} MPa; the leaf yields at {backed:.2g} MPa on its tongue, and at {free:.2g} "
-        f"MPa if the tongue is forgotten (plane elements). A thumb of {THUMB:g} N on the bar is {thumb:.2g} MPa: "
+        f"MPa if the tongue is forgotten (plane elements). A thumb of {THUMB:g} N on the bar is "
+        f"{thumb:.2g} MPa: "
         f"{safe}. Lift the bar straight up; peel film and tape back over themselves."
     )
 
@@ -142,7 +144,8 @@ def resistance(rig: BondingLayout) -> str:
         f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
         f"ohm, which is the gauge's own within {100 * HURT:g} %; more says that the grid was hurt. "
         f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
-        f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: a "
+        f"let pass in a laboratory; flux or moisture is below. Never use one below "
+        f"{c.leak / 1e6:.2g} Mohm: a "
         "leak of that, which comes and goes, reads as all of tolerance.zero_drift."
     )
 
@@ -174,7 +177,8 @@ def creep(rig: BondingLayout) -> str:
     c, d = gauge_checks(rig.array), rig.design
     return (
         "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
-        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at most "
+        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of "
+        f"itself at most "
         f"(tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero must "
         "come back within as much. Where a gauge fails here or before, take it off with solvent and bond a "
         "spare; the hinge's thickness is then measured anew."

@@ -1,8 +1,8 @@
 """Parts of the rigs around the array: calibration, sample stiffness, grasping and bonding; one file a part.
 
-In: where things stand, derived once from the design (`stand_layout`, `cart_layout`,
-`guide_layout`, `bonding_layout`; the second and third are None where the design has no such tables). Out: parts for the scenes, which see them here by
-name.
+In: where things stand, derived once from the design (`stand_layout`, `cart_layout`, `guide_layout`,
+`bonding_layout`; the second and third are None where the design has no such tables). Out: parts for the
+scenes, which see them here by name.
 """
 
 from __future__ import annotations

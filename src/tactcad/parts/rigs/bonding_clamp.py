@@ -1,10 +1,10 @@
 r"""Clamp of the bonding fixture: a bar whose weight presses the gauge, and the rubber under its nose.
 
- +--o---o-------o---o--+
- |                     |   slides down on the nest's pins
- +------+       +------+
-        |_______|          nose: as long as the gauge's carrier
-         =======           rubber
++--o---o-------o---o--+
+|                     |   slides down on the nest's pins
++------+       +------+
+       |_______|          nose: as long as the gauge's carrier
+        =======           rubber
 """
 
 from __future__ import annotations
@@ -45,14 +45,7 @@ def bonding_clamp(rig: BondingLayout) -> Part:
         material=rig.bar_material,
         body=Extrusion(outer, rig.width),
         features=tuple(
-            Hole(
-                "pin_hole",
-                (x, top, rig.width / 2 + y),
-                (0, -1, 0),
-                rig.bar_hole,
-                rig.bar_height,
-                True,
-            )
+            Hole("pin_hole", (x, top, rig.width / 2 + y), (0, -1, 0), rig.bar_hole, rig.bar_height, True)
             for x, y in rig.bar_holes
         ),
         colour=RIG_COLOUR,

@@ -1,7 +1,7 @@
 r"""Where the bonding fixture's surfaces are, derived once from the design.
 
-The element lies on its back, gauge face up, its slot over a tongue: that finds the hinge, which cannot be seen
-from the face that the gauge is bonded to, and backs the leaf. Beside the element the tongue can be seen.
+The element lies on its back, gauge face up, its slot over a tongue: that finds the hinge, which cannot be
+seen from the face that the gauge is bonded to, and backs the leaf. Beside the element the tongue can be seen.
 
           pad  gauge                 pins
           ___  =====          |  |            |  |
@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, floor, pi, sqrt
+from math import ceil, floor, pi
 
 from tactcad.design.present import present
 from tactcad.design.tree import Bonding, Design
@@ -50,14 +50,12 @@ EDGE = 2.0  # material around the pins' holes, mm; chosen: half a diameter of th
 BESIDE = 0.05  # air between element and pins at all limits, mm; chosen: it slides in by its own weight
 BACK = 2.0  # nest beyond arms and rear ends, mm; chosen: for fingers
 PIN_DEPTH = 2.0  # least depth of a pressed pin in its hole, in its diameters
+AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
 PAD = 1.0  # rubber under the clamp, mm; chosen: silicone sheet as sold
 OVER = 1.0  # clamp over the element's contact pad, mm; chosen
 GUIDED = 6.0  # least height of the clamp bar, and as much of it runs on the pins, mm; chosen: two diameters
 PLAY = 0.4  # the clamp bar's holes over its pins, mm; chosen: it slides down by its own weight
 LEAST_TONGUE = 0.5  # mm: free-standing wall (vendors' pages, see checks/data/shop.toml)
-# N by which an element is pushed against the tongue's tip, and its yield strength, MPa (1.4301, EN 10088-3);
-# chosen: a finger, twice over.
-PUSH, TONGUE_YIELD = 5.0, 190.0
 
 
 @dataclass(frozen=True)
@@ -125,13 +123,6 @@ class BondingLayout:
         """Width, to a hundredth: it enters the shortest slot at any limits."""
         most = self.hinge.l - self.design.tolerance.hinge_length - TONGUE - LEAST_PLAY
         return floor(100 * most + 1e-6) / 100
-
-    @property
-    def least_tongue(self) -> float:
-        """Width that the wire leaves standing, and that twice PUSH on its tip does not bend for good:
-        6 F H/(W w^2)."""
-        high = self.front_floor - self.floor
-        return max(LEAST_TONGUE, sqrt(6 * 2 * PUSH * high / (self.width * TONGUE_YIELD)))
 
     @property
     def tongue_radius(self) -> float:
@@ -317,9 +308,12 @@ class BondingLayout:
         return min(2.0, self.design.sheet.thickness) if own is None else own
 
 
-def bonding_kinds(design: Design) -> tuple[HingeShape, ...]:
-    """The kinds of hinge that want a nest each, in the order of the elements."""
-    return tuple(dict.fromkeys(p.hinge for p in Layout(design).elements))
+def bonding_rigs(design: Design) -> tuple[BondingLayout, ...]:
+    """A fixture for each kind of hinge, in the order of the elements; none without [bonding]."""
+    if design.bonding is None:
+        return ()
+    kinds = dict.fromkeys(p.hinge for p in Layout(design).elements)
+    return tuple(BondingLayout(design, hinge) for hinge in kinds)
 
 
 def kind_suffix(rig: BondingLayout) -> str:

@@ -1,10 +1,10 @@
 r"""Nest of the bonding fixture: a tongue in the element's slot, a rest under its rear body, pins beside it.
 
-             ||        pins      ||          tongue's tip: on the leaf
-   __________||__   o        o
-  |              |__________________         rest
-  |                                 |
-  +---------------------------------+        v up, foot v = 0; u = 0 in the tongue's middle
+           ||        pins      ||          tongue's tip: on the leaf
+ __________||__   o        o
+|              |__________________         rest
+|                                 |
++---------------------------------+        v up, foot v = 0; u = 0 in the tongue's middle
 """
 
 from __future__ import annotations

@@ -20,7 +20,14 @@ from .rule import Rule
 # Files in the order in which their rules are tried. Those of the rigs load no numpy: which scenes a design
 # has is known without.
 ARRAY = ("element_rules", "gauge_rules", "stop_rules", "clamp_rules", "pressed_rules", "slot_gauge_rules")
-RIGS = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules", "stiffness_rules", "bonding_rules")
+RIGS = (
+    "cart_rules",
+    "holder_rules",
+    "calibration_rules",
+    "grasping_rules",
+    "bonding_rules",
+    "stiffness_rules",
+)
 
 
 def design_rules() -> dict[str, Rule]:

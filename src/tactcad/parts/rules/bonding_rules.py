@@ -6,26 +6,19 @@ from collections.abc import Iterator
 
 from ..finding import SAME, Finding
 from ..layout import LEAST_GAP, Layout
-from ..rigs.bonding_layout import EDGE, GUIDED, ROOT, SILL, TONGUE, BondingLayout, bonding_kinds
 from ..library.dowels import LEAST_PLAY
+from ..rigs.bonding_layout import AHEAD_OF_LEADS, EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
 from .rule import at_least, at_most, fits, wrong
 
-# Nest's thickness and clamp's height that a wire cuts and a hand puts on, mm; chosen.
-THICKEST, TALLEST = 80.0, 60.0
-AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
+TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
 # The clamp alone bends an unbacked leaf to this share of its yield strength at most; chosen: a tenth, so that
 # no zero is bonded in that a reading would show.
 BENT_BY_CLAMP = 0.1
 
 
-def _kinds(layout: Layout) -> Iterator[BondingLayout]:
-    if layout.design.bonding is not None:
-        yield from (BondingLayout(layout.design, hinge) for hinge in bonding_kinds(layout.design))
-
-
 @fits("bonding")
 def tongue_enters_slot(layout: Layout) -> Iterator[Finding]:
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         less = layout.design.tolerance.hinge_length + TONGUE + LEAST_PLAY
         if rig.tongue <= 0:
             yield wrong(
@@ -37,15 +30,15 @@ def tongue_enters_slot(layout: Layout) -> Iterator[Finding]:
             return
         yield from at_least(
             "element.hinge_length",
-            f"the tongue in its slot would be {rig.tongue:g} mm thick, which is not cut or bends",
+            f"the tongue in its slot would be {rig.tongue:g} mm thick, less than the wire leaves standing",
             rig.hinge.l,
-            rig.least_tongue + less,
+            round(LEAST_TONGUE + less, 6),
         )
 
 
 @fits("bonding")
 def nest_clears_rear_body(layout: Layout) -> Iterator[Finding]:
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         e = layout.design.element
         lacking = rig.tongue / 2 + 2 * ROOT - rig.sill if rig.front_floor < rig.rest else 0.0
         yield from at_least(
@@ -59,7 +52,7 @@ def nest_clears_rear_body(layout: Layout) -> Iterator[Finding]:
 @fits("bonding")
 def rear_body_takes_pins(layout: Layout) -> Iterator[Finding]:
     """Two pairs of pins beside the element, apart enough for the clamp not to turn on them."""
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         first, last = rig.pin_x
         short = 2 * rig.pin_d + EDGE - (last - first)
         e = layout.design.element
@@ -74,7 +67,7 @@ def rear_body_takes_pins(layout: Layout) -> Iterator[Finding]:
 @fits("bonding")
 def clamp_balances_on_leaf(layout: Layout) -> Iterator[Finding]:
     """The clamp's weight acts over the tongue or behind it: else the element tips off its rest."""
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         g = layout.design.gauge
         if rig.pad_x[1] - rig.pad_x[0] < LEAST_GAP - SAME:
             yield wrong(
@@ -95,20 +88,14 @@ def clamp_balances_on_leaf(layout: Layout) -> Iterator[Finding]:
 
 @fits("bonding")
 def clamp_can_be_handled(layout: Layout) -> Iterator[Finding]:
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         pressure = rig.table.pressure
         yield from at_most(
             "bonding.pressure",
             f"its weight would be {rig.bar_height:g} mm high",
             pressure,
-            pressure * TALLEST / rig.bar_height,
-        )
-        wide = rig.width
-        yield from at_most(
-            "sheet.thickness",
-            f"the fixture would be {wide:g} mm thick",
-            layout.design.sheet.thickness,
-            layout.design.sheet.thickness - max(0.0, wide - THICKEST),
+            (most := pressure * TALLEST / rig.bar_height),
+            f"at most {most:.3g} MPa",
         )
 
 
@@ -116,18 +103,20 @@ def clamp_can_be_handled(layout: Layout) -> Iterator[Finding]:
 def leaf_bears_clamp(layout: Layout) -> Iterator[Finding]:
     """The clamp's pressure ahead of the hinge bends a leaf that is not backed: 6 M/(b t^2), M = p w a^2/2."""
     d = layout.design
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         arm_side, t = -rig.pad_x[0], rig.hinge.t
         bent = rig.bar_pressure * rig.pad_width * arm_side**2 / 2
         stress = 6 * bent / (d.sheet.thickness * t * t)
         share = stress / d.material.yield_strength
-        light = rig.bar_height <= GUIDED + SAME  # no lighter bar is made: less pressure asks for less of it
-        yield from at_most(
-            "gauge.carrier_arm_side" if light else "bonding.pressure",
-            f"the clamp bends the leaf to {share:.2g} of its yield strength where the tongue does not back it",
-            arm_side if light else d.bonding.pressure,
-            arm_side * (BENT_BY_CLAMP / share) ** 0.5 if light else d.bonding.pressure * BENT_BY_CLAMP / share,
-        )
+        if share <= BENT_BY_CLAMP:
+            continue
+        what = f"the clamp bends the leaf to {share:.2g} of its yield strength where no tongue backs it"
+        if rig.bar_height > GUIDED + SAME:
+            legal = f"at most {rig.table.pressure * BENT_BY_CLAMP / share:.3g} MPa"
+            yield wrong("bonding.pressure", what, rig.table.pressure, legal)
+        else:  # no lighter bar runs on its pins: less of the gauge ahead of the hinge must do
+            legal = f"at most {arm_side * (BENT_BY_CLAMP / share) ** 0.5:.3g} mm"
+            yield wrong("gauge.carrier_arm_side", what, arm_side, legal)
 
 
 @fits("bonding")
@@ -145,7 +134,7 @@ def glue_lies_under_foil(layout: Layout) -> Iterator[Finding]:
 @fits("bonding")
 def terminals_lie_in_recess(layout: Layout) -> Iterator[Finding]:
     """Solder terminals on the floor of the wire recess, behind its wall."""
-    for rig in _kinds(layout):
+    for rig in bonding_rigs(layout.design):
         room = layout.rear_end - layout.recess_start - AHEAD_OF_LEADS
         yield from at_most(
             "bonding.terminal_length", "longer than the wire recess", rig.table.terminal_length, room
