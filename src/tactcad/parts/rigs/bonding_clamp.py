@@ -66,7 +66,7 @@ def bonding_pad(rig: BondingLayout) -> Part:
     half = rig.pad_width / 2
     size = f"{behind - before:g} x {2 * half:g}"
     return Part(
-        part_no=f"RUBBER-PAD-{behind - before:g}x{2 * half:g}x{PAD:g}",
+        part_no=f"PAD-{behind - before:g}x{2 * half:g}x{PAD:g}-rubber",
         name=f"Rubber pad {size} x {PAD:g}",
         process="bought",
         material=RUBBER,
