@@ -27,12 +27,13 @@ HEAVIEST = 0.9 * 0.002 / bends(200.0, 168.0, 12.0)
 
 
 def sound_rigs(d: Draw) -> None:
-    """Tables of the rigs for the array that `d` has drawn: all, or the calibration alone."""
+    """Tables of the rigs for the array that `d` has drawn: all, or calibration and bonding alone."""
     both = not d.once_in(4)
     if both:
         _cart(d)
         _grasping(d)
     _calibration(d, d.table["sample.travel"] if both else 0.0)
+    d.rest("bonding")
 
 
 def _cart(d: Draw) -> None:

@@ -25,7 +25,7 @@ BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]
 def without_rigs(name: str) -> str:
     """The text of a shipped design with its array only."""
     text = (HARDWARE / f"{name}.toml").read_text("utf-8")
-    return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", text)
+    return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping|bonding)\]\n.*?(?=\n\[|\Z)", "", text)
 
 
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:

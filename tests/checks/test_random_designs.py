@@ -57,7 +57,7 @@ def test_a_thousand_designs_drawn_over_the_whole_legal_range(record_property):
     record_property("random designs", f"seed {NIGHTLY_SEED} (TACTCAD_SEED), {counts}")
     assert counts.failed == []
     assert counts.drawn >= 1000 and 2 * counts.accepted >= counts.drawn
-    assert set(counts.scenes) == {"array", "calibration", "sample-stiffness", "grasping"}
+    assert set(counts.scenes) == {"array", "calibration", "sample-stiffness", "grasping", "bonding"}
 
 
 def test_draws_reach_over_every_fields_range():

@@ -32,7 +32,7 @@ from tactcad.parts.stop_give import carrier_beam, carrier_opens
 from tactcad.scenes import make_scene, scene_names
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "rigs.md"
-RIGS = ("array", "calibration", "sample-stiffness", "grasping")
+RIGS = ("array", "calibration", "sample-stiffness", "grasping", "bonding")
 LONG = {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]}
 
 
@@ -125,7 +125,7 @@ def test_every_part_that_is_taken_as_rigid_stands_in_the_table():
     parts = {line.part for line in deflections(load("macro-array"), RIGS)}
     named = "stop plate, carrier, end plate, stack of elements, base plate, post, gauge plate, axis plate, "
     named += "array mount, roller, all of these, cart plate, cart's axles, holder's lid, bar, foot, "
-    named += "platform, weight pin"
+    named += "platform, weight pin, tongue of the nest"
     assert parts == set(named.split(", "))
 
 

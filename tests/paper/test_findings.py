@@ -455,7 +455,11 @@ def test_effects_of_the_budget_by_hand(paper, array):
     )  # a rigid pad's sideways stiffness on a half-space over its normal one
     assert by["rubber shears on stuck pads"].short_arm == pytest.approx(lateral * (H / 3) ** 2 / r)
     assert by["rubber shears on stuck pads"].long_arm == pytest.approx(lateral * (H / 7) ** 2 / m)
-    stiff = by["gauge stiffens the leaf"]
+    stiff, bond = by["gauge stiffens the leaf"], by["bond line stiffens the leaf"]
+    # adhesive alone as a sandwich: E w h (t/2 + h/2)^2 of the leaf's E b t^3/12, of which K has nine tenths
+    glued = 2000 * 1.5 * 0.01 * 0.13**2 / (69000 * 3 * 0.25**3 / 12)
+    assert 0.6 * glued < bond.short_arm < glued and bond.remaining == 0.0
+    assert bond.short_arm < stiff.short_arm < 0.028  # together below the composite beam's 2.8 %
     assert (
         0.005 < stiff.short_arm < 0.12 and by["bridge non-linearity"].on_object < 0.01
     )  # as hardware notes have them

@@ -4,7 +4,7 @@ scene."""
 from __future__ import annotations
 
 import pytest
-from variants import variant
+from variants import DROP, variant
 
 from tactcad.design.load import names
 from tactcad.design.messages import InputError
@@ -49,6 +49,15 @@ MISFITS = {
     "sample_stand_stays_straight": ("sample-stiffness", {"sample.step": 0.001}),
     "guide_stays_straight": ("grasping", {"grasping.weights": 40}),
     "ballast_trims_moving_weight": ("grasping", {"grasping.moving_weight": 2.8}),
+    "tongue_enters_slot": ("bonding", {"element.hinge_length": 0.5, "element.fillet_radius": 0.2}),
+    "nest_clears_rear_body": ("bonding", {"element.seat_length": 0.8}),
+    "rear_body_takes_pins": ("bonding", {"element.rear_length": 12.0}),
+    "clamp_balances_on_leaf": ("bonding", {"gauge.carrier_arm_side": 1.6, "gauge.carrier_body_side": 1.0}),
+    "clamp_can_be_handled": ("bonding", {"bonding.pressure": 1.0}),
+    "leaf_bears_clamp": ("bonding", {"element.hinge_thickness": 0.02}),
+    "glue_lies_under_foil": ("bonding", {"bonding.glue_thickness": 0.05}),
+    "terminals_lie_in_recess": ("bonding", {"bonding.terminal_length": 20.0}),
+    "tongue_stays_straight": ("bonding", {"bonding.sight": 0.002}),
 }
 
 
@@ -82,7 +91,7 @@ def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
 @pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
 def test_the_shipped_rigs_keep_all(name):
     design = load(name)
-    assert scene_names(design) == ("array", "calibration", "sample-stiffness", "grasping")
+    assert scene_names(design) == ("array", "calibration", "sample-stiffness", "grasping", "bonding")
     assert left_out(design) == []
 
 
@@ -94,5 +103,6 @@ def test_arrays_of_any_length_are_still_built(rows):
 
 
 def test_a_design_without_the_tables_has_no_rigs():
-    assert scene_names(load("soft-tissue")) == ("array",)
+    assert scene_names(load("soft-tissue")) == ("array", "bonding")
+    assert scene_names(variant({"bonding": DROP}, "soft-tissue")) == ("array",)
     assert set(names()) >= {"macro-array", "double-sample", "smallest-bearing", "soft-tissue"}

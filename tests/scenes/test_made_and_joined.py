@@ -53,7 +53,7 @@ def test_every_counterbore_sinks_the_head_in_it(scene):
                 heads += 1
                 assert deep - height >= -1e-9, f"{screw.designator} stands out of {p.designator}"
                 assert 2 * part_box(screw.part)[1][0] < wide
-    assert heads
+    assert heads or scene.name == "bonding"  # which has no screws
 
 
 def test_a_tap_reaches_every_thread(scene):
@@ -68,7 +68,7 @@ def test_a_tap_reaches_every_thread(scene):
 @pytest.mark.parametrize("name", ["macro-array", "double-sample", "smallest-bearing"])
 def test_all_set_ups_stand_on_one_base_plate(name):
     design = load(name)
-    scenes = [make_scene(design, s) for s in scene_names(design) if s != "array"]
+    scenes = [make_scene(design, s) for s in scene_names(design) if s not in ("array", "bonding")]
     at = [next(p for p in scene.placements if p.designator == "BP1") for scene in scenes]
     assert len(at) == 3 and {p.part.part_no for p in at} == {f"{name}-base"}
     assert len({p.part for p in at}) == 1

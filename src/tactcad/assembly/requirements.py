@@ -18,6 +18,7 @@ from tactcad.parts.plate import PLACE
 from tactcad.parts.stop_gap import stop_limit
 from tactcad.scenes.scene import Scene
 
+from .bonding_requirements import bonding_requirements
 from .requirement import LEAST_PRESS, Requirement, summed
 from .rig_requirements import rig_requirements
 from .screw_patterns import patterns
@@ -51,6 +52,8 @@ def requirements(
     for joint in seen.values():
         which = f", {joint.engaged:g} mm engaged" if names[joint.name] > 1 else ""
         wanted += _joint_requirements(joint, f"{joint.name}{which}")
+    if any(scene.name == "bonding" for scene in scenes):
+        wanted += bonding_requirements(layout, known)
     return known, wanted
 
 

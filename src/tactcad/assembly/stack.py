@@ -155,6 +155,7 @@ OF_THE_ARRAY = (
     "stop plate:",
     "axle",
     "wheel:",
+    "bonding",
 )
 
 

@@ -88,3 +88,26 @@ class Holder:
     margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)
     vacuum: float = given(Number("kPa", 1, 100, "below the air's pressure"), 40.0)
     pull: float = given(Number("N", 0, 1000, "what may pull the sample off: tack of the pads"), 0.6)
+
+
+@dataclass(frozen=True)
+class Bonding:
+    """[bonding]: the fixture in which gauges are bonded, their adhesive and their terminals."""
+
+    signal_share: float = given(
+        Number("", 1e-4, 0.5, "share of its signal that a gauge's place along the hinge may cost"), 0.03
+    )
+    sight: float = given(
+        Number("mm", 0.001, 0.5, "the gauge's middle set between the tongue's edges by eye, plus and minus"),
+        0.03,
+    )
+    pressure: float = given(Number("MPa", 0.001, 2, "of the clamp on the gauge while it cures"), 0.1)
+    glue_thickness: float = given(
+        Number("mm", 0.0005, 0.2, "cured adhesive under the gauge, part of gauge.grid_height"), 0.01
+    )
+    glue_modulus: float = given(Number("MPa", 1, 2e4, "Young's modulus of the cured adhesive"), 2000.0)
+    cure: float = given(Number("min", 0.5, 2880, "the clamp stays on"), 10.0)
+    terminal_length: float = given(Number("mm", 0.5, 20, "solder terminals along the element"), 3.0)
+    terminal_width: float | None = given(
+        Number("mm", 0.5, 20, "solder terminals across the element"), None, "the sheet's thickness, at most 2"
+    )

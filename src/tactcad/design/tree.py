@@ -12,7 +12,7 @@ from typing import Any
 
 from .fields import Day, Number, NumberRows, Numbers, OneOf, TextLine, given
 from .materials import ALLOYS, LOT_SPREAD, MAGNETIC, PLATE_ALLOYS, Difference, differences
-from .rigs import Calibration, Cart, Grasping, Holder, Sample
+from .rigs import Bonding, Calibration, Cart, Grasping, Holder, Sample
 from .sensing import Readout, StrainGauge, Wiring
 from .stock import OTHER_SHEET
 
@@ -304,6 +304,7 @@ class Design:
     calibration: Calibration | None = None
     sample: Sample | None = None
     grasping: Grasping | None = None
+    bonding: Bonding | None = None
     origin: dict[str, str] = field(default_factory=dict)
 
     @property

@@ -18,6 +18,7 @@ from .boxes import Point
 from .broken import breaks_of
 from .callouts import hole_callout, pocket_callouts, radius_callouts, round_outline
 from .contours import contours
+from .edge_spans import edge_spans
 from .holes import Group, Round, groups, regular_rows, rounds, widest
 from .keys import OUTER, PLACES, THICKNESS, Owner, Spot
 from .limit_marks import with_marks
@@ -133,6 +134,7 @@ def _front_view(
     if disc:
         callouts.insert(0, round_outline(sketch, *disc))
         linears = _lands(sketch, view, part)
+    linears += edge_spans(sketch, view, part)
     along = 0 if rows and rows[0][0].at[1] == rows[0][1].at[1] else 1
     repeated = {r.owner.place(along) for row in rows for r in row[1:-1]}
     repeated |= {r.owner.place(1 - along) for row in rows for r in row[:-1]}

@@ -104,6 +104,9 @@ def _size(part: Part, c: Characteristic) -> tuple[str, str]:
         where = f"radius of the {_plain(c.between[0])}, at both faces"
         pins = f"pins, {2 * c.lower:g} enters and {2 * c.upper:g} does not"
         return where, f"measuring microscope, {_reads(width)}, or {pins}"
+    if len(c.between) == 2:
+        a, b = (_plain(f) for f in c.between)
+        return f"from {a} to {b}, at both faces", f"measuring microscope or height gauge, {_reads(width)}"
     return "across the hole, at both faces", f"plug gauges, {c.lower:g} goes and {c.upper:g} does not"
 
 

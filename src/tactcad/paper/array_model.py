@@ -9,11 +9,13 @@ import numpy as np
 from tactcad.design.materials import modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design, Tolerance
+from tactcad.fem.layered_leaf import Layer
 from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
+from tactcad.paper.gauge_layers import gauge_layers
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
 
@@ -55,6 +57,8 @@ class ArrayModel:
     stiffness_factor: float  # of the material's own modulus over the design's
     modulus_per_kelvin: float  # 1/K, by which the modulus falls
     rig: Rig
+    layers: tuple[Layer, ...]  # on the leaf: the bond line first, where the design says what it is
+    bond_line: bool
 
     def rows(self, number: np.ndarray) -> np.ndarray:
         """Index of each element number; -1 where the design has no such element."""
@@ -108,4 +112,6 @@ def from_design(design: Design) -> ArrayModel:
             grasping.weight,
             grasping.weights,
         ),
+        gauge_layers(design),
+        design.bonding is not None,
     )

@@ -6,6 +6,9 @@ from __future__ import annotations
 
 from math import log
 
+import numpy as np
+
+from tactcad.fem.layered_leaf import stiffness
 from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.as_built import COMMON, half_widths
 from tactcad.paper.array_model import ArrayModel
@@ -73,10 +76,48 @@ def _contact(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     ]
 
 
+def _bonded(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
+    """What the bond line adds to K, and what the gauge on it does, by elements with a layer of each."""
+
+    def stiffer(more: int, fewer: int) -> tuple[float, float]:
+        over, under = array.layers[:more], array.layers[:fewer]
+        return pair.log_change(
+            lambda s: np.array(stiffness(s.rows(0), over)), lambda s: np.array(stiffness(s.rows(0), under))
+        )
+
+    bond = int(array.bond_line)
+    glued, gauge = stiffer(bond, 0), stiffer(len(array.layers), bond)
+    whole = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
+    effects = [
+        Effect(
+            "gauge stiffens the leaf",
+            f"backing and foil by plane elements; with the bond line as a composite beam, an upper bound: "
+            f"{whole[0]:.1%}",
+            *gauge,
+            pair.together(*gauge),
+            "calibrate with the gauge on",
+            0.0,
+        )
+    ]
+    if bond:
+        adhesive = array.layers[0]
+        how = f"adhesive of {adhesive.thickness * 1e3:g} µm and {adhesive.modulus:g} MPa by plane elements"
+        effects.append(
+            Effect(
+                "bond line stiffens the leaf",
+                how,
+                *glued,
+                pair.together(*glued),
+                "calibrate with the gauge on",
+                0.0,
+            )
+        )
+    return effects
+
+
 def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
     """Effects that a computed K leaves out."""
     width = pair.log_change(lambda s: ladder.stiffness(s, "solid"), lambda s: ladder.stiffness(s, "plane"))
-    gauge = pair.log_change(lambda s: gauge_signal.stiffness(s, array.gauge), ladder.stiffness)
     warm = array.modulus_per_kelvin * ROOM_SWING
     other = abs(log(array.stiffness_factor))
     error = CLOSED_FORM_ERROR
@@ -98,14 +139,7 @@ def _models(pair: BudgetPair, array: ArrayModel) -> list[Effect]:
             "take the table's value",
             0.0,
         ),
-        Effect(
-            "gauge stiffens the leaf",
-            "composite beam; upper bound",
-            *gauge,
-            pair.together(*gauge),
-            "calibrate with the gauge on",
-            0.0,
-        ),
+        *_bonded(pair, array),
         Effect(
             "closed form against finite elements",
             "what the ladder is held to",

@@ -68,3 +68,27 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
         ),
         *board_supplies(layout),
     )
+
+
+def bonding_supplies() -> tuple[Supply, ...]:
+    """What the bonding fixture's guide uses up beside the array's gauges, adhesive, terminals and coating."""
+    return (
+        Supply(
+            "SURFACE-PREPARATION",
+            "solvent, acid conditioner and neutraliser for aluminium, lint-free swabs",
+            1,
+            "set",
+            "surface preparation set for strain gauges",
+        ),
+        Supply(
+            "ABRASIVE",
+            "silicon carbide paper, strips of 3 mm on a flat stick",
+            1,
+            "sheet",
+            "silicon carbide paper P400, wet and dry",
+        ),
+        Supply("GAUGE-TAPE", "clear tape that leaves no residue", 1, "roll", "strain gauge mounting tape"),
+        Supply(
+            "RELEASE-FILM", "film between gauge and rubber", 1, "sheet", "PTFE film 0.05 mm, or polyethylene"
+        ),
+    )

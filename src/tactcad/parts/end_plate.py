@@ -39,7 +39,7 @@ def end_plate(layout: Layout, head: bool) -> Part:
     depth = d.clamp.end_plate_thickness
     height = round(z1 - z0, 9)
     outer = rectangle(-layout.end_plate_half, 0, layout.end_plate_half, height)
-    bore = head_bore(layout) if head else _pressed(float(d.clamp.dowel))
+    bore = head_bore(layout) if head else pressed(float(d.clamp.dowel))
     features: list[Feature] = []
     for side in (-1.0, 1.0):
         for i, x in enumerate(layout.screw_x):
@@ -117,7 +117,8 @@ def head_bore(layout: Layout) -> Characteristic:
     return Characteristic("dowel hole diameter", least, upper, least, between=("dowel_hole",))
 
 
-def _pressed(size: float) -> Characteristic:
+def pressed(size: float) -> Characteristic:
+    """Limits of a hole that a pin of that size (mm) is pressed into."""
     low, high = deviations(PRESS_FIT, size)
     limits = (round(size + high, 6), round(size + low, 6))
     return Characteristic("dowel hole diameter", size, *limits, between=("dowel_hole",))

@@ -71,13 +71,14 @@ def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ..
     scenes
         Names of the scenes whose lines are wanted; the design must have them.
     """
-    from .rigs.stiffness import calibration_lines, grasping_lines, sample_lines
+    from .rigs.stiffness import bonding_lines, calibration_lines, grasping_lines, sample_lines
 
     lines = {
         "array": array_lines,
         "calibration": calibration_lines,
         "sample-stiffness": sample_lines,
         "grasping": grasping_lines,
+        "bonding": bonding_lines,
     }
     return tuple(line for scene, of in lines.items() if scene in scenes for line in of(design))
 

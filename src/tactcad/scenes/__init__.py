@@ -28,6 +28,7 @@ NEEDS: dict[str, tuple[str, ...]] = {
     "calibration": ("calibration",),
     "sample-stiffness": ("calibration", "sample", "cart", "holder"),
     "grasping": ("grasping", "sample", "cart", "holder"),
+    "bonding": ("bonding",),
 }
 
 

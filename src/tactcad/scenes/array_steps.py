@@ -11,6 +11,7 @@ from tactcad.parts.fasteners import SPACER_TOLERANCE, Clamping, clamping, dowel_
 from tactcad.parts.fasteners import STACK as STACK_TOLERANCE
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
+from tactcad.parts.rules import misfit
 
 from .scene import Placement, Step
 
@@ -104,13 +105,21 @@ def _gauges(layout: Layout) -> str:
     d = layout.design
     thinnest = min(place.hinge.t for place in layout.elements)
     face = "each flat face" if d.element.sides == "one" else "the floor of each slot on the pads' side"
+    bonded = d.bonding is not None and misfit(layout, "bonding") is None
+    how = (
+        f"Bond a gauge on {face} in the bonding fixture, by the guide of scene bonding, and check it as that "
+        "says; lay its leads in the wire recess towards the rear end."
+        if bonded
+        else f"Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier trimmed to "
+        f"{d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
+        f"leads, and lay "
+        "them in the wire recess towards the rear end."
+    )
     return (
         f"Hold and lift an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm "
         "thick. Keep each apart from the others, rear body held, arm free. Measure and record the hinge "
         "thickness of every element, and mark its rear body with its number: equal elements differ in what "
-        f"was measured. Bond a gauge on {face}, its grid centred on the hinge within 0.1 mm, carrier "
-        f"trimmed to {d.gauge.carrier_arm_side + d.gauge.carrier_body_side:g} mm; cure, coat, solder three "
-        "leads, and lay them in the wire recess towards the rear end."
+        f"was measured. {how}"
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from tactcad.parts.consumables import Supply
 from tactcad.parts.description import Part, Vector, vector
@@ -67,12 +68,14 @@ class Builder:
         self, prefix: str, part: Part, origin: Vector, rotation: Rotation = UPRIGHT, step: str = ""
     ) -> str:
         """Put a part in place, in the step of that title where one is given; returns its designator."""
-        name = self._add(Placement(self.name(prefix), part, _rounded(origin), rotation))
+        name = self.put(Placement(self.name(prefix), part, origin, rotation))
         if step:
             self.placed_in.setdefault(step, []).append(name)
         return name
 
-    def _add(self, placement: Placement) -> str:
+    def put(self, placement: Placement) -> str:
+        """A part under a designator of its own; returns it."""
+        placement = replace(placement, origin=_rounded(placement.origin))
         self.placements.append(placement)
         if self._group is not None:
             self.groups.setdefault(self._group, []).append(placement.designator)
@@ -97,7 +100,7 @@ class Builder:
                 (sum(rotation[i][k] * p.rotation[k][j] for k in range(3)) for j in range(3)) for i in range(3)
             )
             at = vector(sum(rotation[i][k] * p.origin[k] for k in range(3)) + shift[i] for i in range(3))
-            self._ready.add(self._add(Placement(p.designator, p.part, _rounded(at), turned)))
+            self._ready.add(self.put(Placement(p.designator, p.part, at, turned)))
         self._scenes.append(scene)
         self.contacts += scene.contacts
         self.supplies += scene.supplies

@@ -1,8 +1,8 @@
-"""Parts of the rigs around the array: calibration, sample stiffness and grasping; one file a part.
+"""Parts of the rigs around the array: calibration, sample stiffness, grasping and bonding; one file a part.
 
-In: where things stand, derived once from the design (`stand_layout`, `cart_layout`, `guide_layout`; the
-latter two are None where the design has no such tables). Out: parts for the scenes, which see them here by
-name.
+In: where things stand, derived once from the design (`stand_layout`, `cart_layout`, `guide_layout`,
+`bonding_layout`; the second and third are None where the design has no such tables). Out: parts for the
+scenes, which see them here by name.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from .axle_shim import axle_shim
 from .ballast import ballast
 from .bar import bar
 from .base_plate import base_plate
+from .bonding_clamp import bonding_clamp, bonding_pad
+from .bonding_nest import bonding_nest
 from .carriage import carriage
 from .cart_plate import cart_plate
 from .disc_weight import disc_weight
@@ -41,6 +43,9 @@ __all__ = [
     "ballast",
     "bar",
     "base_plate",
+    "bonding_clamp",
+    "bonding_nest",
+    "bonding_pad",
     "carriage",
     "cart_plate",
     "disc_weight",

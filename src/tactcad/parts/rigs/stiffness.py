@@ -10,13 +10,14 @@ from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.mechanics.bending import Beam, rod, round_plate
 
-from ..layout import Layout
+from ..layout import LEAST_GAP, Layout
 from ..library.dowels import dowel_diameter
 from ..part_materials import plate_material
 from ..seating import FLAT
 from ..stiffness_table import TENTH, Deflection, pads_plane
 from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
 from .bar import BAR_MIDDLE
+from .bonding_layout import bonding_rigs, kind_suffix
 from .cart_layout import CartLayout
 from .force_gauge import GAUGE_THREADS
 from .frame import (
@@ -176,6 +177,27 @@ def _stand_lines(rig: StandLayout, touch: float, load: Load) -> Iterator[Deflect
     out += PLATE
     turned = 2 * _plate(design, 2 * STAGE_HOLE, BACK, PLATE).supported() * (out / apart) ** 2
     yield _line(load, "axis plate", "halves between the stage's screws, as the gauge plate", turned)
+
+
+def bonding_lines(design: Design) -> Iterator[Deflection]:
+    """The bonding fixture's tongue of every kind of hinge, pushed along the element at its tip."""
+    for rig in bonding_rigs(design):
+        high = rig.front_floor - rig.floor
+        tongue = Beam(high, rig.width, max(rig.tongue, LEAST_GAP), STEEL_MODULUS, STEEL_POISSON)
+        yield Deflection(
+            "bonding",
+            f"tongue of the nest{kind_suffix(rig)}",
+            "held in the nest, pushed at its tip",
+            PUSH,
+            "a finger against the element",
+            1e3 * PUSH * tongue.cantilever(),
+            1e3 * TENTH * rig.table.sight,
+            "a tenth of bonding.sight",
+            ("element.hinge_length", "bonding.sight"),
+        )
+
+
+PUSH = 5.0  # N; chosen: a finger that sets a gauge presses less
 
 
 def _cart_lines(cart: CartLayout, load: Load) -> Iterator[Deflection]:

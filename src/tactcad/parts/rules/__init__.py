@@ -28,7 +28,14 @@ ARRAY = (
     "slot_gauge_rules",
     "readout_rules",
 )
-RIGS = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules", "stiffness_rules")
+RIGS = (
+    "cart_rules",
+    "holder_rules",
+    "calibration_rules",
+    "grasping_rules",
+    "bonding_rules",
+    "stiffness_rules",
+)
 
 
 def design_rules() -> dict[str, Rule]:

@@ -29,6 +29,11 @@ def guide_stays_straight(layout: Layout) -> Iterator[Finding]:
     yield from _too_much(layout, "grasping")
 
 
+@fits("bonding")
+def tongue_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from _too_much(layout, "bonding")
+
+
 def _too_much(layout: Layout, scene: str) -> Iterator[Finding]:
     """What is only flagged there refuses nothing."""
     for line in deflections(layout.design, [scene]):

@@ -1,0 +1,128 @@
+"""What a clamp's pressure on the gauge does to the leaf under it, by plane elements.
+
+Plane stress on the element's own section. The pressure acts on the face that the gauge is bonded to, over the
+clamp's rubber. `backed`, the leaf's other face lies on a tongue in the slot, and the rear body on its rest:
+two supports, so that nothing is bent by how high they are made. Otherwise the body is held and arm and leaf
+hang from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactcad.mechanics.section import HingeSection
+
+from . import elasticity
+from .face_strain import face_strain
+from .mapped_mesh import PlaneMesh, plane_mesh
+from .plane_elements import PlaneSolution
+from .shape import reference_shape
+from .space import PlaneSpace, gauss, lagrange
+
+Array = NDArray[np.float64]
+
+ORDER, DENSITY = 3, 2  # within 4 % of finer meshes (tests/fem/test_leaf_clamp.py)
+POINTS = 40  # Gauss points for each edge: a pressure that ends inside one is met to some per mille
+
+
+@dataclass(frozen=True)
+class Clamped:
+    """The leaf under a pressure of 1 MPa.
+
+    stress        largest on its two faces, MPa; not where the tongue's edges touch, which give way
+    gauge_strain  mean over the grid on the gauge's face
+    on_tongue     force, N; 0 where it does not back the leaf
+    """
+
+    stress: float
+    gauge_strain: float
+    on_tongue: float
+
+
+def clamped(
+    s: HingeSection,
+    rubber: tuple[float, float],
+    width: float,
+    grid_length: float,
+    tongue: float | None = None,
+) -> Clamped:
+    """One element under 1 MPa.
+
+    Parameters
+    ----------
+    s
+        One element (scalars); its body ends at the rest where the leaf is backed, else where it is held.
+    rubber
+        How far the pressed stretch reaches from the hinge's middle towards the pad, and towards the clamp,
+        mm.
+    width
+        Of the rubber across the element, mm.
+    grid_length
+        Of the gauge's grid, mm.
+    tongue
+        Flat length of its tip, mm; None: the leaf is not backed.
+    """
+    mesh = plane_mesh(reference_shape(s), DENSITY, whole=True, order=ORDER)
+    space = PlaneSpace.of(mesh)
+    E, nu, b = float(s.youngs_modulus), float(s.poisson), float(s.width)
+    A = space.stiffness(*elasticity.lame(E, nu, plane_stress=True)) * b
+    f = np.zeros(A.shape[0])
+    f[1::2] = width * pressed(space, mesh, rubber)
+    fixed = _held(space, mesh) if tongue is None else _lain(space, mesh, tongue)
+    u = elasticity.solve(A, f, fixed)
+    on_tongue = 0.0
+    if tongue is not None:
+        reactions = (A @ u - f)[_tip(space, mesh, tongue) * 2 + 1]
+        on_tongue = -float(reactions.sum())
+    solution = PlaneSolution(np.nan, u.reshape(-1, 2).T, space, mesh, len(u), E, nu, False)
+    flat, slot = face_strain(solution, "flat"), face_strain(solution, "slot")
+    free = np.abs(slot.x) > ((tongue or 0.0) + float(s.hinge_thickness)) / 2
+    stress = max(np.abs(flat.stress).max(), np.abs(slot.stress[free]).max())
+    return Clamped(float(stress), float(flat.mean(grid_length)), on_tongue)
+
+
+def pressed(space: PlaneSpace, mesh: PlaneMesh, rubber: tuple[float, float]) -> Array:
+    """Nodal forces along z (N for 1 mm of width) of 1 MPa on the hinge's lower face."""
+    x, z = space.nodes
+    size = np.ptp(x)
+    edges = space.edges
+    edges = edges[np.all(np.abs(z[edges] - mesh.shape.low) < 1e-9 * size, axis=1)]
+    edges = np.unique(edges[np.arange(len(edges))], axis=0)
+    points, weights = gauss(POINTS)
+    value, slope = lagrange(space.order, points)
+    to_arm, to_body = rubber
+    at, step = x[edges] @ value, np.abs(x[edges] @ slope)
+    inside = (at <= to_arm) & (at >= -to_body)
+    f = np.zeros(len(x))
+    np.add.at(f, edges, (inside * step * weights) @ value.T)
+    return f
+
+
+def _held(space: PlaneSpace, mesh: PlaneMesh) -> Array:
+    clamped_nodes = np.flatnonzero(np.abs(space.nodes[0] - mesh.clamp_x) < 1e-9 * np.ptp(space.nodes[0]))
+    return np.unique(np.concatenate([2 * clamped_nodes, 2 * clamped_nodes + 1]))
+
+
+def _lain(space: PlaneSpace, mesh: PlaneMesh, tongue: float) -> Array:
+    """On the tongue along z, one of its nodes along x too; at the body's far upper corner along z."""
+    tip = _tip(space, mesh, tongue)
+    x, z = space.nodes
+    corner = np.argmin(np.hypot(x - mesh.clamp_x, z - mesh.shape.body.high))
+    middle = tip[np.argmin(np.abs(x[tip]))]
+    return np.unique(np.concatenate([2 * tip + 1, [2 * middle, 2 * corner + 1]]))
+
+
+def _tip(space: PlaneSpace, mesh: PlaneMesh, tongue: float) -> NDArray[np.int64]:
+    """Nodes of the slot's floor on the tongue's tip; the middle one where the tip is narrower than these."""
+    x, z = space.nodes
+    near = 1e-9 * np.ptp(x)
+    walls = mesh.shape.arm.slot_corner(upper=True), mesh.shape.body.slot_corner(upper=True)
+    inside = (x < max(w.wall for w in walls)) & (x > min(w.wall for w in walls))
+    floor = np.flatnonzero(inside & (np.abs(z - mesh.shape.high) < near))
+    if not len(floor):  # a full round's fillets meet in its lowest point
+        floor = np.flatnonzero(inside)[[np.argmin(np.abs(z[inside] - mesh.shape.high))]]
+    on = floor[np.abs(x[floor]) <= tongue / 2 + near]
+    return on if len(on) else floor[[np.argmin(np.abs(x[floor]))]]

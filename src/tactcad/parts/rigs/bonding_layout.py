@@ -1,0 +1,323 @@
+r"""Where the bonding fixture's surfaces are, derived once from the design.
+
+The element lies on its back, gauge face up, its slot over a tongue: that finds the hinge, which cannot be
+seen from the face that the gauge is bonded to, and backs the leaf. Beside the element the tongue can be seen.
+
+          pad  gauge                 pins
+          ___  =====          |  |            |  |
+     ____|  |________________ |__|____________|__|__   z = 0: gauge face
+    |_______  __   __  rear body                    |
+            | |##|  |________                       |
+              |##|     |     |______________________|
+    __________|  |_____|     . DROP
+    |                  |________________________________
+    |                nest                               |
+
+Frame (mm): x = 0 at the hinge's middle, + towards the clamped rear body, z = 0 on the element's flat face,
++ away from it, y = 0 in the middle of the sheet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, floor, pi
+
+from tactcad.design.present import present
+from tactcad.design.tree import Bonding, Design
+
+from ..description import Material
+from ..element import shortest
+from ..layout import LEAST_GAP, HingeShape, Layout
+from ..library.dowels import LEAST_PLAY, dowel_lengths, dowel_limits
+from ..library.fits import general
+from ..part_materials import STAINLESS, plate_material
+from ..plate import PLACE
+from .frame import STANDARD_GRAVITY
+
+# The tongue's width and the height of its tip over the rest, plus and minus mm; chosen: three passes of the
+# wire hold 0.01, four 0.005.
+TONGUE, TIP = 0.005, 0.02
+# Element over the nest's floor in front, mm; chosen: crumbs of adhesive do not lift it.
+FLOOR_GAP = 0.5
+# Rear body over its rest where the leaf lies on the tongue, beside what general tolerances take; chosen: so
+# that the tongue bears, and never the rest alone.
+DROP = 0.05
+BASE = 10.0  # nest under the rest, mm; chosen: the pins' holes, and for a vice to hold it
+SILL = 0.3  # the nest's step before the rear body, mm; chosen: the shortest clamp edge stays free of it
+ROOT = 0.3  # inside corners of what the wire cuts, mm; chosen: twice the wire's least
+EDGE = 2.0  # material around the pins' holes, mm; chosen: half a diameter of the usual M3's pin and more
+BESIDE = 0.05  # air between element and pins at all limits, mm; chosen: it slides in by its own weight
+BACK = 2.0  # nest beyond arms and rear ends, mm; chosen: for fingers
+PIN_DEPTH = 2.0  # least depth of a pressed pin in its hole, in its diameters
+AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
+PAD = 1.0  # rubber under the clamp, mm; chosen: silicone sheet as sold
+OVER = 1.0  # clamp over the element's contact pad, mm; chosen
+GUIDED = 6.0  # least height of the clamp bar, and as much of it runs on the pins, mm; chosen: two diameters
+PLAY = 0.4  # the clamp bar's holes over its pins, mm; chosen: it slides down by its own weight
+LEAST_TONGUE = 0.5  # mm: free-standing wall (vendors' pages, see checks/data/shop.toml)
+
+
+@dataclass(frozen=True)
+class BondingLayout:
+    """Derived dimensions (mm) of the fixture for elements with one kind of hinge.
+
+    Parameters
+    ----------
+    design
+        With its [bonding] table.
+    hinge
+        The kind of hinge; elements with other hinges want another nest.
+    """
+
+    design: Design
+    hinge: HingeShape
+
+    @property
+    def table(self) -> Bonding:
+        return present(self.design.bonding)
+
+    @cached_property
+    def array(self) -> Layout:
+        return Layout(self.design)
+
+    # --- what the elements offer ---
+
+    @cached_property
+    def arms(self) -> tuple[float, ...]:
+        """Arm lengths of the elements with this hinge."""
+        return tuple(sorted({p.arm for p in self.array.elements if p.hinge == self.hinge}))
+
+    @cached_property
+    def _hinges(self) -> tuple[float, ...]:
+        """x of their hinges in the array."""
+        return tuple(self.array.pad_inner + arm for arm in self.arms)
+
+    @property
+    def clamp_edge(self) -> float:
+        """x of the nearest clamp edge: from here on some rear body stands lower than the ledge."""
+        return round(self.array.clamp_edge - max(self._hinges), 9)
+
+    @property
+    def rear_ends(self) -> tuple[float, float]:
+        """x of the nearest and of the farthest rear end."""
+        ends = [round(self.array.rear_end - x, 9) for x in self._hinges]
+        return min(ends), max(ends)
+
+    @property
+    def floor(self) -> float:
+        """Slot's floor under the gauge face: the leaf's back."""
+        h = self.hinge
+        return h.t if self.design.element.sides == "one" else round((h.h + h.t) / 2, 9)
+
+    @property
+    def gauge_face(self) -> float:
+        """z of the face that the gauge is bonded to: 0, or the floor of a two-sided hinge's front slot."""
+        h = self.hinge
+        return 0.0 if self.design.element.sides == "one" else -round((h.h - h.t) / 2, 9)
+
+    # --- nest ---
+
+    @property
+    def tongue(self) -> float:
+        """Width, to a hundredth: it enters the shortest slot at any limits."""
+        most = self.hinge.l - self.design.tolerance.hinge_length - TONGUE - LEAST_PLAY
+        return floor(100 * most + 1e-6) / 100
+
+    @property
+    def tongue_radius(self) -> float:
+        """Of the tongue's edges: they stay clear of the slot's fillets, its tip lies on the floor."""
+        wanted = self.hinge.r + self.design.tolerance.fillet_radius
+        return round(min(wanted, self.tongue / 2), 6)
+
+    @property
+    def play(self) -> float:
+        """Of the nominal slot over the tongue, whole."""
+        return round(self.hinge.l - self.tongue, 9)
+
+    @property
+    def front_floor(self) -> float:
+        """Depth of the nest's floor beside the tongue, below the gauge face: the rest's where that is hardly
+        lower."""
+        floor = round(self.array.ledge_of(self.hinge) + FLOOR_GAP, 9)
+        return floor if self.rest - floor >= 2 * ROOT else self.rest
+
+    @property
+    def rest(self) -> float:
+        """Depth of the rear rest below the gauge face."""
+        return round(self.design.element.rear_height + self.drop, 9)
+
+    @property
+    def drop(self) -> float:
+        """Rear body's top over its rest, the leaf on the tongue."""
+        return round(general(self.design.element.rear_height) + TIP + DROP, 9)
+
+    @property
+    def sill(self) -> float:
+        """x of the step from the floor beside the tongue down to the rest."""
+        return round(self.clamp_edge - SILL, 9)
+
+    @property
+    def nest_x(self) -> tuple[float, float]:
+        return -(ceil(max(self.arms)) + BACK), ceil(self.rear_ends[1]) + BACK
+
+    @property
+    def nest_height(self) -> float:
+        """From its foot to the tongue's tip."""
+        return round(BASE + self.rest - self.floor, 9)
+
+    @property
+    def width(self) -> float:
+        """Nest and clamp along y: over the pins."""
+        return ceil(2 * (self.pin_y + self.pin_d / 2 + EDGE))
+
+    # --- pins ---
+
+    @property
+    def pin_d(self) -> float:
+        return float(self.design.clamp.dowel)
+
+    @property
+    def pin_y(self) -> float:
+        """y of the pins beside the element, which enters at any limits."""
+        thick = self.design.sheet.thickness + present(self.design.tolerance.sheet_thickness)
+        pins = dowel_limits(self.design.clamp.dowel)[1]
+        return round(ceil(100 * ((thick + pins + PLACE) / 2 + BESIDE)) / 100, 6)
+
+    @property
+    def pin_x(self) -> tuple[float, float]:
+        """x of the pairs of pins: behind step and clamp's nose, and before the nearest rear end."""
+        first = max(self.sill + EDGE, self.pad_x[1] + LEAST_GAP) + self.pin_d / 2
+        return round(ceil(10 * first) / 10, 6), round(self.rear_ends[0] - self.pin_d / 2, 6)
+
+    @property
+    def pin_length(self) -> float:
+        """Shortest standard pin that is pressed in far enough and guides the clamp; ground rod beyond."""
+        out = self.rest + self.bar_bottom + GUIDED
+        least = out + PIN_DEPTH * self.pin_d
+        most = out + BASE
+        lengths = dowel_lengths(self.design.clamp.dowel)
+        return next((n for n in lengths if least <= n <= most), float(ceil(least)))
+
+    @property
+    def pin_depth(self) -> float:
+        """How deep the pins are pressed in."""
+        return round(self.pin_length - (self.rest + self.bar_bottom + GUIDED), 9)
+
+    # --- clamp ---
+
+    @property
+    def pad_x(self) -> tuple[float, float]:
+        """x of the rubber's ends: the gauge's carrier, but clear of the shortest arm's contact pad."""
+        d = self.design
+        free = min(self.arms) - d.element.pad_length - d.element.pad_root_radius - LEAST_GAP
+        arm_side, body_side = d.gauge.carrier_arm_side, d.gauge.carrier_body_side
+        if d.element.sides == "one":
+            return -round(min(arm_side, free), 9), body_side
+        flat = round(self.hinge.l / 2 - self.hinge.r, 9)
+        return -min(arm_side, flat), min(body_side, flat)
+
+    @property
+    def pad_middle(self) -> float:
+        return round(sum(self.pad_x) / 2, 9)
+
+    @property
+    def pad_area(self) -> float:
+        """mm2 of rubber on the gauge: what of the carrier lies on the element."""
+        before, behind = self.pad_x
+        return (behind - before) * self.pad_width
+
+    @property
+    def pad_width(self) -> float:
+        return min(self.design.gauge.carrier_width, self.design.sheet.thickness)
+
+    @property
+    def bar_bottom(self) -> float:
+        """z of the clamp bar's underside: over the element's contact pad, and of its nose over the rubber."""
+        front = -self.array.body_bottom(self.hinge)
+        return round(max(self.design.element.pad_height, self.gauge_face + PAD, front) + OVER, 9)
+
+    @property
+    def nose(self) -> float:
+        """z of the nose's end, on the rubber."""
+        return round(self.gauge_face + PAD, 9)
+
+    @property
+    def bar_x(self) -> tuple[float, float]:
+        """x of the bar's ends: over both pairs of pins, its middle over the rubber's."""
+        half = self.pin_x[1] + self.pin_d / 2 + EDGE - self.pad_middle
+        return round(self.pad_middle - half, 6), round(self.pad_middle + half, 6)
+
+    @property
+    def bar_holes(self) -> tuple[tuple[float, float], ...]:
+        """(x, y) of its holes: over the pins, and mirrored, so that it balances over the gauge."""
+        xs = [*self.pin_x, *(round(2 * self.pad_middle - x, 9) for x in self.pin_x)]
+        return tuple((x, side * self.pin_y) for x in sorted(xs) for side in (-1, 1))
+
+    @property
+    def bar_hole(self) -> float:
+        """Diameter of its holes over the pins."""
+        return self.pin_d + PLAY
+
+    @cached_property
+    def bar_material(self) -> Material:
+        """Steel, or the plates' alloy where a bar of steel would be too thin to run on its pins."""
+        return STAINLESS if self._height_of(STAINLESS) >= GUIDED else plate_material(self.design)
+
+    @property
+    def bar_height(self) -> float:
+        """So that its weight presses as wished, to a tenth; not less than it needs on its pins."""
+        return max(GUIDED, round(self._height_of(self.bar_material), 1))
+
+    def _height_of(self, material: Material) -> float:
+        wished = self.table.pressure * self.pad_area / STANDARD_GRAVITY / (material.density * 1e-9)
+        return (wished - self._nose_volume) / self._bar_section
+
+    @property
+    def _bar_section(self) -> float:
+        """mm2 in plan, its holes taken off."""
+        before, behind = self.bar_x
+        return (behind - before) * self.width - len(self.bar_holes) * pi / 4 * self.bar_hole**2
+
+    @property
+    def _nose_volume(self) -> float:
+        before, behind = self.pad_x
+        return (behind - before) * (self.bar_bottom - self.nose) * self.width
+
+    @property
+    def bar_mass(self) -> float:
+        """g"""
+        volume = self._nose_volume + self._bar_section * self.bar_height
+        return volume * self.bar_material.density * 1e-6
+
+    @property
+    def bar_force(self) -> float:
+        """N, its weight."""
+        return self.bar_mass * 1e-3 * STANDARD_GRAVITY
+
+    @property
+    def bar_pressure(self) -> float:
+        """MPa on the gauge, as made."""
+        return self.bar_force / self.pad_area
+
+    # --- terminals ---
+
+    @property
+    def terminal_width(self) -> float:
+        own = self.table.terminal_width
+        return min(2.0, self.design.sheet.thickness) if own is None else own
+
+
+def bonding_rigs(design: Design) -> tuple[BondingLayout, ...]:
+    """A fixture for each kind of hinge, in the order of the elements; none without [bonding]."""
+    if design.bonding is None:
+        return ()
+    kinds = dict.fromkeys(p.hinge for p in Layout(design).elements)
+    return tuple(BondingLayout(design, hinge) for hinge in kinds)
+
+
+def kind_suffix(rig: BondingLayout) -> str:
+    """Ends part numbers of what fits one kind of hinge; empty for the common one."""
+    usual = rig.array.common_hinge
+    differing = [k for k in "tlrh" if getattr(rig.hinge, k) != getattr(usual, k)]
+    return "".join(f"-{k}{shortest(getattr(rig.hinge, k))}mm" for k in differing)
