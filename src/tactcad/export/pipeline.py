@@ -62,7 +62,8 @@ class ExportOptions:
     """What of a design is exported, and how. With the design, this is all that an export is made from.
 
     `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
-    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
+    where a `sample`.
     """
 
     scenes: tuple[str, ...]
@@ -71,6 +72,7 @@ class ExportOptions:
     detail: str = "full"
     drawings: bool = False
     draft: bool = False
+    sample: bool = False
 
 
 def export(
@@ -146,7 +148,10 @@ def _refuse_unprintable(design: Design) -> None:
 
     texts = design.design
     refuse_letters_it_lacks(
-        {f"design.{name}": getattr(texts, name) for name in ("title", "author", "organisation", "revision")}
+        {
+            f"design.{name}": getattr(texts, name) or ""
+            for name in ("title", "author", "organisation", "revision")
+        }
     )
 
 
@@ -192,8 +197,8 @@ def _rebuild(
     products += stack_products(design, options.scenes, shapes)
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
-        products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
-        products += assembly_products(design, scenes, shapes, progress.step, options.draft)
+        products += drawing_products(design, parts, shapes, products, progress.step, options.draft, options.sample)
+        products += assembly_products(design, scenes, shapes, progress.step, options.draft, options.sample)
     folder = work.folder
     made = _write_products(folder, products, cache, progress)
     records = [_record(folder, p, design) for p in products]

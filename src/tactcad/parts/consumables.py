@@ -12,6 +12,11 @@ from tactcad.design.materials import family
 from .layout import Layout
 
 
+# What the bill's column `process` says of what is bought, and so who is asked for it.
+ELECTRONIC = "electronic"
+MECHANICAL = "bought"
+
+
 @dataclass(frozen=True)
 class Supply:
     """A bill-of-materials line without a solid. Quantities count the array once; spares come on top."""
@@ -24,6 +29,7 @@ class Supply:
     alternates: str = ""
     spares: float = 0
     consumable: bool = True
+    process: str = ELECTRONIC
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:

@@ -22,6 +22,7 @@ from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
 from .limits import FACES, Characteristic, DatumFeature, Geometric, within
 from .plate import PLACE
+from .spares import spare_elements
 from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
@@ -44,8 +45,9 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         gap = stop_gap(layout, place)
     passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
+    number = element_number(design, place)
     return Part(
-        part_no=element_number(design, place),
+        part_no=number,
         name=f"Sensing element, arm {shortest(place.arm)}",
         process="wire-cut",
         material=sheet_material(design),
@@ -61,6 +63,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         characteristics=_limits(layout, place, gap, {s.name for s in outer}),
         geometric=(screw_places("A", "B"),),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
+        spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
     )
 
 

@@ -124,7 +124,7 @@ def _supply_row(item: int, supply: Supply) -> BomRow:
         description=supply.description,
         make_buy="buy",
         material="",
-        process="bought",
+        process=supply.process,
         finish="",
         standard_designation=supply.designation,
         manufacturer="",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.design.present import present
 from tactcad.parts import rigs
-from tactcad.parts.consumables import Supply
+from tactcad.parts.consumables import MECHANICAL, Supply
 from tactcad.parts.library import dowels, orings, screws
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
@@ -153,6 +153,7 @@ def place_cart(
             1,
             "m",
             "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A",
+            process=MECHANICAL,
         ),
         Supply(
             "VACUUM-PUMP",
@@ -161,6 +162,7 @@ def place_cart(
             "pcs",
             f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air",
             consumable=False,
+            process=MECHANICAL,
         ),
     ]
     b.group(None)
