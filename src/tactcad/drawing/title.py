@@ -43,9 +43,7 @@ class TitleBlock:
 SAMPLE = "sample, not for order"  # document status of what has no owner
 
 
-def block_of(
-    identity: Identity, number: str, title: str, draft: bool, sample: bool = False
-) -> TitleBlock:
+def block_of(identity: Identity, number: str, title: str, draft: bool, sample: bool = False) -> TitleBlock:
     """The entries that the title blocks of all sheets of a design share; what it does not state is blank."""
     return TitleBlock(
         legal_owner=identity.organisation or "",

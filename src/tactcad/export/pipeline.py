@@ -197,7 +197,9 @@ def _rebuild(
     products += stack_products(design, options.scenes, shapes)
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
-        products += drawing_products(design, parts, shapes, products, progress.step, options.draft, options.sample)
+        products += drawing_products(
+            design, parts, shapes, products, progress.step, options.draft, options.sample
+        )
         products += assembly_products(design, scenes, shapes, progress.step, options.draft, options.sample)
     folder = work.folder
     made = _write_products(folder, products, cache, progress)

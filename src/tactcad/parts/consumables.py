@@ -11,7 +11,6 @@ from tactcad.design.materials import family
 
 from .layout import Layout
 
-
 # What the bill's column `process` says of what is bought, and so who is asked for it.
 ELECTRONIC = "electronic"
 MECHANICAL = "bought"
