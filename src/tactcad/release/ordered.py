@@ -23,7 +23,7 @@ SPARES = (
 
 
 @dataclass(frozen=True)
-class Line:
+class OrderLine:
     """A line of the order: the bill's row, how many the set-ups hold, and the part (None: without solid)."""
 
     row: BomRow
@@ -36,7 +36,7 @@ class Line:
         return round(self.qty + self.row.spares, 6)
 
 
-def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[Line, ...]:
+def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLine, ...]:
     """The lines that the scenes need, in order of first placement; reference parts need no order.
 
     Parameters
@@ -55,7 +55,7 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[Line, .
         each = [bill[number].qty for bill in bills.values() if number in bill]
         qty = max(each) if sets == "one" else round(sum(counts.get(number, 0) for counts in own), 6)
         if rows[number].process != "reference":
-            lines.append(Line(rows[number], qty, parts.get(number)))
+            lines.append(OrderLine(rows[number], qty, parts.get(number)))
     return tuple(lines)
 
 

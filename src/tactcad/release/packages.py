@@ -16,7 +16,7 @@ from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Part
 from tactcad.parts.limits import FACES
 
-from .ordered import Line
+from .ordered import OrderLine
 from .release_contents import ReleaseContents
 from .wire_time import wire_time
 
@@ -34,7 +34,7 @@ class Package:
     title: str
     processes: tuple[str, ...]
     folders: tuple[str, ...]
-    row: Callable[[Line, Mapping[str, str], Shop], Row]
+    row: Callable[[OrderLine, Mapping[str, str], Shop], Row]
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Packed:
     """A package of a release: its lines, and its files but README and checksums, by path."""
 
     package: Package
-    lines: tuple[Line, ...]
+    lines: tuple[OrderLine, ...]
     files: Mapping[str, bytes]
 
 
@@ -67,13 +67,13 @@ def _packed(package: Package, contents: ReleaseContents, files: Mapping[str, byt
     return Packed(package, lines, {ORDER: table_bytes(rows), **dict(sorted(own.items()))})
 
 
-def _belongs(package: Package, line: Line) -> bool:
+def _belongs(package: Package, line: OrderLine) -> bool:
     if package is SHEET:
         return line.part is not None and not line.part.bought and cut_section(line.part) is not None
     return line.row.process in package.processes
 
 
-def _files_of(package: Package, line: Line, revision: str, files: Mapping[str, bytes]) -> dict[str, str]:
+def _files_of(package: Package, line: OrderLine, revision: str, files: Mapping[str, bytes]) -> dict[str, str]:
     """The part's files that the package takes, by kind."""
     stem = f"{line.row.part_no}_{revision}"
     paths = {
@@ -98,7 +98,7 @@ def _digests(taken: Mapping[str, str], files: Mapping[str, bytes]) -> dict[str, 
     }
 
 
-def _common(line: Line) -> dict[str, object]:
+def _common(line: OrderLine) -> dict[str, object]:
     row = line.row
     return {
         "part_no": row.part_no,
@@ -124,12 +124,12 @@ def _size(part: Part) -> dict[str, object]:
     return {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
 
 
-def _made(line: Line) -> Part:
+def _made(line: OrderLine) -> Part:
     assert line.part is not None  # what is made has a solid
     return line.part
 
 
-def _wire_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
+def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
     time = wire_time(part, shop.feed)
     return _material(part) | {
@@ -143,7 +143,7 @@ def _wire_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
     }
 
 
-def _machined_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
+def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
     return (
         {"process": part.process}
@@ -153,7 +153,7 @@ def _machined_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
     )
 
 
-def _sheet_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
+def _sheet_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     part = _made(line)
     low, high = part_box(part)
     thickness = part.extrusion.thickness
@@ -168,7 +168,7 @@ def _sheet_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
     }
 
 
-def _bought_row(line: Line, taken: Mapping[str, str], shop: Shop) -> Row:
+def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
     row = line.row
     return {
         "designation": row.standard_designation,
@@ -214,7 +214,7 @@ def table_rows(data: bytes) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(data.decode(), newline="")))
 
 
-def _of_parts(table: bytes, lines: Iterable[Line]) -> bytes:
+def _of_parts(table: bytes, lines: Iterable[OrderLine]) -> bytes:
     """Rows of the inspection list that are of these parts; empty where none is."""
     numbers = {line.row.part_no for line in lines}
     rows = [row for row in table_rows(table) if row["part_no"] in numbers]

@@ -11,7 +11,7 @@ from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.scenes.scene import Scene
 
-from .ordered import Line, Sets, ordered
+from .ordered import OrderLine, Sets, ordered
 
 PROCESSES = {"wire-cut": "Wire-cut from sheet", "milled": "Milled", "turned": "Turned", "ground": "Ground"}
 
@@ -37,7 +37,7 @@ class ReleaseContents:
         return sorted(parts.values(), key=lambda p: list(PROCESSES).index(p.process))
 
     @cached_property
-    def lines(self) -> tuple[Line, ...]:
+    def lines(self) -> tuple[OrderLine, ...]:
         """What is ordered, made and bought."""
         return ordered(self.scenes, self.design.design.revision, self.sets)
 

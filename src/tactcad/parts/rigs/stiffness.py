@@ -89,7 +89,7 @@ def _in_series(design: Design) -> Iterator[Deflection]:
     yield _line(
         load, "roller", "on the ends of its seat", rod(SEAT, d, STEEL_MODULUS, STEEL_POISSON).supported()
     )
-    mount = _plate(design, 2 * STAGE_HOLE, 2 * STAGE_HOLE, PLATE)
+    mount = _plate(design, 2 * rig.stage.hole, 2 * rig.stage.hole, PLATE)
     yield _line(load, "array mount", "between its screws, load in the middle", mount.supported())
     end = carrier_beam(rig.array, rig.array.end_plate_y).cantilever()
     yield _line(load, "carrier", "from its middle to an end plate", end, "clamp.carrier_thickness")
