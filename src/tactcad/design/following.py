@@ -16,6 +16,10 @@ SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
 MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
 PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
 RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row
+LID, STIFF = (
+    6.0,
+    44.0,
+)  # published lid; the widest plenum over which it bends by less than 2 um (plate theory)
 LARGEST_SIDE = 80.0  # of a sample whose cart clears the post; chosen: 1 mm less than fits
 LARGEST_VACUUM = 66.0  # circle around which the largest O-ring of the table lies
 
@@ -30,7 +34,9 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
         more = max(sample.side - SIDE, 0.0)
         vacuum = min(VACUUM + more, LARGEST_VACUUM)
         wheels = {"length": LENGTH + more, "width": WIDTH + more, "wheel_base": WHEEL_BASE + more}
-        holes = {"vacuum_diameter": vacuum, "rings": round(RINGS * vacuum / VACUUM)}
+        # as stiff under its own pressure as one of LID over a plenum of STIFF: diameter^4 over thickness^3
+        lid = max(LID, float(ceil(LID * (vacuum / STIFF) ** (4 / 3))))
+        holes = {"vacuum_diameter": vacuum, "rings": round(RINGS * vacuum / VACUUM), "lid_thickness": lid}
         for name, sizes in (("cart", wheels), ("holder", holes)):
             if values.get(name) is not None:
                 done[name] = _filled(values[name], **sizes)

@@ -86,7 +86,7 @@ class Holder:
     )
     hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
     rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), None, FOLLOWS)
-    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), 6.0)
+    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), None, FOLLOWS)
     plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
     floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
     margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)

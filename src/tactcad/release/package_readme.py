@@ -123,7 +123,8 @@ def _sheet_table(one: Packed) -> list[str]:
     return lines + paragraph(
         "Sizes are the parts' own: what the cut and the clamping take comes on top, as who cuts them says. "
         "Thickness with limits: picked from rolled sheet that measures so. Plate that is milled: at least "
-        "that thickness, more where the drawing asks for both faces machined. Round and block stock is its shop's."
+        "that thickness, more where the drawing asks for both faces machined. Round and block "
+        "stock is its shop's."
     )
 
 

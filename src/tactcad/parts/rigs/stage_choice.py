@@ -46,7 +46,7 @@ def most_before_post(stage: Stage) -> float:
 
 
 def most_carrier(stage: Stage) -> float:
-    """Half width, along or across, of the largest carrier beside which the mount's screws can be turned, mm."""
+    """Half width, along or across, of the largest carrier that leaves the mount's screws free, mm."""
     return stage.hole - counterbore_diameter("M4") / 2 - AIR
 
 

@@ -34,8 +34,8 @@ def stage_fixed(stage: Stage) -> Part:
         features=holes,
         colour="#3f4650",
         purchase=Purchase(
-            f"crossed roller stage {stage.size:g} x {stage.size:g} x {stage.height:g} mm, travel +-{stage.travel:g} mm, M4 at "
-            f"{2 * stage.hole:g} x {2 * stage.hole:g}",
+            f"crossed roller stage {stage.size:g} x {stage.size:g} x {stage.height:g} mm, "
+            f"travel +-{stage.travel:g} mm, M4 at {2 * stage.hole:g} x {2 * stage.hole:g}",
             manufacturer=stage.maker,
             mpn=stage.part_no,
             alternates="any stage of that travel and hole pattern",

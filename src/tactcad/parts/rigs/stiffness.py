@@ -16,23 +16,9 @@ from ..part_materials import plate_material
 from ..seating import FLAT
 from ..stiffness_table import TENTH, Deflection, pads_plane
 from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
-from .bar import BAR_MIDDLE
 from .cart_layout import CartLayout
 from .force_gauge import GAUGE_THREADS
-from .frame import (
-    BAR,
-    BAR_WIDTH,
-    BASE,
-    CARRIAGE_ON_BAR,
-    FOOT,
-    GAUGE_SIZE,
-    PIN,
-    PLATE,
-    PLATFORM,
-    POST,
-    POST_Y,
-    STAGE_HOLE,
-)
+from .frame import BAR_WIDTH, BASE, FOOT, GAUGE_SIZE, PIN, PLATE, PLATFORM, POST, POST_Y, STAGE_HOLE
 from .gauge_plate import GAUGE_SCREW_X
 from .guide_layout import guide_layout
 from .pin import pin
@@ -138,13 +124,13 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
         "a tenth of tolerance.tilt over a row",
         (*lighter, "tolerance.tilt"),
     )
-    bar = _plate(design, CARRIAGE_ON_BAR, BAR_WIDTH, BAR)
+    bar = _plate(design, rig.carriage_on_bar, BAR_WIDTH, rig.bar)
     yield _line(
-        tilt, "bar", "turned at its foot, held at the carriage", BAR_MIDDLE * bar.turned_by_moment() * row
+        tilt, "bar", "turned at its foot, held at the carriage", rig.bar_middle * bar.turned_by_moment() * row
     )
-    foot = _plate(design, BAR_MIDDLE, 2 * rig.array.mount_x, FOOT)
+    foot = _plate(design, rig.bar_middle, 2 * rig.array.mount_x, FOOT)
     yield _line(tilt, "foot", "turned at the array's middle, held at the bar", foot.cantilever_tilt() * row)
-    platform = _plate(design, BAR_MIDDLE, 2 * BAR_WIDTH, PLATFORM)
+    platform = _plate(design, rig.bar_middle, 2 * BAR_WIDTH, PLATFORM)
     model = "turned at the weights' pin, held at the bar"
     yield _line(tilt, "platform", model, platform.cantilever_tilt() * row)
     alloy = ALLOYS[design.clamp.plate_alloy]
