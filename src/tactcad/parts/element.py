@@ -39,10 +39,11 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         Stop gap at the arm's tip, mm; by default the design's.
     """
     design = layout.design
+    unrated: tuple[str, ...] = ()
     if gap is None:
-        from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
+        from .stop_gap import stop_gap, unrated_gap  # loads numpy: not needed where the gap is known
 
-        gap = stop_gap(layout, place)
+        gap, unrated = stop_gap(layout, place), unrated_gap(layout, place)
     passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
     number = element_number(design, place)
@@ -59,6 +60,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
             *material_notes(design),
+            *unrated,
         ),
         characteristics=_limits(layout, place, gap, {s.name for s in outer}),
         geometric=(screw_places("A", "B"),),
