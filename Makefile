@@ -46,8 +46,8 @@ review: export ## open every exported STEP and DXF file in ezdxf and FreeCAD; ex
 	$(BIN)/python packaging/review/review.py $(EXPORTS) || status=1; \
 	exit $$status
 
-release: environment ## one zip a shop can quote from, of every design no check of which fails: exports/releases
-	$(BIN)/tactcad release $(DESIGNS)
+release: environment ## what a shop can quote from, of every design no check of which fails: exports/releases, as samples
+	$(BIN)/tactcad release --sample $(DESIGNS)
 
 bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
 	$(BIN)/tactcad bench --out exports/bench

@@ -33,7 +33,7 @@ RUNS = """\
 export {file} --guide --drawings --out exports/{name}
 check {file} --json
 golden {file}
-release {file} --json
+release {file} --sample --json
 estimate {file} --json
 estimate {file} --model fem-plane --json
 estimate {file} --accuracy 0.5% --json

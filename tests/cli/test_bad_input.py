@@ -65,7 +65,7 @@ BAD_FILES = {
     "name with a line end": (bad(design__name="macro\nall is well"), "design.name"),
     "not TOML": (b"solid cube {", None),
     "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)), None),
-    "latin-1": (GOOD.replace('author = "tactcad"', 'author = "J\xf6rg"').encode("latin-1"), None),
+    "latin-1": (GOOD.replace('title = "', 'title = "J\xf6rg ').encode("latin-1"), None),
     "utf-16": (GOOD.encode("utf-16"), None),
     "empty": (b"", "design"),
     "10 MB": (b"#" * 10_000_000, None),

@@ -43,7 +43,7 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
     return status, captured.err.splitlines()[-1]
 
 
-@pytest.mark.parametrize("command", [("export", "--drawings"), ("release",)], ids=" ".join)
+@pytest.mark.parametrize("command", [("export", "--drawings"), ("release", "--sample")], ids=" ".join)
 def test_a_missing_font(command, place, capsys, monkeypatch):
     from tactcad.drawing import fonts
 

@@ -235,10 +235,10 @@ def test_files_that_cannot_be_designs(tmp_path):
     error = refused(read, large)
     assert "larger" in error.what and str(MOST_BYTES) in error.legal
     latin = tmp_path / "latin.toml"
-    latin.write_bytes(GOOD.replace('author = "tactcad"', 'author = "J\xf6rg"').encode("latin-1"))
+    latin.write_bytes(GOOD.replace('title = "', 'title = "J\xf6rg ').encode("latin-1"))
     error = refused(read, latin)
     assert "UTF-8" in error.what
-    line = GOOD[: GOOD.index("author")].count("\n") + 1
+    line = GOOD[: GOOD.index("title")].count("\n") + 1
     assert error.where.startswith(f"{latin}:{line}:")
     loop = tmp_path / "loop.toml"
     loop.symlink_to(loop)

@@ -76,7 +76,6 @@ def test_every_sheet_of_the_array_is_clean_and_complete(orders, finished, macro)
             "1/1",
             macro.design.date,
             macro.design.title,
-            macro.design.organisation,
             orders[number].part.name,
             str(orders[number].part.material),
             "tolerancing ISO 8015",

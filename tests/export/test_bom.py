@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 
 from tactcad.contour import circle, rectangle
-from tactcad.parts.consumables import Supply
+from tactcad.parts.supply import Supply
 from tactcad.parts.description import Extrusion, Material, Part, Purchase
 from tactcad.scenes.bom import (
     COLUMNS,

@@ -26,7 +26,7 @@ SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
 STATUS = {"SIGTERM": 143, "SIGINT": 130, "SIGHUP": 129, "SIGKILL": -9}
 COMMANDS = {  # N is A or B
     "export": "export N.toml --guide --drawings --out there/out",
-    "release": "release N.toml --out there",
+    "release": "release N.toml --sample --out there",
     "golden": "golden hardware/N.toml",
     "validate": "validate --table1 N-table1.csv --out there/report",
     "calibrate": "calibrate N-readings.csv --out there/table.csv",

@@ -20,8 +20,8 @@ FILES = {
     "diff": "diff A.toml IN --html OUT",
     "check, design": "check IN --report OUT/..",
     "check, shop": "check A.toml --shop IN --report OUT/..",
-    "release, design": "release IN --out OUT/..",
-    "release, shop": "release A.toml --shop IN --out OUT/..",
+    "release, design": "release IN --sample --out OUT/..",
+    "release, shop": "release A.toml --sample --shop IN --out OUT/..",
     "golden, shop": "golden hardware/A.toml --shop IN",
     "review": "review IN --out OUT",
 }
@@ -77,7 +77,7 @@ def test_files(inputs):
             elif name.startswith("check"):
                 out = folder / "junit.xml"
             elif name.startswith("release"):
-                out = folder / f"{name_of}-{'B' if 'design' in name else 'A'}.zip"
+                out = folder / f"{name_of}-{'B' if 'design' in name else 'A'}-SAMPLE.zip"
             else:
                 out = folder / f"file{ending}"
             source = out if way == "same" and out.suffix == ending else folder / f"input{ending}"

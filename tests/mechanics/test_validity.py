@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
 from tactcad.mechanics import friction, ladder, validity
-from tactcad.mechanics.section import REFERENCE
+from tactcad.mechanics.section import OPTIONAL, REFERENCE, REQUIRED
 
 BREAKS = {
     "a value is not a finite number": dict(load_arm=np.nan),
@@ -102,3 +104,30 @@ def test_moments_about_the_hinge_give_the_friction_formula():
     K, H, L = float(ladder.stiffness(REFERENCE)), 2.0 + 0.125, 6.0
     apparent = float(ladder.stiffness(s))
     assert apparent * (1 - 0.15 * H / L) == pytest.approx(K, rel=1e-12)
+
+
+@pytest.mark.parametrize("start", [*BREAKS, *FITTED_BREAKS])
+def test_a_reason_names_the_fields_to_look_at(start):
+    """Changed back to what it was, one of the fields named mends it."""
+    changes = (BREAKS | FITTED_BREAKS)[start]
+    s = REFERENCE.with_(**changes)
+    reason = str(validity.reasons(s, "solid"))
+    fields = re.search(r"\((\w+(?:, \w+)*)\)$", reason)[1].split(", ")
+    assert set(fields) <= {*REQUIRED, *OPTIONAL}
+    mended = s.with_(**{name: getattr(REFERENCE, name) for name in fields})
+    assert str(validity.reasons(mended, "solid")) != reason and set(fields) & set(changes)
+
+
+def test_of_a_rule_for_each_field_the_reason_names_the_one_that_breaks_it():
+    s = REFERENCE.with_(width=[3.0, -1.0, 3.0], hinge_length=[0.75, 0.75, 0.0])
+    assert [r.rpartition(" ")[2] for r in validity.reasons(s, "beam")] == ["", "(width)", "(hinge_length)"]
+    with pytest.raises(CheckFailure, match=r"not positive \(width\) \(design 2 of 3\)$"):
+        ladder.require_range(s, "beam")
+
+
+def test_every_group_has_its_fields():
+    assert set(validity.FIELDS) == {*validity.PLANE_GROUPS, *validity.WIDTH_GROUPS, *validity.LEAST}
+    for name, value in (validity.PLANE_GROUPS | validity.WIDTH_GROUPS).items():
+        for field in REQUIRED:  # a group changes with its fields and with no other
+            moved = REFERENCE.with_(**{field: getattr(REFERENCE, field) * 1.01})
+            assert (value(moved) != value(REFERENCE)).any() == (field in validity.FIELDS[name]), (name, field)

@@ -23,7 +23,9 @@ from tactcad.cli.main import main
 from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
 from tactcad.release.archive import archive_bytes
-from tactcad.release.readme import DRAFT, ReleaseContents
+from tactcad.release.owner import owned
+from tactcad.release.readme import DRAFT, SAMPLE
+from tactcad.release.release_contents import ReleaseContents
 from tactcad.release.verify import check_archive
 from tactcad.scenes import make_scene
 
@@ -38,6 +40,10 @@ TEXT = (
 )
 REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"
+OWNER, CONTACT = "Tiny lab", "workshop@tiny.example"
+OWNED = ("--owner", OWNER, "--contact", CONTACT)
+WAYS = ("wire-cutting", "milling-and-turning", "sheet", "purchase-mechanical", "purchase-electronic")
+ALL = {NAME, *(f"tiny-{REVISION}-{way}.zip" for way in WAYS)}
 
 
 OLDER = archive_bytes({"bom.csv": b"older"}, "2026-11-20")
@@ -67,7 +73,7 @@ def home(project, tmp_path_factory):
         "TMPDIR": str(home),
     }
     run = subprocess.run(
-        [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml"],
+        [sys.executable, "-m", "tactcad", "release", "hardware/tiny.toml", *OWNED],
         cwd=home / "project",
         env=environment,
         capture_output=True,
@@ -75,7 +81,7 @@ def home(project, tmp_path_factory):
         check=False,
     )
     assert run.returncode == 0, run.stderr
-    assert sorted(p.name for p in (home / "project" / "exports" / "releases").iterdir()) == [NAME]
+    assert {p.name for p in (home / "project" / "exports" / "releases").iterdir()} == ALL
     return home
 
 
@@ -92,7 +98,7 @@ def files(released):
 
 @pytest.fixture(scope="module")
 def contents(project):
-    design = load(project / "hardware" / "tiny.toml")
+    design = owned(load(project / "hardware" / "tiny.toml"), OWNER, CONTACT, False)
     return ReleaseContents(design, [make_scene(design, "array")], (), (), False)
 
 
@@ -127,7 +133,10 @@ def test_the_bill_and_the_folders_agree(files):
     readme = files["README.txt"].decode()
     for row in made:  # what to make, how many, of what
         assert re.search(
-            rf"^  {row['part_no']} +{row['qty']} +{re.escape(row['material'])} ", readme, flags=re.M
+            rf"^  {row['part_no']} +{row['qty']} +{row['spares'] if row['spares'] != '0' else ''} *"
+            rf"{re.escape(row['material'])} ",
+            readme,
+            flags=re.M,
         ), row
 
 
@@ -237,6 +246,10 @@ TAMPERED = {
     "README of another revision": lambda f: _swap(
         f, "README.txt", b"tiny, revision " + R, b"tiny, revision ZZ"
     ),
+    "README of a sample": lambda f: {**f, "README.txt": f["README.txt"] + SAMPLE.encode() + b"\r\n"},
+    "guide missing": lambda f: {n: d for n, d in f.items() if n != "guide/array.html"},
+    "guide's picture missing": lambda f: {n: d for n, d in f.items() if n != "guide/array-exploded.svg"},
+    "guide of another revision": lambda f: _swap(f, "guide/array.html", b"revision " + R, b"revision ZZ"),
     "README of a draft": lambda f: {**f, "README.txt": f["README.txt"] + DRAFT.encode() + b"\r\n"},
 }
 
@@ -272,7 +285,14 @@ def release(project: Path, capsys, *arguments: str, design: str = TEXT) -> tuple
     """Status, standard output and error, and what then lies in the folder of releases."""
     (project / "hardware" / "tiny.toml").write_text(design)
     status = main(
-        ["release", str(project / "hardware" / "tiny.toml"), "--out", str(project / "out"), *arguments]
+        [
+            "release",
+            str(project / "hardware" / "tiny.toml"),
+            "--out",
+            str(project / "out"),
+            *OWNED,
+            *arguments,
+        ]
     )
     out, err = capsys.readouterr()
     there = {p.name for p in (project / "out").iterdir()} if (project / "out").exists() else set()
@@ -331,7 +351,11 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     status, out, _, there = release(copy, capsys, "--shop", str(coarse_shop), "--draft", "--json")
     record = json.loads(out)
     assert status == 0 and record["draft"] and record["failures"]
-    assert there == {NAME, f"tiny-{REVISION}-PRELIMINARY.zip"} and (copy / "out" / NAME).read_bytes() == OLDER
+    draft = f"tiny-{REVISION}-PRELIMINARY"
+    assert (
+        there == {NAME, f"{draft}.zip", *(f"{draft}-{way}.zip" for way in WAYS)}
+        and (copy / "out" / NAME).read_bytes() == OLDER
+    )
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
@@ -347,11 +371,14 @@ def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released,
     (tmp_path / "tiny.toml").write_text(TEXT)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))
-    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    assert (
+        main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out"), "--json", *OWNED]) == 0
+    )
     out, err = capsys.readouterr()
     assert "replaces an earlier one" in err and "bom.csv" in json.loads(out)["replaced"]
-    assert [p.name for p in (tmp_path / "out").iterdir()] == [NAME]
-    assert (tmp_path / "out" / NAME).read_bytes() == released.read_bytes()
+    assert {p.name for p in (tmp_path / "out").iterdir()} == ALL
+    for name in ALL:
+        assert (tmp_path / "out" / name).read_bytes() == (released.parent / name).read_bytes()
 
 
 def test_what_does_not_read_back_is_not_published(copy, capsys, monkeypatch):
@@ -382,3 +409,64 @@ def test_bad_input_is_refused_before_any_work(copy, tmp_path, capsys):
         copy, capsys, design=TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5")
     )
     assert status == 2 and there == set()
+
+
+# whose release it is
+
+
+def test_without_owner_or_contact_it_is_refused_in_one_line(copy, capsys):
+    design = copy / "hardware" / "tiny.toml"
+    for arguments, missing in (
+        ((), "design.organisation and design.contact"),
+        (("--owner", OWNER), "design.contact"),
+        (("--contact", CONTACT, "--draft"), "design.organisation"),
+        (("--owner", "\u202eevil", "--contact", CONTACT), "--owner"),
+    ):
+        assert main(["release", str(design), "--out", str(copy / "out"), *arguments]) == 2
+        out, err = capsys.readouterr()
+        assert err.startswith(f"tactcad: {missing}: ") and err.count("\n") == 1 and out == ""
+        assert not (copy / "out").exists()
+
+
+def test_the_design_s_own_owner_and_contact_stand_in_zip_and_title_blocks(tmp_path, capsys):
+    said = f'title = "A tiny one"\norganisation = "{OWNER}"\ncontact = "{CONTACT}"\n'
+    (tmp_path / "tiny.toml").write_text(re.sub(r"title = .*\n", said, TEXT, count=1))
+    assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
+    for path in (tmp_path / "out").iterdir():
+        with zipfile.ZipFile(path) as archive:
+            last = archive.read("README.txt").decode().split("CONTACT")[1]
+            assert OWNER in last and CONTACT in last
+            sheets = [pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")]
+        for runs in (runs for pages in sheets for runs in pages):
+            assert OWNER in runs and "for manufacture" in runs and "tactcad" not in runs
+
+
+def test_a_sheet_that_does_not_name_the_owner_is_found(released, contents):
+    other = owned(contents.design, "Somebody else", CONTACT, False)
+    wrong = check_archive(released, ReleaseContents(other, contents.scenes, (), (), False))
+    assert wrong and all("does not name the legal owner" in fault for fault in wrong)
+
+
+def test_a_sample_says_so_everywhere_and_names_nobody(copy, capsys):
+    design = copy / "hardware" / "tiny.toml"
+    assert main(["release", str(design), "--out", str(copy / "out"), "--sample"]) == 0
+    assert {p.name for p in (copy / "out").iterdir()} == {
+        name.replace(f"-{REVISION}", f"-{REVISION}-SAMPLE") for name in ALL
+    }
+    for path in (copy / "out").iterdir():
+        with zipfile.ZipFile(path) as archive:
+            readme = archive.read("README.txt").decode()
+            sheets = [pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")]
+        assert SAMPLE in readme.splitlines() and OWNER not in readme
+        assert readme.rstrip().endswith("None: this is a sample.")
+        for runs in (runs for pages in sheets for runs in pages):
+            assert "sample, not for order" in runs and "for manufacture" not in runs
+
+
+def test_the_guide_travels_with_the_whole_zip(files, released):
+    page = files["guide/array.html"].decode()
+    pictures = re.findall(r'src="([^"]+)"', page)
+    assert len(pictures) > 5 and {f"guide/{name}" for name in pictures} <= set(files)
+    for way in WAYS:
+        with zipfile.ZipFile(released.with_name(f"tiny-{REVISION}-{way}.zip")) as archive:
+            assert not [n for n in archive.namelist() if n.startswith("guide/")]

@@ -33,16 +33,19 @@ WITNESSES = {
 }
 
 MISFITS = {
-    "stages_reach_pads": ("calibration", {"calibration.stage_travel": 7.5}),
-    "mount_clears_carrier": ("calibration", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
+    "stages_reach_pads": ("calibration", {"calibration.stage_travel": 30.0}),
+    "mount_clears_carrier": (
+        "calibration",
+        {"clamp.mount_pitch_y": 84.0, "element.rear_length": 50.0, "array.row_arms": [[6.0] * 3] * 2},
+    ),
     "carrier_screws_fit": ("calibration", {"clamp.carrier_thickness": 8.95, "clamp.mount_thread": "M5"}),
     "roller_clears_neighbours": ("calibration", {"array.pitch": 3.5, "array.spacer": 0.5}),
     "mount_holes_apart": (
         "calibration",
-        {"clamp.mount_pitch_y": 44.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},
+        {"clamp.mount_pitch_y": 56.0, "element.rear_length": 34.0, "clamp.carrier_screw_offset": 27.0},
     ),
     "foot_holes_apart": ("grasping", {"clamp.mount_pitch_y": 40.0, "clamp.carrier_screw_offset": 6.0}),
-    "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9]}),
+    "pads_on_sample": ("grasping", {"array.row_arms": [[6.0] * 9, [6.0] * 9], "sample.side": 32.0}),
     "bar_clears_screws": ("grasping", {"clamp.mount_pitch_y": 36.0, "clamp.carrier_screw_offset": 2.0}),
     "rail_is_long_enough": ("grasping", {"grasping.lift": 90.0}),
     "calibration_stays_straight": ("calibration", {"calibration.step": 0.01}),

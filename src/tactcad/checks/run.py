@@ -11,7 +11,7 @@ from OCP.TopoDS import TopoDS_Shape
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
 from tactcad.parts.envelope import envelope
-from tactcad.parts.finding import Finding
+from tactcad.parts.finding import Finding, Severity
 from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
@@ -40,6 +40,7 @@ def run_checks(
     scene_names: Sequence[str],
     shop_file: Path = DEFAULT,
     say: Callable[[int, int, str], None] = lambda done, total, text: None,
+    strict: bool = False,
 ) -> Report:
     """Every check on every part and scene of a design.
 
@@ -55,6 +56,8 @@ def run_checks(
         Limits of the workshop.
     say
         Receives (done, total, text) before each part and scene.
+    strict
+        A rig that does not take the array fails; otherwise it is flagged.
 
     Raises
     ------
@@ -88,7 +91,7 @@ def run_checks(
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:
             report.run("machining", check_machining, part, shop.machining)
-    report.run("scenes left out", _left_out, design)
+    report.run("scenes left out", _left_out, design, "fail" if strict else "flag")
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):
         say(n, total, f"{scene.name}: interference of {len(scene.placements)} placed parts")
@@ -112,9 +115,9 @@ def run_checks(
     return report
 
 
-def _left_out(design: Design) -> list[Finding]:
+def _left_out(design: Design, severity: Severity = "flag") -> list[Finding]:
     """A rig that cannot take this array is flagged with the reason."""
-    return [Finding("scene", "flag", design.name, (), 0, 0, line) for line in left_out(design)]
+    return [Finding("scene", severity, design.name, (), 0, 0, line) for line in left_out(design)]
 
 
 def _add_envelopes(

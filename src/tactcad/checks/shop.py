@@ -13,6 +13,7 @@ from tactcad.design.messages import InputError, one_of
 from tactcad.design.toml_text import parse_toml
 
 MOST_BYTES = 100_000  # a page of limits and their sources
+OPTIONAL = {"machining", "machining_source", "feed", "feed_source"}
 DEFAULT = Path(__file__).parent / "data" / "shop.toml"
 
 
@@ -77,6 +78,22 @@ class Machining:
 
 
 @dataclass(frozen=True)
+class Feed:
+    """How quickly the wire cuts, all positive.
+
+    area        mm2 of cut face a minute in the main cut
+    most        mm a minute that the main cut does not pass, however thin the sheet
+    skim        mm a minute in every further pass
+    threading   minutes to thread the wire and start, for every contour
+    """
+
+    area: float
+    most: float
+    skim: float
+    threading: float
+
+
+@dataclass(frozen=True)
 class Shop:
     """A shop's limits, and where each is from (by field name)."""
 
@@ -85,28 +102,26 @@ class Shop:
     source: Mapping[str, str]
     machining: Machining
     machining_source: Mapping[str, str]
+    feed: Feed
+    feed_source: Mapping[str, str]
 
 
 def load_shop(path: str | Path = DEFAULT) -> Shop:
     """Read a shop file: name, [limits] and [source] of its wire cutting, and, where it says them,
-    [machining] and [machining_source]: all of them, or those in which it differs from what comes with
-    tactcad.
+    [feed], [feed_source], [machining] and [machining_source]: all of them, or those in which it differs from
+    what comes with tactcad.
 
     Raises InputError where it cannot be read or a field is missing, unknown or not legal.
     """
     where = str(path)
     table = parse_toml(read_text(path, MOST_BYTES, "a shop file (TOML)"), where)
-    _names(where, "", table, {"name", "limits", "source"}, {"machining", "machining_source"})
+    _names(where, "", table, {"name", "limits", "source"}, OPTIONAL)
     shown_text(table["name"], f"{where}: name", "what the shop is called")
     limits, source = _section(where, table, Limits, "limits", "source")
     usual = None if path == DEFAULT else load_shop()
-    if {"machining", "machining_source"} & set(table) or usual is None:
-        machining, machining_source = _section(
-            where, table, Machining, "machining", "machining_source", usual
-        )
-    else:
-        machining, machining_source = usual.machining, usual.machining_source
-    return Shop(table["name"], limits, source, machining, machining_source)
+    machining = _section(where, table, Machining, "machining", "machining_source", usual)
+    feed = _section(where, table, Feed, "feed", "feed_source", usual)
+    return Shop(table["name"], limits, source, *machining, *feed)
 
 
 def _section(
@@ -151,6 +166,9 @@ def _names(where: str, path: str, table: Mapping[str, Any], needed: set[str], kn
 def _size(where: str, value: object) -> float:
     if not isinstance(value, int | float) or isinstance(value, bool) or not 0 < value <= 100:
         raise InputError(
-            where, "is no size", value=value, legal="mm, diameters or pitches, more than 0, at most 100"
+            where,
+            "is no size",
+            value=value,
+            legal="mm, diameters, pitches, or as a feed is stated, more than 0, at most 100",
         )
     return float(value)

@@ -1,4 +1,4 @@
-"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--report DIR] [--json]"""
+"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--strict] [--report DIR] [--json]"""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from tactcad.checks.check_report import Report
 
-from .parser import add_design, add_json, add_shop
+from .parser import add_design, add_json, add_shop, add_strict
 
 EXAMPLES = """\
   tactcad check                           every check of hardware/macro-array.toml
@@ -22,8 +22,8 @@ EXAMPLES = """\
                                           both designs; check.json and junit.xml in that folder
 
 Every failure is printed in a table at the end, and the exit status is 1 where there is one; what is only
-flagged (such as the hinge, for the quotation) is listed. A design in hardware/ is compared with its golden
-file in exports/golden/ too."""
+flagged (such as the hinge, for the quotation, or a rig that does not take the array, which fails with
+--strict) is listed. A design in hardware/ is compared with its golden file in exports/golden/ too."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -32,6 +32,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--scene", action="append", metavar="NAME", help="check this scene; may be repeated (default: all)"
     )
     add_shop(parser)
+    add_strict(parser)
     parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
     add_json(parser)
 
@@ -44,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     if args.report:
         _refuse_overwriting(Path(args.report), [*args.design, shop])
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is loaded
-    reports = [_checked(source, args.scene, shop, alone=len(args.design) == 1) for source in args.design]
+    reports = [_checked(source, args, shop) for source in args.design]
     if args.report:
         _write(Path(args.report), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
     if args.json:
@@ -61,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     return 1 if any(report.failures for report in reports) else 0
 
 
-def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> Report:
+def _checked(source: str, args: argparse.Namespace, shop: Path) -> Report:
     """The design's report. Where several designs are checked, one that is refused counts as failed and the
     others go on.
     """
@@ -77,16 +78,16 @@ def _checked(source: str, scenes: list[str] | None, shop: Path, alone: bool) -> 
 
     try:
         design = load(source)
-        names = chosen_scenes(design, scenes)
+        names = chosen_scenes(design, args.scene)
     except InputError as error:
-        if alone:
+        if len(args.design) == 1:
             raise
         refusal = Finding("design", "fail", source, (), 0, 0, str(error))
         return Report(source, "", [Case("design", source, 0.0, (refusal,))])
 
     from tactcad.checks.run import run_checks
 
-    report = run_checks(design, names, shop, progress(sys.stderr).step)
+    report = run_checks(design, names, shop, progress(sys.stderr).step, args.strict)
     path = golden_path(find(source), design)
     if path:
         report.run("golden", check_golden, design, path)

@@ -1,4 +1,4 @@
-"""tactcad export [DESIGN] [--scene NAME]... [--out DIR] [--json]"""
+"""tactcad export [DESIGN] [--scene NAME]... [--strict] [--out DIR] [--json]"""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import sys
 from dataclasses import asdict
 
-from .parser import add_design, add_json, add_others
+from .parser import add_design, add_json, add_others, add_strict
 
 EXAMPLES = """\
   tactcad export                              the array of hardware/macro-array.toml, to exports/macro-array
@@ -19,6 +19,8 @@ EXAMPLES = """\
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
+Rigs follow the array as far as what is sold reaches; a rig that cannot be had ends the export with a warning
+that names the field, its value and what would do, and with --strict with exit status 1.
 A folder with files that tactcad did not write so is left as it is, unless --keep or --discard is given: fill
 in a copy of inspection.csv (in inspections/, say), not the export's own."""
 
@@ -50,6 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="with drawing sheets: drawings/PART_REVISION.pdf and .svg, of every part made",
     )
+    add_strict(parser)
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
     add_json(parser)
@@ -70,8 +73,9 @@ def run(args: argparse.Namespace) -> int:
     refuse_overwriting(out, find(args.design))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     done = export(design, options, out, say, args.others)
-    for line in left_out(design) if done.reasons and not args.scene else ():
-        say.line(line)
+    missing = [] if args.scene else left_out(design)
+    for line in missing:
+        say.line(f"warning: {line}")
     if args.json:
-        print(json.dumps({**asdict(done), "folder": str(done.folder)}, indent=1))
-    return 0
+        print(json.dumps({**asdict(done), "folder": str(done.folder), "left_out": missing}, indent=1))
+    return 1 if args.strict and missing else 0

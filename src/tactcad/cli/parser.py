@@ -72,6 +72,14 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="report on standard output as JSON")
 
 
+def add_strict(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="exit status 1 where a rig of the design does not take its array",
+    )
+
+
 def add_others(parser: argparse.ArgumentParser) -> None:
     """--keep and --discard, for commands that write a folder (tactcad.export.publication)."""
     others = parser.add_mutually_exclusive_group()

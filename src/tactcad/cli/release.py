@@ -1,4 +1,6 @@
-"""tactcad release [DESIGN]... [--out DIR] [--shop FILE] [--draft] [--json]"""
+"""tactcad release [DESIGN]... [--owner TEXT] [--contact TEXT] [--sample] [--sets one|all] [--out DIR]
+[--shop FILE] [--draft] [--json]
+"""
 
 from __future__ import annotations
 
@@ -11,14 +13,22 @@ from pathlib import Path
 from .parser import add_design, add_json, add_shop
 
 EXAMPLES = """\
-  tactcad release                     exports/releases/macro-array-<revision>.zip
-  tactcad release soft-tissue --out to-the-shop
-  tactcad release --shop my-shop.toml with your own shop's limits for wire cutting
-  tactcad release --draft             although a check fails: PRELIMINARY on sheets, in README and file name
+  tactcad release my-sensor.toml --owner "Our lab" --contact "workshop@our-lab.example"
+                                      exports/releases/my-sensor-<revision>.zip, and one more a way of making
+  tactcad release soft-tissue --sample --out to-look-at
+                                      without owner: "sample, not for order" in zip, README and title blocks
+  tactcad release macro-array --sample --sets all
+                                      every set-up complete, not one set of what they share
+  tactcad release my-sensor.toml --shop my-shop.toml
+                                      with your own shop's limits for wire cutting, and its feed
+  tactcad release my-sensor.toml --draft
+                                      although a check fails: PRELIMINARY on sheets, in README and file name
 
 One zip that a shop can quote from: README, cut files, solids, drawing sheets, bills of materials, inspection
-sheet, strength summary, checksums. Every check runs first, and the golden file is compared; where one fails
-nothing is written and an earlier zip stays as it is."""
+sheet, strength summary, guides, checksums. Beside it one zip each for wire cutting, milling and turning,
+sheet, and purchase (mechanical, electronic), with what that supplier needs and nothing else. Owner and
+contact are the design's ([design] organisation and contact) or given here. Every check runs first, and the
+golden file is compared; where one fails nothing is written and earlier zips stay as they are."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -27,12 +37,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out",
         metavar="DIR",
         default="exports/releases",
-        help="folder of the zip (default exports/releases)",
+        help="folder of the zips (default exports/releases)",
+    )
+    parser.add_argument("--owner", metavar="TEXT", help="legal owner (default: [design] organisation)")
+    parser.add_argument("--contact", metavar="TEXT", help="whom a shop asks (default: [design] contact)")
+    parser.add_argument(
+        "--sample", action="store_true", help='without owner and contact: marked "sample, not for order"'
+    )
+    parser.add_argument(
+        "--sets",
+        choices=("one", "all"),
+        default="one",
+        help="order what several set-ups share once, or for each (default one)",
     )
     add_shop(parser)
-    parser.add_argument(
-        "--draft", action="store_true", help="write a PRELIMINARY zip whatever the checks say"
-    )
+    parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips whatever the checks say")
     add_json(parser)
 
 
@@ -41,17 +60,21 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import find
     from tactcad.design.messages import CheckFailure
     from tactcad.parts.designs import load
-    from tactcad.release.make import release
+    from tactcad.release.make import Terms, release
+    from tactcad.release.owner import owned
 
     from .progress import progress
 
     shop = Path(args.shop) if args.shop else DEFAULT
     load_shop(shop)  # files that cannot be used are refused before any work
-    designs = [(load(source), find(source)) for source in args.design]
+    designs = [
+        (owned(load(source), args.owner, args.contact, args.sample), find(source)) for source in args.design
+    ]
+    terms = Terms(args.draft, args.sample, args.sets)
     say, records = progress(sys.stderr), []
     for design, path in designs:
         try:
-            done = release(design, path, args.out, shop, say, args.draft)
+            done = release(design, path, args.out, shop, say, terms)
         except CheckFailure as error:  # the other designs still have their turn
             print(f"tactcad: {error}", file=sys.stderr)
             reasons = getattr(error, "failures", (str(error),))
@@ -59,11 +82,14 @@ def run(args: argparse.Namespace) -> int:
                 {"design": design.name, "revision": design.design.revision, "path": None, "failures": reasons}
             )
             continue
-        records.append({**asdict(done), "path": str(done.path)})
+        packages = [str(path) for path in done.packages]
+        records.append({**asdict(done), "path": str(done.path), "packages": packages})
         if done.replaced:
             say.line(f"{done.path}: replaces an earlier one; other in {', '.join(done.replaced)}")
         if not args.json:
             print(f"{done.path}: {len(done.files)} files, read back and found right")
+            for package in packages:
+                print(package)
     if args.json:
         print(json.dumps(records[0] if len(records) == 1 else records, indent=1))
     return 0 if all(record["path"] for record in records) else 1

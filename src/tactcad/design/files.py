@@ -9,14 +9,17 @@ from __future__ import annotations
 import errno
 import json
 import os
+import signal
 import stat
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from itertools import islice
 from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
+
+from tactcad.ending import SAID
 
 from .held import held_file, held_folder, sweep_folders
 from .messages import CheckFailure, InputError, hidden, shortened
@@ -182,35 +185,66 @@ def write_whole(path: str | Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """A file to write beside `path`: flushed and renamed over it when the block ends well, otherwise removed.
+    """`whole_files` of one."""
+    with whole_files([path]) as (part,):
+        yield part
 
-    A link is followed; its folder must exist. What killed runs left there is removed first. A file that is
-    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where the place
-    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged.
+
+@contextmanager
+def whole_files(paths: Sequence[str | Path], gone: Sequence[Path] = ()) -> Iterator[list[Path]]:
+    """A file to write beside each path: all flushed and renamed over them when the block ends well, otherwise
+    removed; with them go the files `gone`.
+
+    Links are followed; the folders must exist. What killed runs left there is removed first. A file that is
+    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where a place
+    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged. Only
+    what kills the process between two renames, microseconds apart, can leave some old and some new.
     """
+    shown = ", ".join(map(str, paths))
     try:
-        place = Path(os.path.realpath(path))
-        if os.path.lexists(place) and not place.is_file():
-            raise InputError(
-                str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
-            )
-        mode = 0o666 & ~_umask()
-        if place.is_file():
-            mode = stat.S_IMODE(place.stat().st_mode)
-            if not mode & stat.S_IWUSR:
-                raise InputError(
-                    str(path),
-                    "is write-protected; nothing was changed",
-                    legal="a new name, or make it writable",
-                )
-        with held_file(place) as part:
-            yield part
-            flush_entry(part)
-            part.chmod(mode)
-            part.replace(place)
-            flush_entry(place.parent)
+        with ExitStack() as held:
+            places = [Path(os.path.realpath(path)) for path in paths]
+            modes = [_mode(path, place) for path, place in zip(paths, places)]
+            parts = [held.enter_context(held_file(place)) for place in places]
+            yield parts
+            for part, mode in zip(parts, modes):
+                flush_entry(part)
+                part.chmod(mode)
+            with _no_signals():
+                for part, place in zip(parts, places):
+                    part.replace(place)
+                for old in gone:
+                    old.unlink(missing_ok=True)
+            for folder in {place.parent for place in places}:
+                flush_entry(folder)
     except OSError as error:
-        raise refusal(str(path), error) from error
+        raise refusal(shown, error) from error
+
+
+def _mode(path: str | Path, place: Path) -> int:
+    """Permissions of the file that is to be at `place`. Raises InputError where there can be none."""
+    if not os.path.lexists(place):
+        return 0o666 & ~_umask()
+    if not place.is_file():
+        raise InputError(
+            str(path), "not a file; nothing was changed", legal="a new name, or a file to replace"
+        )
+    mode = stat.S_IMODE(place.stat().st_mode)
+    if not mode & stat.S_IWUSR:
+        raise InputError(
+            str(path), "is write-protected; nothing was changed", legal="a new name, or make it writable"
+        )
+    return mode
+
+
+@contextmanager
+def _no_signals() -> Iterator[None]:
+    """Signals that end the program wait until the block has ended."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, SAID)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def flush_entry(path: Path) -> None:

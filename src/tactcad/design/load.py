@@ -11,6 +11,7 @@ from typing import Any
 
 from .fields import Number, shown_text
 from .files import read_text
+from .following import followed
 from .materials import ALLOYS, LOT_SPREAD, completed
 from .messages import InputError, near, one_of
 from .plain_numbers import as_number
@@ -94,7 +95,7 @@ def from_table(table: dict[str, Any]) -> Design:
         values[name] = read_table(kind, table.get(name, {}), name)
     values["material"] = _material(values["material"])
     values["tolerance"] = _tolerance(values["tolerance"], values["material"], values["sheet"])
-    design = Design(**values, origin={})
+    design = Design(**followed(values), origin={})
     design = dataclasses.replace(design, origin=_origins(table.get("origin", {}), design))
     _ = design.differences  # refuses values that are not those of the material's name
     return design

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from .fields import Number, OneOf, Whole, given
 
+FOLLOWS = "follows the array (design/following.py): the published set-up's up to the published array's length"
+
 
 @dataclass(frozen=True)
 class Calibration:
@@ -24,7 +26,7 @@ class Calibration:
     friction: float = given(Number("", 0, 1, "friction between tip and pad"), 0.2)
     load_point: float = given(Number("mm", 0, 1, "uncertainty of the load point along the arm"), 0.02)
     stage_travel: float = given(
-        Number("mm", 0.5, 100, "horizontal micro-stages reach this far each way"), 12.5
+        Number("mm", 0.5, 100, "horizontal micro-stages reach at least this far each way"), 12.5
     )
     axis_travel: float = given(
         Number("mm", 0.5, 100, "vertical micrometer axis reaches this far each way"), 6.5
@@ -42,7 +44,7 @@ class Sample:
     thickness: float = given(Number("mm", 0.1, 100, "sample thickness"), 6.0)
     poisson: float = given(Number("", 0, 0.4999, "Poisson's ratio"), 0.49)
     stiffness: float = given(Number("N/mm", 1e-6, 1e6, "stiffness under one pad"), 3.85)
-    side: float = given(Number("mm", 4, 300, "side of the square sample"), 32.0)
+    side: float = given(Number("mm", 4, 300, "side of the square sample"), None, FOLLOWS)
     step: float = given(Number("mm", 1e-4, 5, "step of the force sensor into the sample"), 0.050)
     travel: float = given(Number("mm", 1e-3, 10, "whole way of the force sensor into the sample"), 0.300)
 
@@ -51,7 +53,7 @@ class Sample:
 class Grasping:
     """[grasping]: array on a vertical axis over the sample, loaded by weights."""
 
-    moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), 3.235)
+    moving_weight: float = given(Number("N", 0.001, 1e4, "carrier, bar and array"), None, FOLLOWS)
     weight: float = given(Number("N", 1e-4, 1e3, "one added weight"), 0.980665)
     weights: int = given(Whole(0, 1000, "how many weights are added"), 10)
     lift: float = given(Number("mm", 1, 200, "the array is lifted this far to change the sample"), 20.0)
@@ -66,10 +68,10 @@ class Cart:
     bearing: str = given(
         OneOf(("623-2Z", "624-2Z", "683-2Z"), "wheels: deep groove ball bearings, ISO 15"), "623-2Z"
     )
-    length: float = given(Number("mm", 10, 400, "plate along the arms"), 70.0)
-    width: float = given(Number("mm", 10, 400, "plate across the arms"), 50.0)
+    length: float = given(Number("mm", 10, 400, "plate along the arms"), None, FOLLOWS)
+    width: float = given(Number("mm", 10, 400, "plate across the arms"), None, FOLLOWS)
     thickness: float = given(Number("mm", 2, 40, "plate"), 10.0)
-    wheel_base: float = given(Number("mm", 5, 400, "distance of the axles along the arms"), 50.0)
+    wheel_base: float = given(Number("mm", 5, 400, "distance of the axles along the arms"), None, FOLLOWS)
     clearance: float = given(Number("mm", 0.1, 20, "plate over the base plate"), 2.0)
     shim: float = given(Number("mm", 0.05, 5, "shim each side of a wheel's inner ring: its side play"), 0.5)
     roll: float = given(Number("mm", 0.1, 50, "the cart may roll this far each way"), 5.0)
@@ -79,10 +81,12 @@ class Cart:
 class Holder:
     """[holder]: vacuum holder of the sample, on the cart."""
 
-    vacuum_diameter: float = given(Number("mm", 4, 250, "holes and plenum lie inside this circle"), 26.0)
+    vacuum_diameter: float = given(
+        Number("mm", 4, 250, "holes and plenum lie inside this circle"), None, FOLLOWS
+    )
     hole_diameter: float = given(Number("mm", 0.2, 5, "suction holes"), 1.0)
-    rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), 3)
-    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), 6.0)
+    rings: int = given(Whole(1, 12, "hexagonal rings of holes around the middle one"), None, FOLLOWS)
+    lid_thickness: float = given(Number("mm", 1, 30, "lid under the sample"), None, FOLLOWS)
     plenum_depth: float = given(Number("mm", 4, 40, "plenum: room for the port in its wall"), 8.0)
     floor: float = given(Number("mm", 1, 30, "material under the plenum"), 4.0)
     margin: float = given(Number("mm", 2, 60, "lid beyond the sample, for its screws"), 8.0)

@@ -43,8 +43,13 @@ class Identity:
     title: str = given(_line("title on drawings"))
     revision: str = given(TextLine(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
     date: str = given(Day("date of issue; the only date in any output"))
-    author: str = given(_line("creator, for the title block"))
-    organisation: str = given(_line("legal owner, for the title block"))
+    author: str | None = given(_line("creator, for the title block"), None, "not stated")
+    organisation: str | None = given(
+        _line("legal owner, for the title block; a release needs one"), None, "not stated"
+    )
+    contact: str | None = given(
+        _line("whom a shop asks: name, mail or telephone; a release needs one"), None, "not stated"
+    )
 
 
 def _property(spec: Number | OneOf, optional: bool = False) -> Any:

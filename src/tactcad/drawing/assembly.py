@@ -30,6 +30,7 @@ def assembly_sheets(
     rows: Sequence[BomRow],
     shapes: Mapping[str, TopoDS_Shape],
     draft: bool = False,
+    sample: bool = False,
 ) -> list[DrawnSheet]:
     """All sheets of a scene, their layout clean.
 
@@ -43,6 +44,8 @@ def assembly_sheets(
         Solids by part number, each in its own frame, mm.
     draft
         Marks every sheet PRELIMINARY.
+    sample
+        Has every title block say that nothing is to be ordered by it.
 
     Raises
     ------
@@ -50,7 +53,7 @@ def assembly_sheets(
         Where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
     """
     name = f"Assembly: {scene.name.replace('-', ' ')}"
-    block = block_of(design.design, f"{design.name}-{scene.name}", name, draft)
+    block = block_of(design.design, f"{design.name}-{scene.name}", name, draft, sample)
     mass = sum(p.part.mass for p in scene.placements)
     block = replace(block, material="see parts list", mass=mass)
     arranged = arrangement(design, scene, shapes, block)

@@ -33,6 +33,7 @@ class AssemblyOrder:
     rows: tuple[BomRow, ...]
     shapes: Mapping[str, bytes]
     draft: bool = False
+    sample: bool = False
 
     @property
     def name(self) -> str:
@@ -50,8 +51,9 @@ def assembly_written(order: AssemblyOrder) -> Written:
 
     design = order.design.design
     shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
-    sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft)
-    pdf = pdf_bytes(sheets, f"{order.name} revision {design.revision}: assembly", design.author, design.date)
+    sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)
+    title = f"{order.name} revision {design.revision}: assembly"
+    pdf = pdf_bytes(sheets, title, design.author or "", design.date)
     wrong = assembly_faults(pdf, order.name, design.revision, order.rows)
     if wrong:
         raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")

@@ -35,6 +35,7 @@ class CircuitOrder:
 
     design: Design
     draft: bool = False
+    sample: bool = False
 
     @property
     def name(self) -> str:
@@ -49,7 +50,7 @@ def circuit_written(order: CircuitOrder) -> Written:
     from .pdf import pdf_bytes
 
     identity = order.design.design
-    sheets = circuit_sheets(order.design, order.draft)
+    sheets = circuit_sheets(order.design, order.draft, order.sample)
     pdf = pdf_bytes(
         sheets, f"{order.name} revision {identity.revision}: circuit", identity.author, identity.date
     )
@@ -61,7 +62,7 @@ def circuit_written(order: CircuitOrder) -> Written:
     return Written(pdf, stacked_svg(sheets))
 
 
-def circuit_sheets(design: Design, draft: bool = False) -> list[DrawnSheet]:
+def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
     """Every sheet, its layout clean; raises CheckFailure where it is not."""
     layout = Layout(design)
     circuit, cut = netlist(layout), wiring(layout)
@@ -71,7 +72,7 @@ def circuit_sheets(design: Design, draft: bool = False) -> list[DrawnSheet]:
         plan_page(layout, _plan_notes(layout)),
         *lead_pages(cut),
     ]
-    sheets = _sheets(design, pages, draft)
+    sheets = _sheets(design, pages, draft, sample)
     for sheet in sheets:
         wrong = layout_faults(sheet)
         if wrong:
@@ -79,8 +80,8 @@ def circuit_sheets(design: Design, draft: bool = False) -> list[DrawnSheet]:
     return [preliminary(sheet) for sheet in sheets] if draft else sheets
 
 
-def _sheets(design: Design, pages: Sequence[Page], draft: bool) -> list[DrawnSheet]:
-    block = block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft)
+def _sheets(design: Design, pages: Sequence[Page], draft: bool, sample: bool) -> list[DrawnSheet]:
+    block = block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample)
     sheets = []
     for n, page in enumerate(pages, start=1):
         own = replace(block, scale=page.scale, sheet=n, sheets=len(pages), document_type=page.document_type)

@@ -115,9 +115,9 @@ def page(design: Design, scene: Scene) -> bytes:
     title = f"{d.title}: {scene.name}"
     body = [
         f"<h1>{escape(title)}</h1>",
-        f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}, '
-        f"{escape(d.organisation)}. "
-        "Made from the scene; parts as in its bill of materials.</p>",
+        f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}'
+        + (f", {escape(d.organisation)}" if d.organisation else "")
+        + ". Made from the scene; parts as in its bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
         _list("Tools", tools(design, scene)),
     ]

@@ -37,6 +37,7 @@ class Order:
     shape: bytes
     files: tuple[MadeFrom, ...]
     draft: bool = False
+    sample: bool = False
 
     @property
     def name(self) -> str:
@@ -88,7 +89,7 @@ def part_sheet(order: Order) -> DrawnSheet:
         half, face = cut(shape, view, section)
         return [face, *projected(half, eye, view.right)]
 
-    title = title_of(order.design, order.part, order.draft)
+    title = title_of(order.design, order.part, order.draft, order.sample)
     for plan, papers, scales in _attempts(order):
         drawn = {v.name: curves(v.eye, v.up, v.section) for v in plan.views}
         try:
@@ -125,8 +126,8 @@ def _attempts(order: Order) -> Iterator[tuple[SheetPlan, Sequence[Paper], Sequen
     yield from ((plan, (paper,), SERIES) for paper in (A2, A1, A0) for plan in (*short, *whole))
 
 
-def title_of(design: Design, part: Part, draft: bool) -> TitleBlock:
-    block = block_of(design.design, part.part_no, part.name, draft)
+def title_of(design: Design, part: Part, draft: bool, sample: bool = False) -> TitleBlock:
+    block = block_of(design.design, part.part_no, part.name, draft, sample)
     material = str(part.material)
     return replace(block, document_type="Part drawing", material=material, mass=part.mass, finish=part.finish)
 
@@ -139,7 +140,7 @@ def written(order: Order) -> Written:
     sheet = part_sheet(order)
     d = order.design.design
     pdf = pdf_bytes(
-        [sheet], f"{order.part.part_no} revision {d.revision}: {order.part.name}", d.author, d.date
+        [sheet], f"{order.part.part_no} revision {d.revision}: {order.part.name}", d.author or "", d.date
     )
     wrong = drawing_faults(pdf, sheet, order.part, d.revision)
     if wrong:

@@ -40,17 +40,20 @@ class TitleBlock:
     finish: str = ""
 
 
-def block_of(identity: Identity, number: str, title: str, draft: bool) -> TitleBlock:
-    """The entries that the title blocks of all sheets of a design share."""
+SAMPLE = "sample, not for order"  # document status of what has no owner
+
+
+def block_of(identity: Identity, number: str, title: str, draft: bool, sample: bool = False) -> TitleBlock:
+    """The entries that the title blocks of all sheets of a design share; what it does not state is blank."""
     return TitleBlock(
-        legal_owner=identity.organisation,
+        legal_owner=identity.organisation or "",
         number=number,
         revision=identity.revision,
         date=identity.date,
         title=title,
         supplementary=identity.title,
-        creator=identity.author,
-        status="draft" if draft else "for manufacture",
+        creator=identity.author or "",
+        status=SAMPLE if sample else "draft" if draft else "for manufacture",
     )
 
 

@@ -74,7 +74,8 @@ class ExportOptions:
     """What of a design is exported, and how. With the design, this is all that an export is made from.
 
     `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
-    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`.
+    `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
+    where a `sample`.
     """
 
     scenes: tuple[str, ...]
@@ -83,6 +84,7 @@ class ExportOptions:
     detail: str = "full"
     drawings: bool = False
     draft: bool = False
+    sample: bool = False
 
 
 def export(
@@ -158,7 +160,10 @@ def _refuse_unprintable(design: Design) -> None:
 
     texts = design.design
     refuse_letters_it_lacks(
-        {f"design.{name}": getattr(texts, name) for name in ("title", "author", "organisation", "revision")}
+        {
+            f"design.{name}": getattr(texts, name) or ""
+            for name in ("title", "author", "organisation", "revision")
+        }
     )
 
 
@@ -207,10 +212,12 @@ def _rebuild(
     products += circuit_products(design, shapes) if "array" in options.scenes else []
     products += [p for s in scenes if options.guides for p in guide_products(design, s, shapes)]
     if options.drawings:
-        products += drawing_products(design, parts, shapes, products, progress.step, options.draft)
-        products += assembly_products(design, scenes, shapes, progress.step, options.draft)
+        products += drawing_products(
+            design, parts, shapes, products, progress.step, options.draft, options.sample
+        )
+        products += assembly_products(design, scenes, shapes, progress.step, options.draft, options.sample)
         if "array" in options.scenes:
-            products += circuit_drawing(design, shapes, progress.step, options.draft)
+            products += circuit_drawing(design, shapes, progress.step, options.draft, options.sample)
     folder = work.folder
     made = _write_products(folder, products, cache, progress)
     records = [_record(folder, p, design) for p in products]

@@ -42,7 +42,7 @@ class Output:
 
 def header(design: Design, name: str, description: str) -> Header:
     d = design.design
-    return Header(name, description, d.revision, d.date, d.author, d.organisation)
+    return Header(name, description, d.revision, d.date, d.author or "", d.organisation or "")
 
 
 def part_products(design: Design, part: Part, shapes: Shapes) -> list[Output]:
@@ -188,6 +188,7 @@ def drawing_products(
     products: Sequence[Output],
     say: Callable[[int, int, str], None],
     draft: bool = False,
+    sample: bool = False,
 ) -> list[Output]:
     """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
     from tactcad.drawing.fonts import font_file
@@ -196,13 +197,14 @@ def drawing_products(
 
     font_file()  # a missing font is reported before anything is made
     sources = {(p.part_no, p.kind): p for p in products}
-    revision, common = design.design.revision, (design.design, design.tolerance, design.holes, draft)
+    revision = design.design.revision
+    common = (design.design, design.tolerance, design.holes, draft, sample)
 
     def order(part: Part, files: Sequence[Output]) -> Order:
         from tactcad.solids.bytes import to_bytes
 
         made_from = [MadeFrom(f.path, sha256_of(shapes.cache.get_or_make(f.key, f.make))) for f in files]
-        return Order(design, part, to_bytes(shapes.of(part)), tuple(made_from), draft)
+        return Order(design, part, to_bytes(shapes.of(part)), tuple(made_from), draft, sample)
 
     wanted = []
     for part in parts:
@@ -221,18 +223,19 @@ def assembly_products(
     shapes: Shapes,
     say: Callable[[int, int, str], None],
     draft: bool = False,
+    sample: bool = False,
 ) -> list[Output]:
     """An assembly drawing of every scene, as PDF and SVG."""
     from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
     from tactcad.scenes.bom import bom_rows
 
-    revision, common = design.design.revision, (design.design, design.tolerance, draft)
+    revision, common = design.design.revision, (design.design, design.tolerance, draft, sample)
 
     def order(scene: Scene) -> AssemblyOrder:
         from tactcad.solids.bytes import to_bytes
 
         solids = {part.part_no: to_bytes(shapes.of(part)) for part in scene.parts}
-        return AssemblyOrder(design, scene, bom_rows(scene, revision, {}), solids, draft)
+        return AssemblyOrder(design, scene, bom_rows(scene, revision, {}), solids, draft, sample)
 
     wanted = []
     for scene in scenes:
@@ -242,14 +245,18 @@ def assembly_products(
 
 
 def circuit_drawing(
-    design: Design, shapes: Shapes, say: Callable[[int, int, str], None], draft: bool = False
+    design: Design,
+    shapes: Shapes,
+    say: Callable[[int, int, str], None],
+    draft: bool = False,
+    sample: bool = False,
 ) -> list[Output]:
     """The circuit's sheets, as PDF and SVG."""
     from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
 
     stem = f"{design.name}-circuit_{design.design.revision}"
-    key = digest(("circuit drawing", shapes.made_by, design, draft))
-    return _drawn([_Wanted(stem, "", key, lambda: CircuitOrder(design, draft))], circuit_written, shapes, say)
+    key = digest(("circuit drawing", shapes.made_by, design, draft, sample))
+    return _drawn([_Wanted(stem, "", key, lambda: CircuitOrder(design, draft, sample))], circuit_written, shapes, say)
 
 
 def _drawn(

@@ -12,7 +12,7 @@ from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strain_errors import StrainErrors
 from tactcad.parts.element import element
-from tactcad.parts.hinge_section import design_alloy, hinge_section
+from tactcad.parts.hinge_section import design_alloy, hinge_section, not_reached
 from tactcad.parts.layout import ElementPlace, Layout
 
 
@@ -72,6 +72,8 @@ def estimate(
     design = layout.design
     force = design.rating.force if force is None else force
     section = hinge_section(layout, layout.elements)
+    if why := not_reached(layout, section, rung):
+        raise CheckFailure(why)
     if rung not in ladder.FINITE_ELEMENTS:
         return estimate_sections(layout, section, rung, force)
     K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)

@@ -79,9 +79,11 @@ def stiffness(s: HingeSection, rung: str = DEFAULT_RUNG) -> Array:
 
 def require_range(s: HingeSection, rung: str) -> None:
     """Raise CheckFailure with the first broken rule and the design that breaks it."""
-    for name, mask in validity.broken_rules(s, rung).items():
-        where = f" (design {np.flatnonzero(mask)[0] + 1} of {mask.size})" if mask.size > 1 else ""
-        raise CheckFailure(f"rung {rung} does not reach this design: {name}{where}")
+    for mask in validity.broken_rules(s, rung).values():
+        first = np.flatnonzero(mask)[0]
+        where = f" (design {first + 1} of {mask.size})" if mask.size > 1 else ""
+        why = validity.reasons(s, rung).ravel()[first]
+        raise CheckFailure(f"rung {rung} does not reach this design: {why}{where}")
 
 
 def compliance(s: HingeSection, rung: str) -> Array:

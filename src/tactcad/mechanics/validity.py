@@ -26,26 +26,38 @@ LENGTHS = tuple(name for name in POSITIVE if name != "youngs_modulus")
 
 @dataclass(frozen=True)
 class RangeRule:
-    """A named rule; `broken` gives the mask of designs that break it."""
+    """A named rule; `broken` gives the mask of designs that break it.
+
+    fields: parameters that it is about, as the batch's columns are called; the messages name them, of a rule
+    for `each` of them by itself the first that breaks it.
+    """
 
     name: str
     broken: Callable[[HingeSection], np.ndarray]
+    fields: tuple[str, ...]
+    each: Callable[[HingeSection, str], np.ndarray] | None = None
 
 
-def _not_finite(s: HingeSection) -> np.ndarray:
-    numbers = (getattr(s, name) for name in (*REQUIRED, *OPTIONAL))
-    return np.logical_not(np.logical_and.reduce([np.isfinite(x) for x in np.broadcast_arrays(*numbers)]))
+def _each(name: str, fields: tuple[str, ...], breaks: Callable[[HingeSection, str], np.ndarray]) -> RangeRule:
+    """A rule that every field has to keep by itself."""
+
+    def broken(s: HingeSection) -> np.ndarray:
+        return np.logical_or.reduce(np.broadcast_arrays(*(breaks(s, field) for field in fields)))
+
+    return RangeRule(name, broken, fields, breaks)
 
 
-def _not_positive(s: HingeSection) -> np.ndarray:
-    return np.logical_or.reduce(np.broadcast_arrays(*(getattr(s, name) <= 0.0 for name in POSITIVE)))
+def _not_finite(s: HingeSection, field: str) -> np.ndarray:
+    return ~np.isfinite(getattr(s, field))
 
 
-def _length_outside(s: HingeSection) -> np.ndarray:
-    low, high = LENGTH
-    small = [getattr(s, name) < low for name in LENGTHS]
-    large = [getattr(s, name) > high for name in (*LENGTHS, "fillet_radius", "pad_height")]
-    return np.logical_or.reduce(np.broadcast_arrays(*small, *large))
+def _not_positive(s: HingeSection, field: str) -> np.ndarray:
+    return np.asarray(getattr(s, field) <= 0.0)
+
+
+def _length_outside(s: HingeSection, field: str) -> np.ndarray:
+    value, (low, high) = getattr(s, field), LENGTH
+    return np.asarray((value > high) | ((value < low) & (field in LENGTHS)))
 
 
 def _slot_depth(s: HingeSection) -> np.ndarray:
@@ -53,26 +65,45 @@ def _slot_depth(s: HingeSection) -> np.ndarray:
     return s.hinge_thickness + s.notch_sides * s.fillet_radius
 
 
+SLOT = ("hinge_thickness", "fillet_radius")
 GEOMETRY = (
-    RangeRule("a value is not a finite number", _not_finite),
-    RangeRule("a length, width or modulus is not positive", _not_positive),
-    RangeRule(f"a length or width is outside {LENGTH[0]:g} to {LENGTH[1]:g} mm", _length_outside),
+    _each("a value is not a finite number", (*REQUIRED, *OPTIONAL), _not_finite),
+    _each("a length, width or modulus is not positive", POSITIVE, _not_positive),
+    _each(
+        f"a length or width is outside {LENGTH[0]:g} to {LENGTH[1]:g} mm",
+        (*LENGTHS, "fillet_radius", "pad_height"),
+        _length_outside,
+    ),
     RangeRule(
         f"youngs_modulus is outside {MODULUS[0]:g} to {MODULUS[1]:g} MPa",
         lambda s: (s.youngs_modulus < MODULUS[0]) | (s.youngs_modulus > MODULUS[1]),
+        ("youngs_modulus",),
     ),
-    RangeRule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0),
-    RangeRule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5)),
+    RangeRule("fillet_radius is negative", lambda s: s.fillet_radius < 0.0, ("fillet_radius",)),
+    RangeRule("poisson is outside 0 to 0.5", lambda s: (s.poisson < 0.0) | (s.poisson >= 0.5), ("poisson",)),
     RangeRule(
-        "fillets longer than the slot: 2 r > l", lambda s: s.straight_length < -NINE_DIGITS * s.hinge_length
+        "fillets longer than the slot: 2 r > l",
+        lambda s: s.straight_length < -NINE_DIGITS * s.hinge_length,
+        ("fillet_radius", "hinge_length"),
     ),
-    RangeRule("load inside the slot: L <= l/2", lambda s: s.load_arm <= s.hinge_length / 2.0),
-    RangeRule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s)),
-    RangeRule("fillets higher than the body", lambda s: s.body_height < _slot_depth(s)),
-    RangeRule("pad_height or friction is negative", lambda s: (s.pad_height < 0.0) | (s.friction < 0.0)),
+    RangeRule(
+        "load inside the slot: L <= l/2",
+        lambda s: s.load_arm <= s.hinge_length / 2.0,
+        ("load_arm", "hinge_length"),
+    ),
+    RangeRule("fillets higher than the arm", lambda s: s.arm_height < _slot_depth(s), ("arm_height", *SLOT)),
+    RangeRule(
+        "fillets higher than the body", lambda s: s.body_height < _slot_depth(s), ("body_height", *SLOT)
+    ),
+    RangeRule(
+        "pad_height or friction is negative",
+        lambda s: (s.pad_height < 0.0) | (s.friction < 0.0),
+        ("pad_height", "friction"),
+    ),
     RangeRule(
         "friction locks the arm: mu (pad_height + t/2) >= L",
         lambda s: s.friction * friction.lever(s) >= s.load_arm,
+        ("friction", "pad_height", "hinge_thickness", "load_arm"),
     ),
 )
 
@@ -103,6 +134,26 @@ LEAST: dict[str, tuple[str, Callable[[HingeSection], Array], str]] = {
 }
 
 
+# Parameters that a group is made of, as the batch's columns are called.
+FIELDS: dict[str, tuple[str, ...]] = {
+    "r/t": ("fillet_radius", "hinge_thickness"),
+    "l/t": ("hinge_length", "hinge_thickness"),
+    "h/t": ("arm_height", "hinge_thickness"),
+    "Hb/t": ("body_height", "hinge_thickness"),
+    "(L - l/2)/h": ("load_arm", "hinge_length", "arm_height"),
+    "L/Hb": ("load_arm", "body_height"),
+    "Lb/Hb": ("body_length", "body_height"),
+    "poisson": ("poisson",),
+    "b/t": ("width", "hinge_thickness"),
+    "b/l": ("width", "hinge_length"),
+    "b/h": ("width", "arm_height"),
+    "b/Hb": ("width", "body_height"),
+    "Lb/t": ("body_length", "hinge_thickness"),
+    "L/t": ("load_arm", "hinge_thickness"),
+    "b/r": ("width", "fillet_radius"),
+}
+
+
 def groups(s: HingeSection) -> dict[str, Array]:
     """Value of every group for every design."""
     return {name: value(s) for name, value in (PLANE_GROUPS | WIDTH_GROUPS).items()}
@@ -117,14 +168,16 @@ def _fitted(rung: str) -> tuple[RangeRule, ...]:
         RangeRule(
             f"arm too low for the fit: h < {height:g} (t + n r)",
             lambda s: s.arm_height < height * (1.0 - ROUNDING) * _slot_depth(s),
+            ("arm_height", *SLOT),
         ),
         RangeRule(
             f"body too low for the fit: Hb < {height:g} (t + n r)",
             lambda s: s.body_height < height * (1.0 - ROUNDING) * _slot_depth(s),
+            ("body_height", *SLOT),
         ),
     ]
     rules += [
-        RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf))
+        RangeRule(f"{what} for the fit: {name} < {least:g}", _outside(value, least, np.inf), FIELDS[name])
         for name, (what, value, of) in LEAST.items()
         if of in BY_NAME[rung].fitted
         for least in (sampled["least"][name],)
@@ -133,7 +186,9 @@ def _fitted(rung: str) -> tuple[RangeRule, ...]:
     for name, value in bounding.items():
         low, high = sampled["groups"][name]
         rules.append(
-            RangeRule(f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high))
+            RangeRule(
+                f"{name} is outside the fit's {low:g} to {high:g}", _outside(value, low, high), FIELDS[name]
+            )
         )
     return tuple(rules)
 
@@ -169,8 +224,15 @@ def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
 
 
 def reasons(s: HingeSection, rung: str) -> np.ndarray:
-    """For each design the first rule it breaks, or an empty string; array of str of the section's shape."""
+    """For each design the first rule it breaks and the fields to look at, "rule (field, field)", or an empty
+    string; array of str of the section's shape."""
     reason = np.full(s.shape, "", dtype=object)
-    for name, mask in reversed(broken_rules(s, rung).items()):
-        reason[mask] = name
+    broken = broken_rules(s, rung)
+    for rule in reversed([rule for rule in rules(rung) if rule.name in broken]):
+        if rule.each is None:
+            reason[broken[rule.name]] = f"{rule.name} ({', '.join(rule.fields)})"
+            continue
+        for field in reversed(rule.fields):
+            with np.errstate(all="ignore"):
+                reason[np.broadcast_to(rule.each(s, field), s.shape)] = f"{rule.name} ({field})"
     return reason

@@ -11,7 +11,6 @@ from .electronic_parts import (
     GAUGE,
     LEAD,
     TERMINAL,
-    Supply,
     board_supplies,
     bonded_spares,
     completion_supply,
@@ -19,6 +18,7 @@ from .electronic_parts import (
 )
 from .layout import Layout
 from .lead_route import leads
+from .supply import Supply
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, floor, log10
 
 from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES
@@ -12,6 +11,7 @@ from .boards import boards
 from .hinge_section import completion_resistance
 from .layout import Layout
 from .lead_route import lead_routes, leads
+from .supply import Supply
 
 GAUGE, COMPLETION, TERMINAL, LEAD = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL", "LEAD-WIRE"
 GAIN_RESISTOR = "GAIN-RESISTOR"
@@ -20,23 +20,6 @@ DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
-
-
-@dataclass(frozen=True)
-class Supply:
-    """A bill-of-materials line without a solid. Quantities count the array once; spares come on top."""
-
-    part_no: str
-    description: str
-    qty: float
-    unit: str
-    designation: str
-    alternates: str = ""
-    spares: float = 0
-    consumable: bool = True
-    manufacturer: str = ""
-    mpn: str = ""
-    verified: bool = False
 
 
 def bonded_spares(n: int) -> int:

@@ -22,6 +22,7 @@ from .description import Extrusion, Material, Part
 from .layout import ElementPlace, HingeShape, Layout
 from .limits import FACES, Characteristic, DatumFeature, Geometric, within
 from .plate import PLACE
+from .spares import spare_elements
 from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
@@ -39,14 +40,16 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         Stop gap at the arm's tip, mm; by default the design's.
     """
     design = layout.design
+    unrated: tuple[str, ...] = ()
     if gap is None:
-        from .stop_gap import stop_gap  # loads numpy: not needed where the gap is known
+        from .stop_gap import stop_gap, unrated_gap  # loads numpy: not needed where the gap is known
 
-        gap = stop_gap(layout, place)
+        gap, unrated = stop_gap(layout, place), unrated_gap(layout, place)
     passes = least_passes(design.tolerance.hinge_thickness)
     outer = outline(layout, place.arm, place.hinge, gap)
+    number = element_number(design, place)
     return Part(
-        part_no=element_number(design, place),
+        part_no=number,
         name=f"Sensing element, arm {shortest(place.arm)}",
         process="wire-cut",
         material=sheet_material(design),
@@ -59,10 +62,12 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
             "burr-free, do not tumble",
             "measure and record the hinge thickness of every element",
             *material_notes(design),
+            *unrated,
         ),
         characteristics=_limits(layout, place, gap, {s.name for s in outer}),
         geometric=(screw_places("A", "B"),),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
+        spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
     )
 
 

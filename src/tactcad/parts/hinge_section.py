@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
@@ -10,7 +11,7 @@ from typing import TypeVar
 from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
-from tactcad.mechanics import ladder
+from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
@@ -114,3 +115,52 @@ def completion_resistance(design: Design) -> float:
 def _filled(kind: Callable[..., T], table: object) -> T:
     """A record filled with the table's values of the same names."""
     return kind(**{name: getattr(table, name) for name in inspect.signature(kind).parameters})
+
+
+# Where a section's parameter stands in the design file; the first four an element may override.
+PATHS = {
+    "hinge_thickness": "element.hinge_thickness",
+    "hinge_length": "element.hinge_length",
+    "fillet_radius": "element.fillet_radius",
+    "arm_height": "element.arm_height",
+    "load_arm": "array.row_arms",
+    "body_length": "element.rear_length",
+    "body_height": "element.body_height",
+    "poisson": "material.poisson",
+    "youngs_modulus": "material.youngs_modulus",
+    "width": "sheet.thickness",
+    "pad_height": "element.pad_height",
+    "friction": "rating.friction",
+}
+_FIELDS = re.compile(r" \((?P<fields>\w+(?:, \w+)*)\)$")
+
+
+def in_design(reason: str, layout: Layout, place: ElementPlace) -> str:
+    """An estimator's reason (mechanics.validity) with the design's own fields and what they give for one
+    element: "... (array.row_arms: load_arm 30, element.body_height: 4)". "" stays "".
+    """
+    found = _FIELDS.search(reason)
+    if found is None:
+        return reason
+    own = own_parameters(place.hinge, place.load_arm, place.body_length)
+    values = own | shared_parameters(layout.design)
+    named = (
+        f"{_path(name, layout, place)}: {name} {values[name]:.4g}" for name in found["fields"].split(", ")
+    )
+    return f"{reason[: found.start()]} ({', '.join(named)})"
+
+
+def _path(name: str, layout: Layout, place: ElementPlace) -> str:
+    hinge = layout.design.element.override.get(place.number)
+    if hinge is not None and getattr(hinge, name, None) is not None:
+        return f"element.override.{place.number}.{name}"
+    return PATHS[name]
+
+
+def not_reached(layout: Layout, section: HingeSection, rung: str) -> str:
+    """Why a rung does not reach the first of the array's elements that it does not, their parameters in
+    `section`; "" where it reaches all."""
+    for place, reason in zip(layout.elements, validity.reasons(section, rung).ravel()):
+        if reason:
+            return f"rung {rung} does not reach element {place.number}: {in_design(reason, layout, place)}"
+    return ""

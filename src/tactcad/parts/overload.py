@@ -9,7 +9,7 @@ import numpy as np
 from tactcad.mechanics import ladder, strain, strength
 from tactcad.mechanics.stop import back_share, deflection_share, stop_share, stress_share, tip_compliance
 
-from .hinge_section import design_alloy, hinge_section
+from .hinge_section import design_alloy, hinge_section, in_design
 from .layout import ElementPlace, Layout
 from .stop_gap import seat, stop_gap
 
@@ -72,6 +72,10 @@ def overloads(layout: Layout) -> list[Overload]:
     }
     by_name = {name: np.broadcast_to(column, s.shape).tolist() for name, column in figures.items()}
     return [
-        Overload(place, **{name: column[i] for name, column in by_name.items()}, refused=str(known.reason[i]))
+        Overload(
+            place,
+            **{name: column[i] for name, column in by_name.items()},
+            refused=in_design(str(known.reason[i]), layout, place),
+        )
         for i, place in enumerate(places)
     ]

@@ -11,8 +11,9 @@ from .description import Material
 ALUMINIUM = Material("aluminium", 2700)
 BRASS = Material("brass, nickel plated", 8500)
 CARBON_STEEL = Material("steel", 7850)
+PLAIN_STEEL = Material("S235JR steel", 7850, standard="EN 10025-2")
 RUBBER = Material("rubber", 1200)
-STAINLESS = Material("1.4301 stainless steel", 7900)
+STAINLESS = Material("X5CrNi18-10 (1.4301)", 7900, standard="EN 10088-3")
 # Martensitic: a magnetic chuck holds it for grinding. Density after EN 10088-1.
 MAGNETIC_STAINLESS = Material("X46Cr13 (1.4034)", 7700, standard="EN 10088-3")
 

@@ -13,7 +13,7 @@ from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.stop import largest_closing_force, largest_overload, tip_compliance
 
 from .end_plate import lean
-from .hinge_section import own_parameters, shared_parameters
+from .hinge_section import hinge_section, in_design, own_parameters, shared_parameters
 from .layout import ElementPlace, HingeShape, Layout
 from .library.dowels import dowel_diameter
 from .stop_plate import STOP_PLATE_FLAT
@@ -55,6 +55,20 @@ def stop_gap(layout: Layout, place: ElementPlace) -> float:
     widest = min(closing, land_room(layout, place.hinge))
     step = STEP_MM if widest >= 10 * STEP_MM else STEP_MM / 10
     return round(floor(widest / step + 1e-9) * step, 6)
+
+
+def unrated_gap(layout: Layout, place: ElementPlace) -> tuple[str, ...]:
+    """A note for the element's sheet where its gap is not what the element is rated for: its row of
+    strength.csv is blank, since the estimator does not reach it. No note where [stop.gaps] lists the arm."""
+    if layout.design.stop.gaps and place.arm in layout.design.stop.gaps:
+        return ()
+    reason = str(ladder.evaluate(hinge_section(layout, (place,)), ladder.DEFAULT_RUNG).reason[0])
+    if not reason:
+        return ()
+    return (
+        "stop gap not rated, ask before cutting: the estimator does not reach this element: "
+        + in_design(reason, layout, place),
+    )
 
 
 def seat(layout: Layout) -> float:

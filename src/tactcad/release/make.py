@@ -4,30 +4,37 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tactcad.checks.check_report import Report
 from tactcad.checks.goes_together import check_assembly
-from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_file
+from tactcad.checks.shop import load_shop
+from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_files
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
+from tactcad.export.contents import sha256_of
 from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import ExportOptions, Progress, export
 from tactcad.scenes import make_scene, scene_names
 
 from .archive import archive_bytes, refuse_what_is_no_zip, replaced_content
-from .readme import MARK, ReleaseContents, readme_bytes
+from .ordered import Sets
+from .package_readme import package_readme
+from .packages import PACKAGES, packed
+from .readme import readme_bytes
+from .release_contents import ReleaseContents
 from .verify import README, check_archive
+from .verify_packages import check_packages
 
 QUOTED = ("wire-cut", "machining")  # checks whose flags are reported to the shop
 
 
 @dataclass(frozen=True)
 class Released:
-    """Result of a release: the zip, whether it is a draft, how many files it holds, failures (drafts only),
-    and differences from the zip that stood there before.
+    """Result of a release: the zip, whether it is a draft or a sample, the files that it holds, failures
+    (drafts only), differences from the zip that stood there before, and the suppliers' packages beside it.
     """
 
     path: Path
@@ -37,78 +44,105 @@ class Released:
     files: tuple[str, ...]
     failures: tuple[str, ...]
     replaced: tuple[str, ...]
+    sample: bool
+    packages: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class Terms:
+    """As a draft although checks fail or not, as a sample without owner or not, for how many sets."""
+
+    draft: bool = False
+    sample: bool = False
+    sets: Sets = "one"
 
 
 def release(
-    design: Design,
-    design_file: Path,
-    out: str | Path,
-    shop_file: Path,
-    progress: Progress,
-    draft: bool = False,
+    design: Design, design_file: Path, out: str | Path, shop_file: Path, progress: Progress, terms: Terms
 ) -> Released:
-    """Write a design's release, `<design>-<revision>.zip`, or as a draft
-    `<design>-<revision>-PRELIMINARY.zip`.
+    """Write a design's release, `<design>-<revision>.zip`, and beside it a zip for each way of making
+    (packages.py), `<design>-<revision>-<way>.zip`; the revision is followed by SAMPLE for a sample and by
+    PRELIMINARY for a draft.
 
     Parameters
     ----------
     design, design_file
-        The design, and the file that it was read from.
+        The design, with its owner and contact but for a sample, and the file that it was read from.
     out
         The folder to write to.
     shop_file
         The limits that parts are checked against.
     progress
         Receives what is done, and why nothing is.
-    draft
-        Continue even where checks fail; the README lists the failures.
+    terms
+        Draft or not, sample or not, how many sets. A draft's README lists the checks that fail.
 
     Returns
     -------
     Released
-        The zip, its files, and what differs from the one that stood there before.
+        The zip, its files, what differs from the one that stood there before, and the packages.
 
     Raises
     ------
     CheckFailure
-        With nothing written and an older zip as it was, where a check fails, the golden file does not hold
+        With nothing written and older zips as they were, where a check fails, the golden file does not hold
         just this revision, or what was written does not read back.
     InputError
-        Where `out` cannot be written, or the zip's place is taken by what is none.
+        Where `out` cannot be written, or a zip's place is taken by what is none.
     """
-    revision = design.design.revision
-    target = Path(out) / f"{design.name}-{revision}{f'-{MARK}' if draft else ''}.zip"
-    refuse_overwriting(target, design_file, shop_file)
-    refuse_what_is_no_zip(target)
+    scenes = [make_scene(design, name) for name in scene_names(design)]
+    contents = ReleaseContents(design, scenes, (), (), terms.draft, terms.sample, terms.sets)
+    target = Path(out) / f"{contents.stem}.zip"
+    places = {package.name: Path(out) / f"{contents.stem}-{package.name}.zip" for package in PACKAGES}
+    for place in (target, *places.values()):
+        refuse_overwriting(place, design_file, shop_file)
+        refuse_what_is_no_zip(place)
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
-    _refuse(design, failures, draft, progress)
+    _refuse(design, failures, terms.draft, progress)
     # beside the published seed, which the checks take, one that nobody could design for
     failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
-    _refuse(design, failures, draft, progress)
+    _refuse(design, failures, terms.draft, progress)
     report = _checked(design, shop_file, progress)
     failures += [str(f) for f in report.failures]
-    _refuse(design, failures, draft, progress)
+    _refuse(design, failures, terms.draft, progress)
 
-    scenes = [make_scene(design, name) for name in scene_names(design)]
     flags = [
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
-    contents = ReleaseContents(design, scenes, flags, failures, draft)
+    contents = replace(contents, flags=flags, failures=failures)
     with scratch_folder("release") as folder:
-        files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, draft)
+        files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, terms)
     files = {README: readme_bytes(contents, list(files)), **files}
-    data = archive_bytes(files, design.design.date)
+    data, date, shop = archive_bytes(files, design.design.date), design.design.date, load_shop(shop_file)
+    whole = f"{target.name} (SHA-256 {sha256_of(data)})"
+    packages = packed(contents, files, shop)
+    zips = [
+        archive_bytes({README: package_readme(contents, one, whole, shop), **one.files}, date)
+        for one in packages
+    ]
+    targets = [target, *(places[one.package.name] for one in packages)]
     make_folder(target.parent)
-    with whole_file(target) as part:
+    with whole_files(targets, gone=[p for p in places.values() if p not in targets]) as parts:
         replaced = replaced_content(target, data)
-        part.write_bytes(data)
-        wrong = check_archive(part, contents)
+        for part, content in zip(parts, (data, *zips)):
+            part.write_bytes(content)
+        wrong = check_archive(parts[0], contents) or check_packages(parts[1:], packages, parts[0], contents)
         if wrong:
             raise CheckFailure(
                 f"{target}: the finished release does not hold: {'; '.join(wrong)}; nothing was changed"
             )
-    return Released(target, design.name, revision, draft, (*files,), tuple(failures), tuple(replaced))
+    return Released(
+        target,
+        design.name,
+        design.design.revision,
+        terms.draft,
+        (*files,),
+        tuple(failures),
+        tuple(replaced),
+        terms.sample,
+        tuple(targets[1:]),
+    )
 
 
 def golden_faults(design: Design, design_file: Path) -> list[str]:
@@ -140,16 +174,19 @@ def _checked(design: Design, shop_file: Path, progress: Progress) -> Report:
 
 
 def _exported(
-    design: Design, scenes: tuple[str, ...], folder: Path, progress: Progress, draft: bool
+    design: Design, scenes: tuple[str, ...], folder: Path, progress: Progress, terms: Terms
 ) -> dict[str, bytes]:
     """The export's files that go to the shop, by their path in the zip."""
-    export(design, ExportOptions(scenes, drawings=True, draft=draft), folder, progress)
+    options = ExportOptions(scenes, guides=True, drawings=True, draft=terms.draft, sample=terms.sample)
+    export(design, options, folder, progress)
     paths = {_path_in_zip(file): file.path for file in read_manifest(folder).files}
     return {name: (folder / path).read_bytes() for name, path in sorted(paths.items()) if name}
 
 
 def _path_in_zip(file: FileRecord) -> str:
-    """Path of an exported file in the zip; "" where it is of no use to a shop."""
+    """Path of an exported file in the zip; "" where it is of no use to a shop or a builder."""
+    if file.path.startswith("guide/"):
+        return file.path
     if file.kind in ("dxf", "step-part", "step-pmi", "step-assembly", "inspection"):
         return file.path
     if file.kind == "drawing" and file.path.endswith(".pdf"):

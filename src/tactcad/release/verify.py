@@ -13,6 +13,8 @@ from pathlib import Path, PurePosixPath
 
 from tactcad.drawing.assembly_file import assembly_faults
 from tactcad.drawing.gate import key_faults, pdf_runs
+from tactcad.drawing.guide import page_path
+from tactcad.drawing.title import SAMPLE as STATUS
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.dxf import check_dxf
@@ -24,7 +26,8 @@ from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 
 from .archive import MANIFEST, MODE
-from .readme import DRAFT, MARK, ReleaseContents
+from .readme import DRAFT, MARK, SAMPLE
+from .release_contents import ReleaseContents
 
 README = "README.txt"
 AP242 = "-ap242"  # ends the name of a model with limits
@@ -37,23 +40,24 @@ def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
             broken = archive.testzip()
             if broken:
                 return [f"{broken}: damaged"]
-            wrong = _form_faults(archive.infolist())
+            wrong = form_faults(archive.infolist())
             files = {name: archive.read(name) for name in archive.namelist()}
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
         return [f"not readable as a zip: {error}"]
-    wrong += _manifest_faults(files)
+    wrong += manifest_faults(files)
     if wrong:
         return wrong
     return [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
         *_sheet_faults(files, contents),
+        *_guide_faults(files, contents),
         *_table_faults(files, contents),
-        *_mark_faults(files, contents),
+        *mark_faults(files, contents),
     ]
 
 
-def _form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
+def form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     names = [e.filename for e in entries]
     wrong = [f"{name}: stands twice" for name, count in Counter(names).items() if count > 1]
     for e in entries:
@@ -64,7 +68,7 @@ def _form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     return wrong
 
 
-def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
+def manifest_faults(files: Mapping[str, bytes]) -> list[str]:
     if MANIFEST not in files:
         return [f"no {MANIFEST}"]
     lines = files[MANIFEST].decode().splitlines()
@@ -130,7 +134,7 @@ def _scene_faults(files: Mapping[str, bytes], contents: ReleaseContents, scene: 
     revision."""
     revision = contents.design.design.revision
     path = f"step/{contents.design.name}-{scene.name}_{revision}.step"
-    bill = _bill(scene)
+    bill = bill_of(scene)
     if path not in files or bill not in files:
         yield f"{path} or {bill}: missing"
         return
@@ -173,10 +177,10 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
         )
         if sha256_of(files.get(source, b"")) not in "".join(pages[0]).replace(" ", ""):
             yield f"{path}: does not have the SHA-256 of {source}"
-        yield from _preliminary_faults(path, pages, contents.draft)
+        yield from _page_faults(path, pages, contents)
     for scene in contents.scenes:
         path = f"pdf/{design.name}-{scene.name}_{revision}.pdf"
-        rows = bom.rows_from_csv(files[_bill(scene)]) if _bill(scene) in files else ()
+        rows = bom.rows_from_csv(files[bill_of(scene)]) if bill_of(scene) in files else ()
         pages = _pages(files, path)
         faults = (
             assembly_faults(files[path], f"{design.name}-{scene.name}", revision, rows)
@@ -184,7 +188,23 @@ def _sheet_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
             else ["missing"]
         )
         yield from (f"{path}: {fault}" for fault in faults)
-        yield from _preliminary_faults(path, pages, contents.draft)
+        yield from _page_faults(path, pages, contents)
+
+
+def _guide_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
+    """A guide for every scene, of this revision, with every picture that it shows."""
+    revision = contents.design.design.revision
+    for scene in contents.scenes:
+        path = page_path(scene)
+        if path not in files:
+            yield f"{path}: missing"
+            continue
+        page = files[path].decode()
+        if f"revision {revision}," not in page:
+            yield f"{path}: does not name revision {revision}"
+        for picture in re.findall(r'<img src="([^"]+)"', page):
+            if f"guide/{picture}" not in files:
+                yield f"{path}: its picture {picture} is missing"
 
 
 def _pages(files: Mapping[str, bytes], path: str) -> list[list[str]]:
@@ -197,13 +217,25 @@ def _pages(files: Mapping[str, bytes], path: str) -> list[list[str]]:
         return []
 
 
-def _preliminary_faults(path: str, pages: Sequence[Sequence[str]], draft: bool) -> Iterator[str]:
+def _page_faults(path: str, pages: Sequence[Sequence[str]], contents: ReleaseContents) -> Iterator[str]:
+    """PRELIMINARY, the sample's status and the legal owner stand on every page where they belong."""
+    owner = contents.design.design.organisation
     for n, runs in enumerate(pages, start=1):
-        if (MARK in runs) != draft:
-            yield f"{path}, sheet {n}: {'without' if draft else 'with'} {MARK}"
+        text = _flat("".join(runs))
+        if (MARK in runs) != contents.draft:
+            yield f"{path}, sheet {n}: {'without' if contents.draft else 'with'} {MARK}"
+        if (_flat(STATUS) in text) != contents.sample:
+            yield f"{path}, sheet {n}: {'without' if contents.sample else 'with'} {STATUS!r}"
+        if owner and _flat(owner) not in text:
+            yield f"{path}, sheet {n}: does not name the legal owner"
 
 
-def _bill(scene: Scene) -> str:
+def _flat(text: str) -> str:
+    """Without spaces, since a cell of the title block breaks its text into lines."""
+    return re.sub(r"\s", "", text)
+
+
+def bill_of(scene: Scene) -> str:
     return "bom.csv" if scene.name == "array" else f"bom-{scene.name}.csv"
 
 
@@ -220,7 +252,9 @@ def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iter
         yield f"{README}: does not name {identity.name} revision {identity.revision} in its first line"
 
 
-def _mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
-    """A draft's README says that it is one, a release's does not."""
-    if (DRAFT in files[README].decode().splitlines()) != contents.draft:
-        yield f"{README}: {'does not say' if contents.draft else 'says'} that it is a draft"
+def mark_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
+    """A draft's README says that it is one, a release's does not; and so of a sample."""
+    said = files.get(README, b"").decode().splitlines()
+    for kind, mark, meant in (("draft", DRAFT, contents.draft), ("sample", SAMPLE, contents.sample)):
+        if (mark in said) != meant:
+            yield f"{README}: {'does not say' if meant else 'says'} that it is a {kind}"

@@ -166,8 +166,8 @@ def _identity(designs: tuple[Design, Design]) -> dict[str, str]:
         "title": f"What changed: {after.title}",
         "revision": both(before.revision, after.revision),
         "date": after.date,
-        "author": after.author,
-        "organisation": after.organisation,
+        "author": after.author or "",
+        "organisation": after.organisation or "",
     }
 
 

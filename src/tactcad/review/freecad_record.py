@@ -44,7 +44,7 @@ def freecad_record(
     return {
         "label": f"{identity.name} {identity.revision}",
         "about": [
-            (name, getattr(identity, name)) for name in ("title", "name", "revision", "date", "author")
+            (name, getattr(identity, name) or "") for name in ("title", "name", "revision", "date", "author")
         ],
         "tables": {
             "Parameters": [("field", "value", "unit", "meaning", "origin"), *parameter_rows(design)],

@@ -77,7 +77,7 @@ def review_record(
 
 def record_head(design: Design) -> dict[str, Any]:
     """What every record begins with."""
-    identity = {name: getattr(design.design, name) for name in IDENTITY}
+    identity = {name: getattr(design.design, name) or "" for name in IDENTITY}
     return {"schema": SCHEMA, "tactcad": __version__, "design": identity}
 
 

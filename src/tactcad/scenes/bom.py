@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from tactcad.design.plain_numbers import as_number, as_whole
-from tactcad.parts.consumables import Supply
+from tactcad.parts.supply import Supply
 from tactcad.parts.description import Part, Purchase
 from tactcad.scenes.scene import Scene
 
@@ -124,7 +124,7 @@ def _supply_row(item: int, supply: Supply) -> BomRow:
         description=supply.description,
         make_buy="buy",
         material="",
-        process="bought",
+        process=supply.process,
         finish="",
         standard_designation=supply.designation,
         manufacturer=supply.manufacturer,

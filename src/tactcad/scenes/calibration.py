@@ -13,7 +13,7 @@ from tactcad.parts.deflected import deflected_element
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
-from tactcad.parts.rigs.frame import PLATE, STAGE, STAGE_HOLE, STAGE_PLATE, pad_middles
+from tactcad.parts.rigs.frame import PLATE, pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
 from tactcad.parts.rigs.stiffness import series_give
 
@@ -88,10 +88,10 @@ def calibration(design: Design, pose: Pose = REST) -> Scene:
 def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
     """The x stage on the base plate, the y stage on it; returns the moving half on top."""
     b.unit("stages")
-    c = present(rig.design.calibration)
-    fixed, moving = rigs.stage_fixed(c.stage_travel), rigs.stage_moving(c.stage_travel)
-    head = rigs.micrometer(c.stage_travel, 0.01)
-    t, half = STAGE_PLATE, STAGE / 2
+    stage = rig.stage
+    fixed, moving = rigs.stage_fixed(stage), rigs.stage_moving(stage)
+    head = rigs.micrometer(stage.travel, 0.01)
+    t, half = stage.plate, stage.size / 2
     below, at = STAND, (0.0, 0.0)
     for level, (axis, out, side) in enumerate((("x", OUT_OF_X, (-1, 0)), ("y", AGAINST_Y, (0, -1)))):
         z = 2 * t * level
@@ -102,7 +102,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
             b.screw(
                 THREAD,
                 LENGTH,
-                (at[0] + sx * STAGE_HOLE, at[1] + sy * STAGE_HOLE, z + UNDER),
+                (at[0] + sx * stage.hole, at[1] + sy * stage.hole, z + UNDER),
                 (0, 0, -1),
                 low,
                 below,
@@ -127,7 +127,7 @@ def _stages(b: Builder, rig: StandLayout, dx: float, dy: float) -> str:
 
 def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: float, pose: Pose) -> None:
     """The array on its mount, pads up, on the upper stage."""
-    z = 4 * STAGE_PLATE
+    z = 2 * rig.stage.height
     b.group("stage-y")
     b.unit("array on its mount")
     mount = b.place("AM", rigs.array_mount(rig), (dx, dy, z))
@@ -154,7 +154,7 @@ def _mounted_array(b: Builder, rig: StandLayout, under: str, dx: float, dy: floa
         bench=True,
     )
     for sx, sy in CORNERS:
-        at = (dx + sx * STAGE_HOLE, dy + sy * STAGE_HOLE, z + UNDER)
+        at = (dx + sx * rig.stage.hole, dy + sy * rig.stage.hole, z + UNDER)
         b.screw(THREAD, LENGTH, at, (0, 0, -1), mount, under)
     b.step(
         "Mount on the stages",

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from tactcad.design.present import present
 from tactcad.parts import rigs
-from tactcad.parts.consumables import Supply
+from tactcad.parts.supply import MECHANICAL, Supply
 from tactcad.parts.library import dowels, orings, screws
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
+from tactcad.parts.library.stages import STAGES
 from tactcad.parts.rigs.cart_layout import LOOSE_WHEEL, CartLayout
 from tactcad.parts.rigs.force_gauge import GAUGE_THREADS
 from tactcad.parts.rigs.frame import (
@@ -153,6 +156,7 @@ def place_cart(
             1,
             "m",
             "silicone hose, bore 4 mm, wall 1 mm, 50 Shore A",
+            process=MECHANICAL,
         ),
         Supply(
             "VACUUM-PUMP",
@@ -161,6 +165,7 @@ def place_cart(
             "pcs",
             f"vacuum pump or ejector, at least {rig.holder.vacuum:g} kPa below air",
             consumable=False,
+            process=MECHANICAL,
         ),
     ]
     b.group(None)
@@ -174,10 +179,11 @@ def place_force_axis(
     designator."""
     b.unit("force axis")
     travel = present(rig.design.calibration).axis_travel
+    stage = replace(STAGES[0], travel=travel, maker="", part_no="", verified=False)
     resolution = present(rig.design.calibration).micrometer_resolution
     zs, z = rig.stage_middle(touch), rig.axis_middle(touch) + height
     y = POST_Y
-    fixed = b.place("SF", rigs.stage_fixed(travel), (0, y, zs), AGAINST_Y)
+    fixed = b.place("SF", rigs.stage_fixed(stage), (0, y, zs), AGAINST_Y)
     b.meet(post, fixed)
     for sx, sy in CORNERS:
         at = (sx * STAGE_HOLE, y - UNDER, zs + sy * STAGE_HOLE)
@@ -185,7 +191,7 @@ def place_force_axis(
     head = b.place("MM", rigs.micrometer(travel, resolution), (0, y - STAGE_PLATE / 2, zs + 30.0))
     b.meet(fixed, head)
     b.group("axis")
-    moving = b.place("SM", rigs.stage_moving(travel), (0, y - STAGE_PLATE, z), AGAINST_Y)
+    moving = b.place("SM", rigs.stage_moving(stage), (0, y - STAGE_PLATE, z), AGAINST_Y)
     b.meet(fixed, moving)
     b.group(None)
     b.step(

@@ -15,19 +15,10 @@ from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import cap_screw
 from tactcad.parts.rigs.ballast import ballast_thickness
-from tactcad.parts.rigs.bar import BAR_MIDDLE, BAR_SCREW_X, BAR_UNDER_HEAD
+from tactcad.parts.rigs.bar import BAR_SCREW_X, BAR_UNDER_HEAD
 from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
 from tactcad.parts.rigs.foot import FOOT_UNDER_HEAD
-from tactcad.parts.rigs.frame import (
-    BAR,
-    BAR_FRONT,
-    CARRIAGE_LENGTH,
-    CARRIAGE_ON_BAR,
-    PIN,
-    PLATFORM,
-    RAIL_HEIGHT,
-    STANDARD_GRAVITY,
-)
+from tactcad.parts.rigs.frame import BAR_FRONT, CARRIAGE_LENGTH, PIN, PLATFORM, RAIL_HEIGHT, STANDARD_GRAVITY
 from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
 from tactcad.parts.rigs.platform import PLATFORM_UNDER_HEAD
 from tactcad.parts.rules.rule import fits, wrong
@@ -143,7 +134,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     design = rig.design
     b.group("axis")
     b.unit("vertical axis")
-    front = BAR_FRONT + BAR
+    front = BAR_FRONT + rig.bar
     zc = rig.carriage_middle + lift
     carriage = b.place("CG", rigs.carriage(), (0, front + RAIL_HEIGHT, zc - CARRIAGE_LENGTH / 2), ALONG_RAIL)
     b.meet(rail, carriage)
@@ -157,7 +148,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     bar = b.place("BR", rigs.bar(rig), (0, BAR_FRONT, rig.bar_bottom + lift), ALONG_Y)
     b.meet(foot, bar)
     for sx in (-1, 1):
-        at = (sx * BAR_SCREW_X, BAR_MIDDLE, rig.bar_bottom + lift - FOOT_UNDER_HEAD)
+        at = (sx * BAR_SCREW_X, rig.bar_middle, rig.bar_bottom + lift - FOOT_UNDER_HEAD)
         b.screw("M4", 10.0, at, (0, 0, 1), foot, bar)
     b.step(
         "Foot and bar",
@@ -179,7 +170,7 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     )
     for sx in (-1, 1):
         for sy in (-1, 1):
-            at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + CARRIAGE_ON_BAR + sy * 5.0)
+            at = (sx * 7.5, front - BAR_UNDER_HEAD, rig.bar_bottom + lift + rig.carriage_on_bar + sy * 5.0)
             b.screw("M3", 6.0, at, (0, 1, 0), bar, carriage)
     b.meet(bar, carriage)
     b.step(
@@ -199,6 +190,8 @@ def _place_carried(b: Builder, rig: GuideLayout, rail: str, lift: float, standin
     platform = b.place("PF", rigs.platform(rig), (0, 0, z - PLATFORM))
     b.meet(bar, platform)
     for sx in (-1, 1):
-        b.screw("M4", 10.0, (sx * BAR_SCREW_X, BAR_MIDDLE, z - PLATFORM + under), (0, 0, -1), platform, bar)
+        b.screw(
+            "M4", 10.0, (sx * BAR_SCREW_X, rig.bar_middle, z - PLATFORM + under), (0, 0, -1), platform, bar
+        )
     b.step("Platform", (0, 0, 250), "Screw the platform on the bar, heads sunk.")
     return platform

@@ -17,17 +17,18 @@ from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import corners, sunk
 from .carrier_screws import carrier_pattern, under_carrier_screw
-from .frame import PLATE, PLATE_SCREW, STAGE, STAGE_HOLE
+from .frame import PLATE, PLATE_SCREW
 from .stand_layout import StandLayout
 
 
 def array_mount(rig: StandLayout) -> Part:
     """Plate on the upper stage that holds the array on its back. z = 0 is the stage's side."""
     thread, _, under = PLATE_SCREW
-    x = max(rig.array.carrier_size[0] / 2, STAGE / 2)
+    stage = rig.stage
+    x = max(rig.array.carrier_size[0] / 2, stage.size / 2)
     features: list[Feature] = [
         sunk("stage", thread, (px, py, PLATE), (0, 0, -1), PLATE, under)
-        for px, py in corners(STAGE_HOLE, STAGE_HOLE)
+        for px, py in corners(stage.hole, stage.hole)
     ]
     mount = rig.design.clamp.mount_thread
     features += [
@@ -38,7 +39,7 @@ def array_mount(rig: StandLayout) -> Part:
         rig.design,
         "array-mount",
         "Array mount",
-        Extrusion(rectangle(-x, -STAGE / 2, x, STAGE / 2), PLATE),
+        Extrusion(rectangle(-x, -stage.size / 2, x, stage.size / 2), PLATE),
         features,
         finish="Ra 1.6",
         geometric=(Geometric("parallelism", "parallelism", 0.01, (FACES[1],), ("A",)),),

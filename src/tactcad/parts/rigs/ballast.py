@@ -9,7 +9,7 @@ from __future__ import annotations
 from tactcad.contour import Contour, circle
 
 from ..description import Extrusion, Part
-from ..part_materials import CARBON_STEEL
+from ..part_materials import PLAIN_STEEL
 from .frame import PIN
 from .guide_layout import GuideLayout
 
@@ -24,7 +24,7 @@ def ballast(rig: GuideLayout, mass: float) -> Part:
         part_no=f"{rig.design.name}-ballast",
         name=f"Trim ballast, disc {rig.grasping.weight_diameter:g} x {thickness:g} mm",
         process="turned",
-        material=CARBON_STEEL,
+        material=PLAIN_STEEL,
         body=Extrusion(outer, thickness, (bore,)),
         colour="#50575f",
         finish="as turned; weighed with all that moves, and thinned until that is right",
@@ -35,7 +35,7 @@ def ballast(rig: GuideLayout, mass: float) -> Part:
 def ballast_thickness(rig: GuideLayout, mass: float) -> float:
     """Thickness (mm) of a ballast of that mass (g)."""
     outer, bore = _disc(rig)
-    return mass / ((outer.area - bore.area) * CARBON_STEEL.density * 1e-6)
+    return mass / ((outer.area - bore.area) * PLAIN_STEEL.density * 1e-6)
 
 
 def _disc(rig: GuideLayout) -> tuple[Contour, Contour]:

@@ -19,7 +19,7 @@ from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import corners, sunk, tapped_blind
 from .cart_layout import LOOSE_WHEEL
-from .frame import BASE, POST, POST_Y, STAGE_HOLE
+from .frame import BASE, POST, POST_Y
 from .post import POST_SCREWS
 from .stand_layout import StandLayout
 
@@ -35,7 +35,8 @@ def base_plate(rig: StandLayout) -> Part:
     ]
     if rig.design.calibration is not None:
         features += [
-            tapped_blind("stage", "M4", (px, py, t), (0, 0, -1)) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
+            tapped_blind("stage", "M4", (px, py, t), (0, 0, -1))
+            for px, py in corners(rig.stage.hole, rig.stage.hole)
         ]
     return plate(
         rig.design,

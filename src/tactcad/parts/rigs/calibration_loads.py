@@ -38,7 +38,7 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
     """Every element, by number."""
     from tactcad.mechanics import ladder, strength  # numpy, which only checks and guides need
 
-    from ..hinge_section import design_alloy, hinge_section
+    from ..hinge_section import design_alloy, hinge_section, in_design
 
     c, layout = present(design.calibration), Layout(design)
     s = hinge_section(layout, layout.elements)
@@ -51,5 +51,9 @@ def calibration_loads(design: Design) -> tuple[CalibrationLoad, ...]:
         deflection = c.travel * share
         figures = (deflection, K * deflection, rated, rated / share, at_yield / K / share)
         gives, force, may_give, to_rated, to_yield = map(float, figures)
-        loads.append(CalibrationLoad(place, gives, force, may_give, to_rated, to_yield, str(why)))
+        loads.append(
+            CalibrationLoad(
+                place, gives, force, may_give, to_rated, to_yield, in_design(str(why), layout, place)
+            )
+        )
     return tuple(loads)

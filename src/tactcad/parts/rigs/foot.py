@@ -15,9 +15,9 @@ from ..description import Extrusion, Feature, Part
 from ..library.screws import METRIC
 from ..plate import plate
 from ..screw_holes import sunk
-from .bar import BAR_MIDDLE, BAR_SCREW_X
+from .bar import BAR_SCREW_X
 from .carrier_screws import carrier_pattern, under_carrier_screw
-from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT
+from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, FOOT
 from .guide_layout import GuideLayout
 
 FOOT_UNDER_HEAD = 3.6  # of the bar's screws, heads sunk by 0.4
@@ -33,13 +33,13 @@ def foot(rig: GuideLayout) -> Part:
         for px, py in carrier_pattern(rig.array)
     ]
     features += [
-        sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, 0.0), (0, 0, 1), FOOT, FOOT_UNDER_HEAD)
+        sunk("bar", "M4", (sx * BAR_SCREW_X, rig.bar_middle, 0.0), (0, 0, 1), FOOT, FOOT_UNDER_HEAD)
         for sx in (-1, 1)
     ]
     return plate(
         rig.design,
         "foot",
         "Foot of the bar",
-        Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + BAR + BEHIND_BAR)), FOOT),
+        Extrusion(rectangle(-x, -y, x, max(y, BAR_FRONT + rig.bar + BEHIND_BAR)), FOOT),
         features,
     )

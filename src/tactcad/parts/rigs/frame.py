@@ -23,10 +23,13 @@ ROW_PITCH = 10.0  # rows of threads in the post
 FOOT, BAR, BAR_WIDTH, BAR_HEIGHT, PLATFORM = 8.0, 8.0, 23.0, 60.0, 8.0  # what the guide's carriage carries
 RAIL_HEIGHT = 10.0  # guide: mounting face of the carriage over the rail's
 RISER_PITCH = 40.0  # riser's screws over and under its middle
+RAISED_BAR = 10.0  # its thickness where the guide stands higher: the next plate sold
 CARRIAGE_ON_BAR = 30.0  # carriage's middle over the bar's lower end
 BAR_FRONT = 16.0  # y of the bar's front: behind the carrier's threads
 BEHIND_BAR = 1.5  # foot and platform behind the bar's back: material beside its screws
 CARRIAGE_LENGTH = 28.9
+END_STOP_OUT = 8.0  # how far the end stop's pin stands out of the riser, below the rail
+UNDER_RAIL = 8.0  # riser below the rail's end: the pin, and material under it
 # Front of the post: force gauge, its two plates and the stage stand before it.
 POST_Y = GAUGE_SIZE[1] / 2 + 2 * PLATE + 2 * STAGE_PLATE
 PIN = 8.0  # of the weight platform, diameter

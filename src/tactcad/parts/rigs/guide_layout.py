@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor
+from math import ceil, floor
 
 from tactcad.design.rigs import Grasping
 from tactcad.design.tree import Design
@@ -16,13 +16,19 @@ from .frame import (
     BAR_HEIGHT,
     CARRIAGE_LENGTH,
     CARRIAGE_ON_BAR,
+    END_STOP_OUT,
     FOOT,
     PLATFORM,
     POST_Y,
     RAIL_HEIGHT,
+    RAISED_BAR,
     ROW_PITCH,
     STANDARD_GRAVITY,
+    UNDER_RAIL,
 )
+
+# y that the array keeps before the end stop's pin, which stands out of the riser under the rail
+BEFORE_END_STOP = BAR_FRONT + BAR + RAIL_HEIGHT - END_STOP_OUT - 0.5
 
 
 def guide_layout(design: Design) -> GuideLayout | None:
@@ -61,12 +67,41 @@ class GuideLayout:
         return self.foot_bottom + FOOT
 
     @property
+    def raised(self) -> float:
+        """By how much the guide stands higher than for the published array: a longer one would meet the end
+        stop, or the riser that it stands in, when it is lifted."""
+        if self.array.carrier_size[1] / 2 <= BEFORE_END_STOP:
+            return 0.0
+        # the riser's lower end, at the lowest row that it can have, over the lifted carrier
+        least = CARRIAGE_LENGTH / 2 + 2.0 + ROW_PITCH + UNDER_RAIL + self.grasping.lift - FOOT + 0.5
+        return ROW_PITCH * ceil((least - CARRIAGE_ON_BAR) / ROW_PITCH)
+
+    @property
+    def bar(self) -> float:
+        """Thickness of the bar: a longer one is thicker."""
+        return RAISED_BAR if self.raised else BAR
+
+    @property
+    def bar_middle(self) -> float:
+        """y of the bar's middle."""
+        return BAR_FRONT + self.bar / 2
+
+    @property
+    def carriage_on_bar(self) -> float:
+        """Carriage's middle over the bar's lower end."""
+        return CARRIAGE_ON_BAR + self.raised
+
+    @property
+    def bar_height(self) -> float:
+        return BAR_HEIGHT + self.raised
+
+    @property
     def carriage_middle(self) -> float:
-        return self.bar_bottom + CARRIAGE_ON_BAR
+        return self.bar_bottom + self.carriage_on_bar
 
     @property
     def platform_top(self) -> float:
-        return self.bar_bottom + BAR_HEIGHT + PLATFORM
+        return self.bar_bottom + self.bar_height + PLATFORM
 
     @property
     def riser_middle(self) -> float:
@@ -79,7 +114,7 @@ class GuideLayout:
     @property
     def riser_depth(self) -> float:
         """Along y, so that carriage and bar meet."""
-        return POST_Y - (BAR_FRONT + BAR) - RAIL_HEIGHT
+        return POST_Y - (BAR_FRONT + self.bar) - RAIL_HEIGHT
 
     @property
     def weight_mass(self) -> float:

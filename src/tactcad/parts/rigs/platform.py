@@ -14,8 +14,8 @@ from tactcad.contour import rectangle
 from ..description import Extrusion, Feature, Part
 from ..plate import plate
 from ..screw_holes import sunk
-from .bar import BAR_MIDDLE, BAR_SCREW_X
-from .frame import BAR, BAR_FRONT, BAR_WIDTH, BEHIND_BAR, PLATFORM
+from .bar import BAR_SCREW_X
+from .frame import BAR_FRONT, BAR_WIDTH, BEHIND_BAR, PLATFORM
 from .guide_layout import GuideLayout
 
 PLATFORM_UNDER_HEAD = 3.5  # heads sunk by 0.5: the weights lie flat
@@ -26,7 +26,14 @@ def platform(rig: GuideLayout) -> Part:
     underside."""
     half = rig.grasping.weight_diameter / 2
     features: list[Feature] = [
-        sunk("bar", "M4", (sx * BAR_SCREW_X, BAR_MIDDLE, PLATFORM), (0, 0, -1), PLATFORM, PLATFORM_UNDER_HEAD)
+        sunk(
+            "bar",
+            "M4",
+            (sx * BAR_SCREW_X, rig.bar_middle, PLATFORM),
+            (0, 0, -1),
+            PLATFORM,
+            PLATFORM_UNDER_HEAD,
+        )
         for sx in (-1, 1)
     ]
     features.append(sunk("pin", "M4", (0.0, 0.0, 0.0), (0, 0, 1), PLATFORM, PLATFORM_UNDER_HEAD))
@@ -34,6 +41,8 @@ def platform(rig: GuideLayout) -> Part:
         rig.design,
         "platform",
         "Weight platform",
-        Extrusion(rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + BAR + BEHIND_BAR), PLATFORM),
+        Extrusion(
+            rectangle(-BAR_WIDTH, -min(half, 20.0), BAR_WIDTH, BAR_FRONT + rig.bar + BEHIND_BAR), PLATFORM
+        ),
         features,
     )

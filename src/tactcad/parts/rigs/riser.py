@@ -22,7 +22,7 @@ from ..library.fits import deviations
 from ..limits import FACES, Geometric
 from ..plate import plate
 from ..screw_holes import sunk, tapped_blind
-from .frame import CARRIAGE_LENGTH, POST, RISER_PITCH, STAGE_HOLE
+from .frame import CARRIAGE_LENGTH, END_STOP_OUT, POST, RISER_PITCH, STAGE_HOLE, UNDER_RAIL
 from .guide_layout import GuideLayout
 from .rail import rail_holes
 
@@ -30,7 +30,8 @@ RISER_SCREW, RISER_UNDER_HEAD = 16.0, 9.0  # M4 into the post: 7 mm engaged, hea
 
 # Pin below the rail's end that the carriage comes down on: it stands 8 mm out, where the carriage is solid
 # from 6.5 on, and the foot passes it.
-STOP_PIN, STOP_LENGTH, STOP_DEPTH = "3", 16.0, 8.0
+STOP_PIN, STOP_LENGTH = "3", 16.0
+STOP_DEPTH = STOP_LENGTH - END_STOP_OUT
 
 
 def stop_below(rig: GuideLayout) -> float:
@@ -66,7 +67,7 @@ def riser(rig: GuideLayout) -> Part:
     middle."""
     length, depth = rig.grasping.rail_length, rig.riser_depth
     half = max(length / 2, RISER_PITCH + 8.0)
-    low = max(half, stop_below(rig) + 6.0)  # material below the pin: its diameter from the middle, and 2 mm
+    low = max(half, length / 2 + UNDER_RAIL)  # material below the pin: its diameter from the middle, and 2 mm
     features: list[Feature] = [
         sunk(
             "post",

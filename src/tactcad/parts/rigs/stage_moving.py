@@ -1,6 +1,6 @@
 r"""Moving half of a micro-stage, bought: slideway down, threads up.
 
-o-----------o    z = thickness: four M4 threads at +-STAGE_HOLE
+o-----------o    z = thickness: four M4 threads at its corners
 |           |
 o-----------o    z = 0: slideway
 """
@@ -10,20 +10,20 @@ from __future__ import annotations
 from tactcad.contour import rectangle
 
 from ..description import Extrusion, Part, Purchase
+from ..library.stages import Stage
 from ..part_materials import ALUMINIUM
 from ..screw_holes import corners, tapped
-from .frame import STAGE, STAGE_HOLE, STAGE_PLATE
 
 
-def stage_moving(travel: float) -> Part:
+def stage_moving(stage: Stage) -> Part:
     """Moving half: slideway at z = 0, threads from the face at the top."""
-    half, t = STAGE / 2, STAGE_PLATE
+    half, t = stage.size / 2, stage.plate
     threads = tuple(
-        tapped("mount", "M4", (px, py, t), (0, 0, -1), t) for px, py in corners(STAGE_HOLE, STAGE_HOLE)
+        tapped("mount", "M4", (px, py, t), (0, 0, -1), t) for px, py in corners(stage.hole, stage.hole)
     )
     return Part(
-        part_no=f"STAGE-{STAGE:g}-{2 * travel:g}-MOVING",
-        name=f"Micro-stage {STAGE:g} x {STAGE:g}, moving half",
+        part_no=f"STAGE-{stage.size:g}-{2 * stage.travel:g}-MOVING",
+        name=f"Micro-stage {stage.size:g} x {stage.size:g}, moving half",
         process="bought",
         material=ALUMINIUM,
         body=Extrusion(rectangle(-half, -half, half, half), t),

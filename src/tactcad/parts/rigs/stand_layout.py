@@ -9,21 +9,11 @@ from math import ceil
 from tactcad.design.tree import Design
 
 from ..layout import Layout
+from ..library.stages import Stage
 from .cart_layout import CartLayout, cart_layout
-from .frame import (
-    BASE,
-    PLATE,
-    POST,
-    POST_Y,
-    RISER_PITCH,
-    ROW_PITCH,
-    STAGE,
-    STAGE_HOLE,
-    STAGE_PLATE,
-    TIP,
-    TIP_GAP,
-)
+from .frame import BASE, PLATE, POST, POST_Y, RISER_PITCH, ROW_PITCH, STAGE, STAGE_HOLE, TIP, TIP_GAP
 from .guide_layout import guide_layout
+from .stage_choice import calibration_stage
 
 
 @dataclass(frozen=True)
@@ -40,10 +30,17 @@ class StandLayout:
     def cart(self) -> CartLayout | None:
         return cart_layout(self.design)
 
+    @cached_property
+    def stage(self) -> Stage:
+        """The horizontal stages of the calibration."""
+        return calibration_stage(self.array)
+
     @property
     def base_front(self) -> float:
         """y of the base plate's front edge."""
         reach = [STAGE / 2 + 45.0]  # micrometer of the lower stage
+        if self.design.calibration is not None:
+            reach.append(self.stage.size / 2 + 45.0)
         if self.cart is not None:
             reach.append(self.cart.cart_half + 20.0)
         return -float(ceil(max(reach)))
@@ -65,7 +62,7 @@ class StandLayout:
         back."""
         a = self.array
         carrier_top = a.carrier_bottom + self.design.clamp.carrier_thickness
-        return round(4 * STAGE_PLATE + PLATE + carrier_top + self.design.element.pad_height, 9)
+        return round(2 * self.stage.height + PLATE + carrier_top + self.design.element.pad_height, 9)
 
     def gauge_bottom(self, touch: float) -> float:
         """z of the gauge's housing when its tip touches at z = touch."""

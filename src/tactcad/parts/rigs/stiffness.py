@@ -20,20 +20,7 @@ from .bar import BAR_MIDDLE
 from .bonding_layout import bonding_rigs, kind_suffix
 from .cart_layout import CartLayout
 from .force_gauge import GAUGE_THREADS
-from .frame import (
-    BAR,
-    BAR_WIDTH,
-    BASE,
-    CARRIAGE_ON_BAR,
-    FOOT,
-    GAUGE_SIZE,
-    PIN,
-    PLATE,
-    PLATFORM,
-    POST,
-    POST_Y,
-    STAGE_HOLE,
-)
+from .frame import BAR_WIDTH, BASE, FOOT, GAUGE_SIZE, PIN, PLATE, PLATFORM, POST, POST_Y, STAGE_HOLE
 from .gauge_plate import GAUGE_SCREW_X
 from .guide_layout import guide_layout
 from .pin import pin
@@ -90,7 +77,7 @@ def _in_series(design: Design) -> Iterator[Deflection]:
     yield _line(
         load, "roller", "on the ends of its seat", rod(SEAT, d, STEEL_MODULUS, STEEL_POISSON).supported()
     )
-    mount = _plate(design, 2 * STAGE_HOLE, 2 * STAGE_HOLE, PLATE)
+    mount = _plate(design, 2 * rig.stage.hole, 2 * rig.stage.hole, PLATE)
     yield _line(load, "array mount", "between its screws, load in the middle", mount.supported())
     end = carrier_beam(rig.array, rig.array.end_plate_y).cantilever()
     yield _line(load, "carrier", "from its middle to an end plate", end, "clamp.carrier_thickness")
@@ -139,13 +126,13 @@ def grasping_lines(design: Design) -> Iterator[Deflection]:
         "a tenth of tolerance.tilt over a row",
         (*lighter, "tolerance.tilt"),
     )
-    bar = _plate(design, CARRIAGE_ON_BAR, BAR_WIDTH, BAR)
+    bar = _plate(design, rig.carriage_on_bar, BAR_WIDTH, rig.bar)
     yield _line(
-        tilt, "bar", "turned at its foot, held at the carriage", BAR_MIDDLE * bar.turned_by_moment() * row
+        tilt, "bar", "turned at its foot, held at the carriage", rig.bar_middle * bar.turned_by_moment() * row
     )
-    foot = _plate(design, BAR_MIDDLE, 2 * rig.array.mount_x, FOOT)
+    foot = _plate(design, rig.bar_middle, 2 * rig.array.mount_x, FOOT)
     yield _line(tilt, "foot", "turned at the array's middle, held at the bar", foot.cantilever_tilt() * row)
-    platform = _plate(design, BAR_MIDDLE, 2 * BAR_WIDTH, PLATFORM)
+    platform = _plate(design, rig.bar_middle, 2 * BAR_WIDTH, PLATFORM)
     model = "turned at the weights' pin, held at the bar"
     yield _line(tilt, "platform", model, platform.cantilever_tilt() * row)
     alloy = ALLOYS[design.clamp.plate_alloy]

@@ -12,12 +12,20 @@ from ..finding import SAME, Finding
 from ..layout import HOLE_WEB, Layout
 from ..library.dowels import dowel_diameter, dowel_lengths
 from ..library.screws import METRIC, counterbore_diameter
+from ..library.stages import STAGES
 from ..rigs.calibration_loads import calibration_loads
 from ..rigs.carrier_screws import LEAST_UNDER_HEAD, carrier_screw_length, under_carrier_screw
-from ..rigs.frame import FOOT, STAGE_HOLE, pad_middles
+from ..rigs.frame import FOOT
+from ..rigs.stage_choice import (
+    calibration_stage,
+    far,
+    faults_of,
+    most_before_post,
+    most_carrier,
+    most_elements,
+)
 from ..rigs.stand_layout import StandLayout
 from . import misfit
-from .cart_rules import LEAST_AIR
 from .rule import at_least, at_most, fits, rule, wrong
 
 ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
@@ -75,20 +83,31 @@ def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
 
 @fits("calibration")
 def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
-    far = max(max(abs(x), abs(y)) for x, y in pad_middles(layout))
     travel = present(layout.design.calibration).stage_travel
-    yield from at_least("calibration.stage_travel", "stages do not reach every pad", travel, far)
+    yield from at_most(
+        "calibration.stage_travel", "no stage sold travels so far", travel, max(s.travel for s in STAGES)
+    )
+    if all(s.travel < far(layout) or most_before_post(s) < far(layout) for s in STAGES):
+        yield wrong(
+            "array.row_arms",
+            f"no stage sold reaches a pad {far(layout):g} mm off the middle before the post is in its way",
+            max(map(len, layout.design.array.row_arms)),
+            f"at most {most_elements(layout)} elements a row at this pitch, or a smaller array.pitch",
+        )
 
 
 @fits("calibration")
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
-    most = STAGE_HOLE - counterbore_diameter("M4") / 2 - LEAST_AIR
+    if not faults_of(calibration_stage(layout), layout):
+        return
+    reaching = [s for s in STAGES if far(layout) <= min(s.travel, most_before_post(s))]
+    most = max(map(most_carrier, reaching or STAGES))
     yield from at_most(
         "array.row_arms",
-        "the array's carrier covers the screws of the calibration mount",
+        "the array's carrier covers the screws of the calibration mount on every stage that reaches its pads",
         min(layout.carrier_size) / 2,
         most,
-        f"at most {most:g} mm from the middle, along or across",
+        f"at most {most:g} mm from the middle, along or across: fewer elements a row, or a thinner sheet",
     )
 
 
@@ -121,7 +140,8 @@ def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
 
 @fits("calibration")
 def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
-    yield from carrier_threads_clear(layout, STAGE_HOLE, STAGE_HOLE, "the stage's screws in the array mount")
+    hole = calibration_stage(layout).hole
+    yield from carrier_threads_clear(layout, hole, hole, "the stage's screws in the array mount")
 
 
 def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ..finding import SAME, Finding
 from ..layout import Layout
 from ..library.screws import counterbore_diameter
-from ..rigs.bar import BAR_MIDDLE, BAR_SCREW_X
+from ..rigs.bar import BAR_SCREW_X
 from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
 from ..rigs.guide_layout import guide_layout
 from .calibration_rules import carrier_threads_clear
@@ -38,7 +38,10 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
 
 @fits("grasping")
 def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
-    yield from carrier_threads_clear(layout, BAR_SCREW_X, BAR_MIDDLE, "the bar's screws in the foot")
+    rig = guide_layout(layout.design)
+    if rig is not None:
+        what = "the bar's screws in the foot"
+        yield from carrier_threads_clear(layout, BAR_SCREW_X, rig.bar_middle, what)
 
 
 @fits("grasping")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi, tan
 
+from tactcad.design.following import LARGEST_SIDE
 from tactcad.design.present import present
 from tactcad.mechanics.rig_statics import holding_force
 
@@ -132,4 +133,13 @@ def pads_on_sample(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     half_pad, half_sheet = d.element.pad_length / 2, d.sheet.thickness / 2
     far = max(max(abs(x) + half_pad, abs(y) + half_sheet) for x, y in pad_middles(layout))
+    if 2 * far > LARGEST_SIDE + SAME:
+        rows = d.array.row_arms
+        most = int((LARGEST_SIDE - d.sheet.thickness) / d.array.pitch + SAME) + 1
+        yield wrong(
+            "array.row_arms",
+            f"pads reach beyond {LARGEST_SIDE:g} mm, the largest sample whose cart clears the post",
+            max(map(len, rows)),
+            f"at most {most} elements a row at this pitch, or a smaller array.pitch",
+        )
     yield from at_least("sample.side", "pads reach beyond the sample", present(d.sample).side, 2 * far)

@@ -1,0 +1,65 @@
+"""Sizes of the rigs that follow the array where the design leaves them out.
+
+Each is the published set-up's as long as the array is no longer than the published one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import ceil
+from typing import Any
+
+from .tree import Array, Element, Sheet
+
+# The published set-up, mm and N; the cart is chosen around its sample.
+SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
+MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
+PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
+RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row
+LID, STIFF = (
+    6.0,
+    44.0,
+)  # published lid; the widest plenum over which it bends by less than 2 um (plate theory)
+LARGEST_SIDE = 80.0  # of a sample whose cart clears the post; chosen: 1 mm less than fits
+LARGEST_VACUUM = 66.0  # circle around which the largest O-ring of the table lies
+
+
+def followed(values: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a design with what its rigs left out filled in."""
+    array, sheet, element = values["array"], values["sheet"], values["element"]
+    sample, grasping = values.get("sample"), values.get("grasping")
+    done = dict(values)
+    if sample is not None:
+        sample = done["sample"] = _filled(sample, side=_side(array, sheet, element))
+        more = max(sample.side - SIDE, 0.0)
+        vacuum = min(VACUUM + more, LARGEST_VACUUM)
+        wheels = {"length": LENGTH + more, "width": WIDTH + more, "wheel_base": WHEEL_BASE + more}
+        # as stiff under its own pressure as one of LID over a plenum of STIFF: diameter^4 over thickness^3
+        lid = max(LID, float(ceil(LID * (vacuum / STIFF) ** (4 / 3))))
+        holes = {"vacuum_diameter": vacuum, "rings": round(RINGS * vacuum / VACUUM), "lid_thickness": lid}
+        for name, sizes in (("cart", wheels), ("holder", holes)):
+            if values.get(name) is not None:
+                done[name] = _filled(values[name], **sizes)
+    if grasping is not None:
+        done["grasping"] = _filled(grasping, moving_weight=_moving(array, sheet))
+    return done
+
+
+def _filled(table: Any, **sizes: float) -> Any:
+    return replace(table, **{name: v for name, v in sizes.items() if getattr(table, name) is None})
+
+
+def _side(array: Array, sheet: Sheet, element: Element) -> float:
+    """Side of the sample: rubber beyond every pad, in whole 2 mm."""
+    along = (max(map(len, array.row_arms)) - 1) / 2 * array.pitch + sheet.thickness / 2
+    across = (array.row_pitch + element.pad_length) / 2
+    return min(max(SIDE, 2.0 * ceil(max(along, across) + RUBBER)), LARGEST_SIDE)
+
+
+def _moving(array: Array, sheet: Sheet) -> float:
+    """What moves with the array, N: the published weight, more for a longer stack, in whole 0.1 N."""
+    spacer = array.spacer if array.spacer is not None else array.pitch - sheet.thickness
+    count = max(map(len, array.row_arms))
+    stack = count * sheet.thickness + (count + 1) * spacer
+    more = ceil(10 * (MOVING + PER_STACK * (stack - STACK)) - 1e-9) / 10
+    return more if stack > STACK + 1e-9 else MOVING

@@ -1,0 +1,221 @@
+"""A zip for each way of making: what that supplier needs, out of the whole zip, and nothing else."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from tactcad.checks.shop import Shop
+from tactcad.drawing.extent import part_box
+from tactcad.export import inspection
+from tactcad.export.contents import sha256_of
+from tactcad.parts.supply import ELECTRONIC, MECHANICAL
+from tactcad.parts.cut_section import cut_section
+from tactcad.parts.description import Part
+from tactcad.parts.limits import FACES
+
+from .ordered import OrderLine
+from .release_contents import ReleaseContents
+from .wire_time import wire_time
+
+ORDER = "order.csv"
+PART_INSPECTION = "inspection-parts.csv"
+Row = dict[str, object]
+
+
+@dataclass(frozen=True)
+class Package:
+    """A way of making: what its zip's name ends in, its title, the processes (column of the bill) whose lines
+    are its order, and the lines' rows. `folders`: which of the parts' files it takes."""
+
+    name: str
+    title: str
+    processes: tuple[str, ...]
+    folders: tuple[str, ...]
+    row: Callable[[OrderLine, Mapping[str, str], Shop], Row]
+
+
+@dataclass(frozen=True)
+class Packed:
+    """A package of a release: its lines, and its files but README and checksums, by path."""
+
+    package: Package
+    lines: tuple[OrderLine, ...]
+    files: Mapping[str, bytes]
+
+
+def packed(contents: ReleaseContents, files: Mapping[str, bytes], shop: Shop) -> list[Packed]:
+    """Every package that has a line; `files`: the whole zip's."""
+    made = (_packed(package, contents, files, shop) for package in PACKAGES)
+    return [one for one in made if one.lines]
+
+
+def _packed(package: Package, contents: ReleaseContents, files: Mapping[str, bytes], shop: Shop) -> Packed:
+    lines = tuple(line for line in contents.lines if _belongs(package, line))
+    own: dict[str, bytes] = {}
+    rows = []
+    for line in lines:
+        taken = _files_of(package, line, contents.design.design.revision, files)
+        own |= {path: files[path] for path in taken.values()}
+        rows.append(_common(line) | package.row(line, taken, shop) | _digests(taken, files))
+    if package is WIRE:
+        own[inspection.NAME] = files[inspection.NAME]
+    if package in (WIRE, MACHINING) and (limits := _of_parts(files.get(PART_INSPECTION, b""), lines)):
+        own[PART_INSPECTION] = limits
+    return Packed(package, lines, {ORDER: table_bytes(rows), **dict(sorted(own.items()))})
+
+
+def _belongs(package: Package, line: OrderLine) -> bool:
+    if package is SHEET:
+        return line.part is not None and not line.part.bought and cut_section(line.part) is not None
+    return line.row.process in package.processes
+
+
+def _files_of(package: Package, line: OrderLine, revision: str, files: Mapping[str, bytes]) -> dict[str, str]:
+    """The part's files that the package takes, by kind."""
+    stem = f"{line.row.part_no}_{revision}"
+    paths = {
+        "dxf": f"dxf/{stem}.dxf",
+        "pdf": f"pdf/{stem}.pdf",
+        "step": f"step/{stem}.step",
+        "step_limits": f"step/{stem}-ap242.step",
+    }
+    if package is SHEET and line.row.process == "wire-cut":
+        return {}  # cut from the sheet by another
+    needed = {kind: path for kind, path in paths.items() if path in files and kind in package.folders}
+    if package is WIRE and line.part is not None and line.part.features:  # what no contour shows
+        needed["step"] = paths["step"]
+    return needed
+
+
+def _digests(taken: Mapping[str, str], files: Mapping[str, bytes]) -> dict[str, object]:
+    return {
+        f"{kind}{end}": v
+        for kind, p in taken.items()
+        for end, v in (("", p), ("_sha256", sha256_of(files[p])))
+    }
+
+
+def _common(line: OrderLine) -> dict[str, object]:
+    row = line.row
+    return {
+        "part_no": row.part_no,
+        "rev": row.rev,
+        "description": row.description,
+        "qty": f"{line.qty:g}",
+        "spares": f"{row.spares:g}",
+        "order": f"{line.order:g}",
+        "unit": row.unit,
+    }
+
+
+def _material(part: Part) -> dict[str, object]:
+    """Material and temper, and the standard by which it is ordered."""
+    return {
+        "material": f"{part.material.name} {part.material.temper}".strip(),
+        "standard": part.material.standard,
+    }
+
+
+def _size(part: Part) -> dict[str, object]:
+    low, high = part_box(part)
+    return {f"{axis}_mm": f"{round(b - a, 3):g}" for axis, a, b in zip("xyz", low, high)}
+
+
+def _made(line: OrderLine) -> Part:
+    assert line.part is not None  # what is made has a solid
+    return line.part
+
+
+def _wire_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
+    part = _made(line)
+    time = wire_time(part, shop.feed)
+    return _material(part) | {
+        "height_mm": f"{time.height:g}",
+        "cut_length_mm": f"{time.length:.3f}",
+        "contours": time.contours,
+        "passes": time.passes,
+        "minutes_each": f"{time.minutes:.1f}",
+        "minutes": f"{time.minutes * line.order:.0f}",
+        "finish": part.finish,
+    }
+
+
+def _machined_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
+    part = _made(line)
+    return (
+        {"process": part.process}
+        | _material(part)
+        | _size(part)
+        | {"mass_g": f"{part.mass:.4g}", "finish": part.finish}
+    )
+
+
+def _sheet_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
+    part = _made(line)
+    low, high = part_box(part)
+    thickness = part.extrusion.thickness
+    limits = [c for c in part.characteristics if {*c.between} == {*FACES}]
+    return _material(part) | {
+        "for": part.process,
+        "thickness_mm": f"{thickness:g}",
+        "least_mm": f"{round(limits[0].lower, 6):g}" if limits else "",
+        "most_mm": f"{round(limits[0].upper, 6):g}" if limits else "",
+        "length_mm": f"{round(high[0] - low[0], 3):g}",
+        "width_mm": f"{round(high[1] - low[1], 3):g}",
+    }
+
+
+def _bought_row(line: OrderLine, taken: Mapping[str, str], shop: Shop) -> Row:
+    row = line.row
+    return {
+        "designation": row.standard_designation,
+        "material": row.material,
+        "manufacturer": row.manufacturer,
+        "mpn": row.mpn,
+        "supplier": row.supplier,
+        "alternates": row.alternates,
+        "consumable": "true" if row.consumable else "false",
+        "source_verified": "true" if row.source_verified else "false",
+    }
+
+
+WIRE = Package("wire-cutting", "wire cutting", ("wire-cut",), ("dxf", "pdf"), _wire_row)
+MACHINING = Package(
+    "milling-and-turning",
+    "milling, turning and grinding",
+    ("milled", "turned", "ground"),
+    ("dxf", "pdf", "step", "step_limits"),
+    _machined_row,
+)
+SHEET = Package("sheet", "sheet and plate", (), ("dxf",), _sheet_row)
+PACKAGES = (
+    WIRE,
+    MACHINING,
+    SHEET,
+    Package("purchase-mechanical", "purchase, mechanical", (MECHANICAL,), (), _bought_row),
+    Package("purchase-electronic", "purchase, electronic", (ELECTRONIC,), (), _bought_row),
+)
+
+
+def table_bytes(rows: Sequence[Mapping[str, object]]) -> bytes:
+    """The rows as CSV (RFC 4180, UTF-8), their columns in order of first appearance."""
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(dict.fromkeys(name for row in rows for name in row)), restval="")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def table_rows(data: bytes) -> list[dict[str, str]]:
+    """The rows of a written table."""
+    return list(csv.DictReader(io.StringIO(data.decode(), newline="")))
+
+
+def _of_parts(table: bytes, lines: Iterable[OrderLine]) -> bytes:
+    """Rows of the inspection list that are of these parts; empty where none is."""
+    numbers = {line.row.part_no for line in lines}
+    rows = [row for row in table_rows(table) if row["part_no"] in numbers]
+    return table_bytes(rows) if rows else b""
