@@ -256,7 +256,9 @@ def circuit_drawing(
 
     stem = f"{design.name}-circuit_{design.design.revision}"
     key = digest(("circuit drawing", shapes.made_by, design, draft, sample))
-    return _drawn([_Wanted(stem, "", key, lambda: CircuitOrder(design, draft, sample))], circuit_written, shapes, say)
+    return _drawn(
+        [_Wanted(stem, "", key, lambda: CircuitOrder(design, draft, sample))], circuit_written, shapes, say
+    )
 
 
 def _drawn(

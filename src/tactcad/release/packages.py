@@ -11,10 +11,10 @@ from tactcad.checks.shop import Shop
 from tactcad.drawing.extent import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
-from tactcad.parts.supply import ELECTRONIC, MECHANICAL
 from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Part
 from tactcad.parts.limits import FACES
+from tactcad.parts.supply import ELECTRONIC, MECHANICAL
 
 from .ordered import OrderLine
 from .release_contents import ReleaseContents

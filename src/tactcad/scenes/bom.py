@@ -15,8 +15,8 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from tactcad.design.plain_numbers import as_number, as_whole
-from tactcad.parts.supply import Supply
 from tactcad.parts.description import Part, Purchase
+from tactcad.parts.supply import Supply
 from tactcad.scenes.scene import Scene
 
 SCHEMA = "tactcad-bom-1"

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from tactcad.design.present import present
 from tactcad.parts import rigs
-from tactcad.parts.supply import MECHANICAL, Supply
 from tactcad.parts.library import dowels, orings, screws
 from tactcad.parts.library.bearings import bearing
 from tactcad.parts.library.screws import METRIC
@@ -27,6 +26,7 @@ from tactcad.parts.rigs.frame import (
 from tactcad.parts.rigs.gauge_plate import GAUGE_SCREW_X, GAUGE_SCREW_Z
 from tactcad.parts.rigs.post import BASE_SCREW, POST_SCREWS
 from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.supply import MECHANICAL, Supply
 
 from .builder import Builder
 from .scene import AGAINST_Y, ALONG_Y

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.parts.supply import Supply
 from tactcad.parts.description import Part, Vector, vector
+from tactcad.parts.supply import Supply
 
 Rotation = tuple[Vector, Vector, Vector]  # rows of the matrix that turns local into scene directions
 

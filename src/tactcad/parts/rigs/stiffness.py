@@ -16,7 +16,6 @@ from ..part_materials import plate_material
 from ..seating import FLAT
 from ..stiffness_table import TENTH, Deflection, pads_plane
 from ..stop_give import STEEL_MODULUS, STEEL_POISSON, carrier_beam
-from .bar import BAR_MIDDLE
 from .bonding_layout import bonding_rigs, kind_suffix
 from .cart_layout import CartLayout
 from .force_gauge import GAUGE_THREADS
