@@ -7,17 +7,10 @@ from __future__ import annotations
 from tactcad.design.electronics import WIRES
 from tactcad.design.materials import family
 
-from .electronic_parts import (
-    GAUGE,
-    LEAD,
-    TERMINAL,
-    board_supplies,
-    bonded_spares,
-    completion_supply,
-    wire_metres,
-)
+from .electronic_parts import GAUGE, LEAD, TERMINAL, board_supplies, completion_supply, wire_metres
 from .layout import Layout
 from .lead_route import leads
+from .spares import bonded_spares
 from .supply import Supply
 
 

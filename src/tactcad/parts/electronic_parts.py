@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, floor, log10
+from math import floor, log10
 
 from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES
 from tactcad.design.tree import Design
@@ -11,6 +11,7 @@ from .boards import boards
 from .hinge_section import completion_resistance
 from .layout import Layout
 from .lead_route import lead_routes, leads
+from .spares import board_spares, bonded_spares
 from .supply import Supply
 
 GAUGE, COMPLETION, TERMINAL, LEAD = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL", "LEAD-WIRE"
@@ -20,17 +21,6 @@ DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
-
-
-def bonded_spares(n: int) -> int:
-    """Spares of n that are bonded or soldered to elements: one in five, at least one; chosen: the paper lost
-    one of ten, and a second trial is likely."""
-    return max(1, ceil(n / 5))
-
-
-def board_spares(n: int) -> int:
-    """Spares of n that are soldered on boards: one in ten, at least one; chosen: usual practice."""
-    return max(1, ceil(n / 10))
 
 
 def gain_resistance(design: Design) -> float | None:

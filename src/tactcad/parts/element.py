@@ -26,7 +26,6 @@ from .spares import spare_elements
 from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
-SPARES = 1  # of every number; chosen: the paper's no. 5 of ten did not work
 
 
 def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
@@ -56,7 +55,6 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         body=Extrusion(outer, design.sheet.thickness, mounting_holes(layout)),
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
-        spares=SPARES,
         notes=(
             f"wire-cut in at least {passes}, both hinge faces skimmed",
             "burr-free, do not tumble",

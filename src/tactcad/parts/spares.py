@@ -11,3 +11,14 @@ def spare_elements(count: int) -> int:
     """Spare elements of a kind of which the array has `count`: one of every ten, and one of every kind, since
     none can stand in for another's arm."""
     return ceil(count / LOST_IN)
+
+
+def bonded_spares(n: int) -> int:
+    """Spares of n that are bonded or soldered to elements: one in five, at least one; chosen: the paper lost
+    one of ten, and a second trial is likely."""
+    return max(1, ceil(n / 5))
+
+
+def board_spares(n: int) -> int:
+    """Spares of n that are soldered on boards: one in ten, at least one; chosen: usual practice."""
+    return max(1, ceil(n / 10))
