@@ -9,7 +9,6 @@ from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SW
 from tactcad.design.tree import Design
 
 from .boards import boards
-from .hinge_section import completion_resistance
 from .layout import Layout
 from .lead_route import lead_routes, leads
 
@@ -48,6 +47,12 @@ def bonded_spares(n: int) -> int:
 def board_spares(n: int) -> int:
     """Spares of n that are soldered on boards: one in ten, at least one; chosen: usual practice."""
     return max(1, ceil(n / 10))
+
+
+def completion_resistance(design: Design) -> float:
+    """Of each of a bridge's three other arms, ohm."""
+    own = design.readout.completion_resistance
+    return design.gauge.resistance if own is None else own
 
 
 def gain_resistance(design: Design) -> float | None:

@@ -9,6 +9,7 @@ from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
 
 from ..boards import boards
 from ..bridge_figures import bridge_signal, completion_tolerance, heating, imbalance, settling_time
+from ..electronic_parts import completion_resistance
 from ..finding import Finding
 from ..hinge_section import design_readout
 from ..layout import Layout
@@ -105,7 +106,7 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     path, legal = "readout.gain", "a gain, or an excitation, that keeps it inside"
     value: object = d.readout.gain
     if not same:
-        path, value = "readout.completion_resistance", present_resistance(layout)
+        path, value = "readout.completion_resistance", completion_resistance(d)
         legal = f"{d.gauge.resistance:g} ohm, the gauge's"
     elif chain.lowest < least and most < chain.highest:
         tolerance = off * min(
@@ -121,11 +122,6 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
         value,
         legal,
     )
-
-
-def present_resistance(layout: Layout) -> float:
-    own = layout.design.readout.completion_resistance
-    return layout.design.gauge.resistance if own is None else own
 
 
 def _share(limit: float, without: float, with_all: float) -> float:
