@@ -162,7 +162,7 @@ WITNESSES = {
     "reading_within_period": [({"readout.period": 0.004}, "readout.on_time")],
     "amplifier_has_gain": [
         ({"readout.gain": 50}, "readout.gain"),
-        ({"readout.amplifier": "AD620", "readout.gain": 2000}, "readout.gain"),
+        ({"readout.amplifier": "AD620", "readout.gain": 2000, "readout.excitation": 0.3}, "readout.gain"),
     ],
     "supplies_suit_parts": [
         ({"readout.supply_positive": 30.0}, "readout.supply_positive"),
@@ -181,6 +181,7 @@ WITNESSES = {
         ({"readout.completion": "film-1", "gauge.resistance_tolerance": 0.03}, "readout.completion"),
         ({"readout.completion_resistance": 130.0}, "readout.completion_resistance"),
         ({"readout.bridge_offset": 0.08}, "readout.gain"),
+        ({"readout.headroom": 5.0}, "readout.headroom"),
     ],
     "inputs_within_common_mode": [
         (

@@ -111,7 +111,8 @@ SEEDS = {
     "an element added, soft": seed(
         SOFT, "[[5, 9, 5, 9]", "[[5, 9, 9, 5, 9]", "array.row_arms",
         revised=OF_ARRAY | {"carrier", "stop-plate"}, added={"blank"},
-        bill=r".*-(spacer|element-a9mm|blank)|ISO8734-3x(28|30)-pin|STRAIN-GAUGE|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE",
+        bill=r".*-(spacer|element-a9mm|blank)|ISO8734-3x(28|30)-pin|STRAIN-GAUGE|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE"
+        "|IRLML6244TRPBF",
     ),
     "pad 0.05 higher": seed(
         SOFT, "pad_height = 1.6", "pad_height = 1.65", "element.pad_height", revised=SOFT_E,
@@ -143,7 +144,9 @@ SEEDS = {
         MACRO, "dowel_offsets = [9.1]", "dowel_offsets = [9.15]", "holes.dowel_offsets",
         revised=MACRO_E | OF_ARRAY,
     ),
-    "more gain": seed(MACRO, "gain = 100", "gain = 101", "readout.gain", figures={"signal_per_force"}),
+    "more excitation": seed(
+        MACRO, "excitation = 2.7", "excitation = 2.8", "readout.excitation", figures={"signal_per_force"}
+    ),
     "a thicker stop plate": seed(
         MACRO, "stop_plate_thickness = 4.0", "stop_plate_thickness = 4.5", "clamp.stop_plate_thickness",
         revised={"stop-plate", "end-plate-head", "end-plate-tapped", "riser", "ballast"},
@@ -177,7 +180,7 @@ SEEDS = {
         revised={"spacer", "end-plate-tapped", "carrier", "stop-plate", "ballast"},
         added={"element-a6mm", "blank"},
         bill=r".*-(spacer|blank|element-a6mm)|ISO4762-M3x(20|25)-A2-70-screw|ISO8734-3x(24|28)-pin|STRAIN-GAUGE"
-        r"|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE",
+        r"|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE|IRLML6244TRPBF",
     ),
     "wheels 0.05 further apart": seed(
         SMALL, "wheel_base = 44.0", "wheel_base = 44.05", "cart.wheel_base", revised={"cart-plate"},

@@ -29,10 +29,10 @@ from tactcad.parts.electronic_parts import (
     TERMINAL,
     TO_CARD,
     TO_LEADS,
+    completion_resistance,
     gain_resistance,
     set_gain,
 )
-from tactcad.parts.hinge_section import completion_resistance
 from tactcad.parts.layout import Layout
 from tactcad.parts.lead_route import LeadRoute, lead_ohm, lead_routes
 

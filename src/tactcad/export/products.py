@@ -121,10 +121,13 @@ def stack_products(design: Design, names: Sequence[str], shapes: Shapes) -> list
 
 def circuit_products(design: Design, shapes: Shapes) -> list[Output]:
     """The circuit that reads the array: its netlist in three forms, and the leads to cut."""
+    from tactcad.circuit.bridges import netlist
+    from tactcad.parts.layout import Layout
+
     from . import circuit_files as files
 
     stem = f"circuit/{design.name}-circuit_{design.design.revision}"
-    key = digest(("circuit", shapes.made_by, design))
+    key = digest(("circuit", shapes.made_by, netlist(Layout(design)), design.design))
     return [
         Output(path, kind, "", f"{key} {path}", partial(make, design))
         for path, kind, make in (

@@ -11,7 +11,8 @@ from tactcad.design.tree import Design
 from tactcad.mechanics import self_heating
 from tactcad.mechanics.self_heating import Heating, Power
 
-from .hinge_section import completion_resistance, design_gauge
+from .electronic_parts import completion_resistance
+from .hinge_section import design_gauge
 from .layout import Layout
 from .lead_route import longest_lead_resistance
 

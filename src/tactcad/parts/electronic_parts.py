@@ -8,7 +8,6 @@ from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SW
 from tactcad.design.tree import Design
 
 from .boards import boards
-from .hinge_section import completion_resistance
 from .layout import Layout
 from .lead_route import lead_routes, leads
 from .spares import board_spares, bonded_spares
@@ -21,6 +20,12 @@ DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
+
+
+def completion_resistance(design: Design) -> float:
+    """Of each of a bridge's three other arms, ohm."""
+    own = design.readout.completion_resistance
+    return design.gauge.resistance if own is None else own
 
 
 def gain_resistance(design: Design) -> float | None:

@@ -18,6 +18,7 @@ from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.readout_noise import sample_noise
 from tactcad.mechanics.section import HingeSection
 
+from .electronic_parts import completion_resistance
 from .layout import ElementPlace, HingeShape, Layout
 
 T = TypeVar("T")
@@ -104,12 +105,6 @@ def derived_noise(design: Design) -> float:
     arm, gauge = completion_resistance(design), design.gauge.resistance
     source = gauge * arm / (gauge + arm) + arm / 2 + 2 * MULTIPLEXERS[r.multiplexer].on_ohm
     return sample_noise(r.gain, amplifier.noise_density(r.gain), amplifier.bandwidth(r.gain), source)
-
-
-def completion_resistance(design: Design) -> float:
-    """Of each of the three other arms, ohm."""
-    own = design.readout.completion_resistance
-    return design.gauge.resistance if own is None else own
 
 
 def _filled(kind: Callable[..., T], table: object) -> T:

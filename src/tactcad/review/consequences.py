@@ -144,10 +144,10 @@ def _kept(table: Table) -> Design:
 
 
 def _other_arrays(old: Design, new: Design) -> bool:
-    """Whether virtual arrays may come out otherwise: more differs than names, sources and the read-out."""
+    """Whether virtual arrays may come out otherwise: more differs than names, sources, read-out and leads."""
 
     def rest(design: Design) -> dict[str, Any]:
-        return {k: v for k, v in vars(design).items() if k not in ("design", "origin", "readout")}
+        return {k: v for k, v in vars(design).items() if k not in ("design", "origin", "readout", "wiring")}
 
     return rest(old) != rest(new)
 

@@ -9,6 +9,7 @@ from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
 
 from ..boards import boards
 from ..bridge_figures import bridge_signal, completion_tolerance, heating, imbalance, settling_time
+from ..electronic_parts import completion_resistance
 from ..finding import Finding
 from ..hinge_section import design_readout
 from ..layout import Layout
@@ -49,7 +50,7 @@ def supplies_suit_parts(layout: Layout) -> Iterator[Finding]:
             f"{between:g} V between the supplies is not for {r.amplifier} and {r.multiplexer}",
             r.supply_positive,
             f"from {least + r.supply_negative:g} to {most + r.supply_negative:g} V "
-            "over readout.supply_negative",
+            f"with readout.supply_negative = {r.supply_negative:g}",
         )
     yield from at_most(
         "readout.excitation",
@@ -101,15 +102,20 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     off = completion_tolerance(d)
     own = d.readout.completion_tolerance is not None
     same = d.readout.completion_resistance in (None, d.gauge.resistance)
-    least, most = imbalance(layout, 0.0)
-    path, legal = "readout.gain", "a gain, or an excitation, that keeps it inside"
+    without_low, without_high = imbalance(layout, 0.0)
+    most = d.readout.gain * min(_share(chain.lowest, 0.0, low), _share(chain.highest, 0.0, high))
+    path, legal = "readout.gain", f"at most {rounded_down(most)}, or less excitation"
     value: object = d.readout.gain
-    if not same:
-        path, value = "readout.completion_resistance", present_resistance(layout)
+    if not chain.lowest < 0.0 < chain.highest:
+        r = d.readout
+        path, value = "readout.headroom", r.headroom
+        legal = f"less than either supply: {min(r.supply_positive, -r.supply_negative):g} V"
+    elif not same:
+        path, value = "readout.completion_resistance", completion_resistance(d)
         legal = f"{d.gauge.resistance:g} ohm, the gauge's"
-    elif chain.lowest < least and most < chain.highest:
+    elif chain.lowest < without_low and without_high < chain.highest:
         tolerance = off * min(
-            _share(chain.lowest, least, low), _share(chain.highest, most, high)
+            _share(chain.lowest, without_low, low), _share(chain.highest, without_high, high)
         )  # linear within a hundredth
         path = "readout.completion_tolerance" if own else "readout.completion"
         value = off if own else d.readout.completion
@@ -123,14 +129,10 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     )
 
 
-def present_resistance(layout: Layout) -> float:
-    own = layout.design.readout.completion_resistance
-    return layout.design.gauge.resistance if own is None else own
-
-
 def _share(limit: float, without: float, with_all: float) -> float:
+    """Share of the way from `without` to `with_all` at which the limit is met; inf where it leads away."""
     moved = with_all - without
-    return (limit - without) / moved if moved else inf
+    return (limit - without) / moved if moved * limit > 0 else inf
 
 
 def rounded_down(value: float) -> str:
