@@ -18,6 +18,7 @@ from math import isclose
 from pathlib import Path
 
 import document
+import screen
 import window
 
 from tactcad.parts.designs import load
@@ -115,7 +116,11 @@ def own_document_faults(freecad: list[str], folder: Path, name: str, parts: dict
         scenes = [make_scene(load(name), scene) for scene in bills]
         want = {p.part_no: p.colour for scene in scenes for p in scene.parts}
         found = report["files"][str(path)]
-        return document.document_faults(found, document.colours(path), bills, parts, want)
+        wrong = document.document_faults(found, document.colours(path), bills, parts, want)
+        if not (seen_by := window.command()) or not screen.command():
+            print(f"{folder}: no picture of FreeCAD's window: apt-get install freecad xvfb xauth")
+            return wrong
+        return wrong + screen.screen_faults(seen_by, path, folder.with_name(f"{folder.name}-freecad.png"))
 
 
 def scene_faults(manifest: dict) -> list[str]:

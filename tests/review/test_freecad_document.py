@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -103,10 +105,13 @@ def test_where_freecad_is_missing_it_says_how_to_get_it(tmp_path, monkeypatch, c
     assert "NAME.FCStd" in capsys.readouterr().err
 
 
-@pytest.mark.cad
-@pytest.mark.skipif(
+freecad_is_here = pytest.mark.skipif(
     not any(map(freecad_file.shutil.which, freecad_file.COMMANDS)), reason="FreeCAD is not installed"
 )
+
+
+@pytest.mark.cad
+@freecad_is_here
 def test_freecad_opens_its_document_and_takes_it_apart(tmp_path):
     """Texts of the design are shown as they stand: none is a formula or markup. `make review` holds every
     shipped design's document against its export."""
@@ -133,3 +138,57 @@ def test_freecad_opens_its_document_and_takes_it_apart(tmp_path):
         title
     )
     assert document.colours(path)["colours"] == {p.part_no: p.colour for p in scene.parts}
+
+
+IN_FREECAD = """\
+import json, os, traceback, FreeCAD, FreeCADGui
+def state(document):
+    return {"placed": {o.Label: o.Shape.Volume for o in document.Objects if o.TypeId == "App::Link"},
+            "camera": FreeCADGui.activeDocument().activeView().getCamera()}
+try:
+    document = FreeCAD.openDocument(os.environ["REVIEW_FILE"])
+    FreeCADGui.activeDocument().activeView().viewTop()
+    said = [state(document)]
+    for text in json.loads(os.environ["REVIEW_TEXTS"]):
+        with open(os.environ["REVIEW_DESIGN"], "w") as out:
+            out.write(text)
+        with open(os.environ["REVIEW_MACRO"]) as macro:
+            exec(macro.read(), {"__name__": "__main__"})
+        said.append(state(FreeCAD.ActiveDocument))
+    said.append(len(FreeCAD.listDocuments()))
+except Exception:
+    said = traceback.format_exc()
+with open(os.environ["REVIEW_OUT"], "w") as out:
+    json.dump(said, out)
+os._exit(0)
+"""
+
+
+@pytest.mark.cad
+@freecad_is_here
+def test_the_macro_makes_the_document_again_and_keeps_the_eye(tmp_path, monkeypatch):
+    """Run inside FreeCAD's window program, after a change of the design, and after one that breaks a rule."""
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "hardware" / "soft-tissue.toml").read_text()
+    design, path = tmp_path / "d.toml", tmp_path / "d.FCStd"
+    design.write_text(text)
+    assert main(["review", "d.toml", "--scene", "array", "--freecad", "d.FCStd"]) == 0
+    thicker, broken = (text.replace("hinge_thickness = 0.15", f"hinge_thickness = {t}") for t in (0.2, 9.0))
+    (tmp_path / "inside.py").write_text(IN_FREECAD)
+    (tmp_path / "user.cfg").write_text(freecad_file.profile())
+    own = freecad_file.environment(tmp_path) | {
+        "REVIEW_FILE": str(path),
+        "REVIEW_MACRO": str(path.with_suffix(".FCMacro")),
+        "REVIEW_DESIGN": str(design),
+        "REVIEW_TEXTS": json.dumps([thicker, broken]),
+        "REVIEW_OUT": str(tmp_path / "out.json"),
+    }
+    command = [freecad_file.program(), "-u", str(tmp_path / "user.cfg"), str(tmp_path / "inside.py")]
+    subprocess.run(command, env=own, capture_output=True, check=False, timeout=300)
+    before, after, still, documents = json.loads((tmp_path / "out.json").read_text())
+    design.write_text(thicker)
+    for state, source in ((before, "soft-tissue"), (after, str(design))):
+        for p in make_scene(read(source), "array").placements:
+            assert state["placed"][p.designator] == pytest.approx(p.part.volume, rel=1e-6)
+    assert before["placed"]["E1"] < after["placed"]["E1"]
+    assert still == after and documents == 1 and after["camera"] == before["camera"]

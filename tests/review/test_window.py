@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.append(str(ROOT / "packaging" / "review"))
 
 import review  # noqa: E402
+import screen  # noqa: E402
 import window  # noqa: E402
 
 BILL = [
@@ -77,3 +78,30 @@ def test_a_scene_without_model_or_bill_is_seen():
     assert review.scene_faults(manifest(*whole)) == []
     for n in (0, 3, 4):
         assert review.scene_faults(manifest(*whole[:n], *whole[n + 1 :]))
+
+
+@pytest.mark.parametrize(("drawn", "faults"), [(0, 1), (20, 1), (40, 0)])
+def test_a_window_that_shows_nothing_fails(tmp_path, monkeypatch, drawn, faults):
+    """A stand-in for the screen's program puts its two pictures there: 100 x 100, some rows of them drawn."""
+    import numpy as np
+    from PIL import Image
+
+    empty = np.full((100, 100, 3), 200, np.uint8)
+    full = empty.copy()
+    full[:, : drawn // 10] = 90  # so many in a hundred
+    for name, picture in (("empty", empty), ("full", full)):
+        Image.fromarray(picture).save(tmp_path / f"{name}.png")
+    stand_in = tmp_path / "xvfb-run"
+    stand_in.write_text(
+        f'#!/bin/sh\ncp {tmp_path}/full.png "$REVIEW_FULL"; cp {tmp_path}/empty.png "$REVIEW_EMPTY"\n'
+    )
+    stand_in.chmod(0o755)
+    monkeypatch.setattr(screen, "command", lambda: str(stand_in))
+    found = screen.screen_faults("freecad", tmp_path / "d.FCStd", tmp_path / "kept.png")
+    assert len(found) == faults and (tmp_path / "kept.png").is_file()
+
+
+def test_no_picture_is_a_fault(tmp_path, monkeypatch):
+    monkeypatch.setattr(screen, "command", lambda: "/bin/true")
+    found = screen.screen_faults("freecad", tmp_path / "d.FCStd", tmp_path / "kept.png")
+    assert "no picture" in found[0]

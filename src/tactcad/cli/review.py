@@ -48,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from tactcad.design.files import refuse_overwriting, write_whole
     from tactcad.design.messages import InputError
-    from tactcad.review.freecad_file import freecad_document, refuse_no_document
+    from tactcad.review.freecad_file import freecad_document, refuse_no_document, reload_macro
     from tactcad.review.review_page import review_page
     from tactcad.review.review_record import review_record
     from tactcad.review.subject import drawn_sheets, shapes_of, subject
@@ -60,7 +60,8 @@ def run(args: argparse.Namespace) -> int:
     started, say = time.perf_counter(), progress(sys.stderr)
     seen = subject(args.design)
     out = args.out or (None if args.freecad else "review.html")
-    for option, path in (("--out", out), ("--freecad", args.freecad)):
+    macro = str(Path(args.freecad).with_suffix(".FCMacro")) if args.freecad else ""
+    for option, path in (("--out", out), ("--freecad", args.freecad), ("--freecad", macro)):
         if path:
             refuse_overwriting(path, seen.path, option=option)
             folder = Path(path).parent
@@ -75,6 +76,8 @@ def run(args: argparse.Namespace) -> int:
     made: dict[str, bytes] = {}
     if args.freecad:
         made[args.freecad] = freecad_document(seen.design, names, shapes, say.step)
+        again = ["review", args.design, *(word for name in names for word in ("--scene", name))]
+        made[macro] = reload_macro([*again, "--freecad", args.freecad], Path(args.freecad))
     if out and library:
         if args.drawings:
             scenes = [make_scene(seen.design, name) for name in names]
@@ -95,5 +98,6 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(record, indent=1))
     else:
         for path, data in made.items():
-            print(f"{path}: {', '.join(names)}; {len(data) / 1e6:.2f} MB")
+            what = "reloads it in FreeCAD" if path == macro else ", ".join(names)
+            print(f"{path}: {what}; {len(data) / 1e6:.2f} MB")
     return 0

@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ from .scene_facts import scene_facts
 
 COMMANDS = ("freecad", "FreeCAD")
 SCRIPT = Path(__file__).with_name("peers") / "freecad_document.py"
+RELOAD = SCRIPT.with_name("freecad_reload.py")
 SECONDS = 600  # chosen: a large array is imported in seconds, a first start on a slow disk in a minute
 
 
@@ -77,6 +79,18 @@ def freecad_document(
     record = freecad_record(design, facts, parts, findings)
     texts = (shapes.text_of(part) for part in parts.values())
     return made_by_freecad(command, record, texts, lambda n, what: say(n, total, what))
+
+
+def reload_macro(arguments: Sequence[str], document: Path) -> bytes:
+    """FreeCAD's macro that makes the document again, by this tactcad with these arguments, and reloads it."""
+    text = RELOAD.read_text("utf-8")
+    for line, value in (
+        ('COMMAND = ["tactcad"]', [sys.executable, "-m", "tactcad", *arguments]),
+        ('FOLDER = "."', os.getcwd()),
+        ('DOCUMENT = "review.FCStd"', os.path.realpath(document)),
+    ):
+        text = text.replace(line, f"{line.partition(' ')[0]} = {value!r}")
+    return text.encode()
 
 
 def made_by_freecad(
