@@ -55,7 +55,8 @@ def measured(elements: int) -> tuple[list[float], list[float]]:
             for n in range(1, SAVES + 1):
                 time.sleep(1)
                 started = time.perf_counter()
-                path.write_text(design.replace(HINGE, f"hinge_thickness = {0.25 + 0.005 * n:.3f}", 1), "utf-8")
+                thicker = f"hinge_thickness = {0.25 + 0.005 * n:.3f}"
+                path.write_text(design.replace(HINGE, thicker, 1), "utf-8")
                 page.wait_for_selector(f"html[data-version='{n}']", state="attached")
                 known.append(time.perf_counter() - started)
                 page.evaluate(DRAWN)
