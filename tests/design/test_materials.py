@@ -18,7 +18,8 @@ from tactcad.paper import array_model
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.element import element
 from tactcad.parts.layout import Layout
-from tactcad.release.readme import ReleaseContents, readme_bytes
+from tactcad.release.readme import readme_bytes
+from tactcad.release.release_contents import ReleaseContents
 from tactcad.scenes import make_scene
 
 KSI, LB_PER_CUBIC_INCH = 6.894757, 27679.9  # MPa, kg/m3
@@ -235,7 +236,7 @@ def of(name):
 def test_notes_follow_the_material(name, metal, magnetic):
     d = of(name)
     notes = sheet_notes(d)
-    assert ("anti-electrolysis" in notes) == (metal == "aluminium")
+    assert "anti-electrolysis" in notes
     assert ("demagnetise" in notes) == magnetic
     readme = readme_bytes(ReleaseContents(d, [make_scene(d, "array")], (), (), False), ()).decode()
     assert ("pits without it" in " ".join(readme.split())) == (metal == "aluminium")
@@ -249,3 +250,35 @@ def test_a_titanium_sheet_asks_for_the_general_wall():
         layout = Layout(of(name))
         (flag,) = [f for f in check_wirecut(element(layout, layout.elements[0]), shop) if f.check == "hinge"]
         assert flag.limit == wall
+
+
+STEEL = "maraging-300-aged"
+
+
+@pytest.mark.parametrize(
+    "alloy, chuck, harm",
+    [
+        ("7075-T6", "a magnetic chuck does not hold it", "pits"),
+        ("Ti-6Al-4V-annealed", "a magnetic chuck does not hold it", "discolours"),
+        ("1.4310-C1300", "a magnetic chuck does not hold it", "rusts"),
+        (STEEL, "on a magnetic chuck, demagnetised afterwards", "rusts"),
+    ],
+)
+def test_what_its_magnetism_and_metal_ask_of_the_shop_stands_in_the_notes(alloy, chuck, harm):
+    from tactcad.parts.spacer import spacer
+    from tactcad.parts.stop_plate import stop_plate
+
+    row = ALLOYS[alloy]
+    own = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
+    layout = Layout(variant({"material.alloy": alloy, **{f"material.{n}": getattr(row, n) for n in own}}))
+    notes = notes_of(spacer(layout), ())
+    assert any(chuck in note for note in notes)
+    assert f"Anti-electrolysis supply: without it {alloy} {harm}" in notes
+    assert any("on a magnetic chuck, demagnetised" in note for note in stop_plate(layout).notes)
+
+
+def test_of_a_sheet_of_unknown_magnetism_the_note_promises_nothing():
+    from tactcad.parts.description import Material
+    from tactcad.parts.part_materials import held_for_grinding
+
+    assert held_for_grinding(Material("own", 5000.0)) == "on a magnetic chuck only if a magnet draws it"

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from variants import variant
 
 from tactcad.mechanics import gauge_signal, ladder, readout, self_heating, strain
 from tactcad.mechanics.gauge_signal import Gauge
@@ -173,3 +174,39 @@ def test_power_always_on_is_the_limit_of_switching():
         always.rise, rel=1e-3
     )
     assert self_heating.switched(2.7, GAUGE, replace(POWER, on_time=1e-4)).rise < 0.05 * always.rise
+
+
+def test_a_leaf_that_conducts_badly_warms_the_grid():
+    """Against the conduction equation solved by finite differences along the leaf, heat under its middle."""
+    length, t, b = 0.88, 0.25, 3.0
+    for conductivity in (130.0, 6.7):
+        n = 401  # nodes from the arm's end, which is insulated, to the body's, which is at 0
+        dx = length * 1e-3 / (n - 1)
+        matrix = np.diag(np.full(n, -2.0)) + np.diag(np.ones(n - 1), 1) + np.diag(np.ones(n - 1), -1)
+        matrix[0, :2], matrix[-1] = (-1.0, 1.0), 0.0
+        matrix[-1, -1] = 1.0
+        heat = np.zeros(n)
+        heat[n // 2] = -dx / (conductivity * t * b * 1e-6)  # one watt
+        middle = np.linalg.solve(matrix, heat)[n // 2]
+        leaf = self_heating.leaf_resistance(length, t, b, conductivity)
+        assert leaf == pytest.approx(middle, rel=1e-9)
+        warm = self_heating.continuous(2.7, GAUGE, replace(POWER, leaf_resistance=leaf))
+        bare = self_heating.continuous(2.7, GAUGE, POWER)
+        assert warm.rise - bare.rise == pytest.approx(leaf * bare.power)
+        on = self_heating.switched(2.7, GAUGE, replace(POWER, leaf_resistance=leaf)).rise
+        assert self_heating.switched(2.7, GAUGE, POWER).rise < on < warm.rise
+
+
+def test_the_design_s_own_sheet_conducts_the_heat():
+    from tactcad.design.materials import ALLOYS
+    from tactcad.paper.array_model import from_design
+
+    shares = {}
+    for alloy in ("7075-T6", "Ti-6Al-4V-annealed"):
+        row = ALLOYS[alloy]
+        names = ("youngs_modulus", "poisson", "density", "yield_strength", "fatigue_strength")
+        changes = {f"material.{name}": getattr(row, name) for name in names}
+        power = from_design(variant({"material.alloy": alloy, **changes})).power
+        shares[alloy] = power.leaf_resistance
+        assert power.leaf_resistance == pytest.approx(0.44 / (row.conductivity * 0.25 * 3.0) * 1e3)
+    assert shares["Ti-6Al-4V-annealed"] > 15 * shares["7075-T6"]

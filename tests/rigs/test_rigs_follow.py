@@ -1,5 +1,5 @@
-"""Rigs follow the array: over arrays of 1 to 12 a row and sheets of 1 to 6 mm every rig is there, or a line
-says which field, its value and what would do."""
+"""Rigs follow the array: of 1 to 12 elements a row, of sheets of 1 to 6 mm. Every rig is there, or a line
+says which field is in the way, its value, and what would do."""
 
 from __future__ import annotations
 

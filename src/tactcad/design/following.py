@@ -16,12 +16,11 @@ SIDE, LENGTH, WIDTH, WHEEL_BASE, VACUUM, RINGS = 32.0, 70.0, 50.0, 50.0, 26.0, 3
 MOVING, STACK = 3.235, 21.0  # paper: what moves with the array, N; its stack of sheets and spacers
 PER_STACK = 0.05  # N for a mm of stack more; chosen: twice what aluminium weighs, trimmed by the ballast
 RUBBER = 6.0  # of the sample beyond the pads; chosen: what the published array has beyond the ends of a row
-LID, STIFF = (
-    6.0,
-    44.0,
-)  # published lid; the widest plenum over which it bends by less than 2 um (plate theory)
+# Lid, and the widest circle of holes over which it bends by less than 2 um (plate theory, rigs/stiffness.py).
+LID, STIFF = 6.0, 44.0
 LARGEST_SIDE = 80.0  # of a sample whose cart clears the post; chosen: 1 mm less than fits
-LARGEST_VACUUM = 66.0  # circle around which the largest O-ring of the table lies
+# Circle of holes: the largest O-ring of the table lies around 66, a lid ten hole diameters thick bears less.
+LARGEST_VACUUM = 64.0
 
 
 def followed(values: dict[str, Any]) -> dict[str, Any]:

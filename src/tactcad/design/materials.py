@@ -113,6 +113,11 @@ def _alloy(row: dict[str, str]) -> Alloy:
 ALLOYS = _table()
 
 
+# What the water of a wire-cutting machine does to a metal that its supply makes the anode; trade practice,
+# not measured. A supply without mean voltage (anti-electrolysis) prevents it.
+ELECTROLYSIS = {"aluminium": "pits", "titanium": "discolours", "steel": "rusts", "copper": "tarnishes"}
+
+
 def family(density: float) -> str:
     """Which metal a density (kg/m3) belongs to: aluminium, titanium, steel or copper; "" for none of them."""
     return next((name for name, (low, high) in FAMILIES.items() if low <= density <= high), "")
@@ -126,6 +131,11 @@ def alloy(name: str) -> Alloy:
     if name not in ALLOYS:
         raise InputError("material.alloy", "unknown alloy", value=name, legal=one_of(name, ALLOYS))
     return ALLOYS[name]
+
+
+def leaf_conductivity(given: float | None) -> float:
+    """Thermal conductivity of the sheet, W/(m K); where it is not known the table's least."""
+    return given if given is not None else min(present(row.conductivity) for row in ALLOYS.values())
 
 
 def modulus_per_kelvin(name: str) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tactcad.design.materials import family
+from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.parts.description import Part
 
 
@@ -42,8 +42,8 @@ def _wire_cut(part: Part) -> list[str]:
     ]
     if part.extrusion.openings:
         lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
-    if family(part.material.density) == "aluminium":
-        lines.append("Anti-electrolysis supply")
+    if harm := ELECTROLYSIS.get(family(part.material.density)):
+        lines.append(f"Anti-electrolysis supply: without it {part.material.name} {harm}")
     return lines
 
 

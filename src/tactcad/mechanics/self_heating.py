@@ -1,8 +1,9 @@
 """Temperature rise of a gauge, with power on continuously and with power on only while it is read.
 
-The grid's heat (U/2)^2/R goes through the backing into the leaf, a good conductor. Grid and half the
+The grid's heat (U/2)^2/R goes through the backing into the leaf, and along it to the body. Grid and half the
 backing store heat, so a short reading ends before the grid is warm: an exponential approach with one time
-constant.
+constant. The leaf is taken without heat of its own: it is as warm as with power on all the time while power
+is on, which is an upper bound.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ class Power:
     """What heats a gauge. resistance ohm; conductivity of the backing W/(m K); on_time and period s.
 
     resistance_per_kelvin: dR/R of a grid warmer than its leaf, 1/K. reference_mismatch: share of it that
-    the three reference gauges do not cancel.
+    the three reference gauges do not cancel. leaf_resistance: from under the grid to the body, K/W
+    (`leaf_resistance`); 0 for a leaf that conducts perfectly.
     """
 
     resistance: float
@@ -32,11 +34,12 @@ class Power:
     reference_mismatch: float
     on_time: float
     period: float
+    leaf_resistance: float = 0.0
 
 
 @dataclass(frozen=True)
 class Heating:
-    """power W at the grid, power_density kW/m2 of grid, rise K of grid over leaf, drift dR/R left in the
+    """power W at the grid, power_density kW/m2 of grid, rise K of grid over body, drift dR/R left in the
     bridge.
     """
 
@@ -57,7 +60,7 @@ def continuous(excitation: float, gauge: Gauge, power: Power) -> Heating:
         The gauge, and what heats it.
     """
     watts = (excitation / 2) ** 2 / power.resistance
-    return _heating(watts, watts * thermal_resistance(gauge, power), gauge, power)
+    return _heating(watts, watts * (thermal_resistance(gauge, power) + power.leaf_resistance), gauge, power)
 
 
 def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
@@ -86,10 +89,19 @@ def switched(excitation: float, gauge: Gauge, power: Power) -> Heating:
     steady = continuous(excitation, gauge, power)
     tau = time_constant(gauge, power)
     if tau == 0.0:  # a grid on the bare metal
-        return _heating(steady.power * power.on_time / power.period, 0.0, gauge, power)
+        return _heating(steady.power * power.on_time / power.period, steady.rise, gauge, power)
     on, off = exp(-power.on_time / tau), exp(-(power.period - power.on_time) / tau)
-    rise = steady.rise * (1 - on) / (1 - on * off)
+    leaf = steady.power * power.leaf_resistance
+    rise = leaf + (steady.rise - leaf) * (1 - on) / (1 - on * off)
     return _heating(steady.power * power.on_time / power.period, rise, gauge, power)
+
+
+def leaf_resistance(hinge_length: float, thickness: float, width: float, conductivity: float) -> float:
+    """From the middle of a leaf to the body, K/W: half its length conducts, the arm beyond takes no heat.
+
+    Lengths in mm, conductivity of the leaf in W/(m K).
+    """
+    return hinge_length / 2 / (conductivity * thickness * width) * 1e3
 
 
 def thermal_resistance(gauge: Gauge, power: Power) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tactcad.design.materials import modulus_per_kelvin
+from tactcad.design.materials import leaf_conductivity, modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design, Tolerance
 from tactcad.fem.layered_leaf import Layer
@@ -14,7 +14,7 @@ from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.self_heating import Power
+from tactcad.mechanics.self_heating import Power, leaf_resistance
 from tactcad.paper.gauge_layers import gauge_layers
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
@@ -77,6 +77,7 @@ def from_design(design: Design) -> ArrayModel:
     layout = Layout(design)
     places = layout.elements
     gauge, readout = design.gauge, design.readout
+    conducts = leaf_conductivity(design.material.conductivity)
     return ArrayModel(
         design.name,
         np.array([p.number for p in places]),
@@ -95,6 +96,8 @@ def from_design(design: Design) -> ArrayModel:
             readout.reference_mismatch,
             readout.on_time,
             readout.period,
+            # of the element whose leaf carries heat away worst
+            max(leaf_resistance(p.hinge.l, p.hinge.t, design.sheet.thickness, conducts) for p in places),
         ),
         design.tolerance,
         design.stiffness_factor or 1.0,

@@ -181,12 +181,14 @@ def drill_point_height(diameter: float) -> float:
 
 @dataclass(frozen=True)
 class Material:
-    """What a part is made of; density in kg/m3. `standard`: by which it is ordered."""
+    """What a part is made of; density in kg/m3. `standard`: by which it is ordered. `magnetic`: whether a
+    magnet draws it, "yes", "weakly" or "no"; "" where that is not known."""
 
     name: str
     density: float
     temper: str = ""
     standard: str = ""
+    magnetic: str = ""
 
     def __str__(self) -> str:
         """As sheets and bills state it."""

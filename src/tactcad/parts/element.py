@@ -237,7 +237,12 @@ def dowel_hole_diameter(design: Design) -> float:
 
 def sheet_material(design: Design) -> Material:
     known = ALLOYS.get(design.material.alloy)
-    return Material(design.material.alloy, design.material.density, standard=known.standard if known else "")
+    return Material(
+        design.material.alloy,
+        design.material.density,
+        standard=known.standard if known else "",
+        magnetic=design.material.magnetic or "",
+    )
 
 
 def material_notes(design: Design) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from .element import dowel_hole_limits, mounting_holes, screw_places, sheet_mate
 from .fasteners import SPACER_TOLERANCE, STACK
 from .layout import Layout
 from .limits import FACES, DatumFeature, within
+from .part_materials import held_for_grinding
 
 
 def thickness_by_sheet(design: Design) -> str:
@@ -28,17 +29,18 @@ def spacer(layout: Layout) -> Part:
     """Wire-cut sheet between neighbouring elements, over the clamped rear body only."""
     d = layout.design
     z0, z1 = layout.spacer_z
+    material = sheet_material(d)
     return Part(
         part_no=f"{d.name}-spacer",
         name="Spacer",
         process="wire-cut",
-        material=sheet_material(d),
+        material=material,
         body=Extrusion(
             rectangle(layout.clamp_edge, z0, layout.rear_end, z1), layout.spacer, mounting_holes(layout)
         ),
         colour="#9aa4ae",
         notes=(
-            "burr-free; picked from rolled sheet that measures so, or ground",
+            f"burr-free; picked from rolled sheet that measures so, or ground {held_for_grinding(material)}",
             f"thickness as drawn where the elements' sheet measures {d.sheet.thickness:g}; else "
             f"{thickness_by_sheet(d)}; the whole stack {layout.stack:g} +-{STACK:g}",
         ),

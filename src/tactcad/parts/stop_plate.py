@@ -11,7 +11,7 @@ from tactcad.contour import rectangle
 from .description import Extrusion, Part
 from .layout import Layout
 from .limits import FACES, DatumFeature, Geometric, within
-from .part_materials import MAGNETIC_STAINLESS
+from .part_materials import MAGNETIC_STAINLESS, held_for_grinding
 
 STOP_PLATE_FLAT = 0.005  # mm; chosen: what surface grinding holds, a quarter of the usual gap's tolerances
 
@@ -28,7 +28,11 @@ def stop_plate(layout: Layout) -> Part:
         body=Extrusion(rectangle(-x, -y, x, y), d.clamp.stop_plate_thickness),
         colour="#565d66",
         finish="both faces ground, Ra 0.4",
-        notes=("break edges 0.2", "either face may lie on the ledges"),
+        notes=(
+            "break edges 0.2",
+            "either face may lie on the ledges",
+            f"ground {held_for_grinding(MAGNETIC_STAINLESS)}",
+        ),
         characteristics=(within("thickness", d.clamp.stop_plate_thickness, 0.05, between=FACES),),
         geometric=(
             Geometric("flatness", "flatness", STOP_PLATE_FLAT, FACES),

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tactcad import __version__
-from tactcad.design.materials import family
+from tactcad.design.materials import ELECTROLYSIS, family
 from tactcad.drawing.extent import part_box
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
@@ -200,7 +200,8 @@ QUOTE = ("Price and delivery for the quantities above, and for twice the element
 def wire_questions(contents: ReleaseContents) -> list[str]:
     """What a wire-cutting shop is asked."""
     material = contents.design.material
-    supply = f"Whether your machine has an anti-electrolysis supply: {material.alloy} pits without it."
+    harm = ELECTROLYSIS.get(family(material.density), "")
+    supply = f"Whether your machine has an anti-electrolysis supply: {material.alloy} {harm} without it."
     return [
         "Wire diameter, and how many passes you give the hinge; the surface (Ra) and recast layer that "
         "they leave.",
@@ -208,7 +209,7 @@ def wire_questions(contents: ReleaseContents) -> list[str]:
         "The order of cuts, and how the hinge is kept from bending when the slug drops "
         "(tab, adhesive, order).",
         "How the holes of the elements are made: wire-cut from a start hole (as drawn), or reamed.",
-        *([supply] if family(material.density) == "aluminium" else []),
+        *([supply] if harm else []),
     ]
 
 
