@@ -119,6 +119,8 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
             "check_calibration",
             "check_rigidity",
             "check_assembly",
+            "check_circuit",
+            "check_signals",
         )
     }
     for number, part in parts.items():

@@ -230,7 +230,7 @@ def test_no_piece_near_the_limit_passes_the_rule_and_fails_the_check():
     ]
     judged = {"accepted": 0, "slivers": 0}
 
-    @settings(max_examples=60, derandomize=True, deadline=None, phases=[Phase.generate])
+    @settings(max_examples=80, derandomize=True, deadline=None, phases=[Phase.generate])
     @given(st.sampled_from(moves), st.floats(-6, -3), st.booleans())
     def each(move, digits, longer):
         sides, path, piece = move

@@ -12,7 +12,10 @@ Expression = str | tuple
 
 def kicad_bytes(netlist: Netlist, title: str, date: str, revision: str) -> bytes:
     """The file (UTF-8); `date` of issue, so that equal designs give equal bytes."""
-    block = ("title_block", ("title", title), ("rev", revision), ("date", date))
+    # with all that eeschema writes there: readers ask for it
+    comments = (("comment", ("number", str(i)), ("value", "")) for i in range(1, 10))
+    texts = (("title", title), ("company",), ("rev", revision), ("date", date), ("source", netlist.name))
+    block = ("title_block", *texts, *comments)
     sheet = ("sheet", ("number", "1"), ("name", "/"), ("tstamps", "/"), block)
     head = ("design", ("source", netlist.name), ("date", date), ("tool", "tactcad"), sheet)
     kinds = {c.part_no: c for c in reversed(netlist.components)}

@@ -1,0 +1,84 @@
+"""The circuit's sheets, read back from their PDF: all of the netlist stands there, nothing over another."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+
+import pytest
+from variants import variant
+
+from tactcad.design.load import names, read
+from tactcad.design.messages import CheckFailure
+from tactcad.drawing import circuit_sheets as sheets
+from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
+from tactcad.drawing.gate import pdf_runs
+from tactcad.drawing.layout_check import layout_faults
+from tactcad.export.circuit_files import table_file, wiring_file
+from tactcad.parts.layout import Layout
+
+OTHERS = {
+    "two wires": {"readout.connection": "two-wire"},
+    "a gain resistor, four channels": {"readout.amplifier": "AD8221", "readout.multiplexer": "ADG1409"},
+    "one element": {"array.row_arms": [[4.0]]},
+    "rows of 3 and 20": {"array.row_arms": [[4, 8, 4], [5] * 20]},
+    "a hundred elements": {"array.row_arms": [[4, 7, 6, 8, 6] * 10, [8, 5, 4, 5, 7] * 10]},
+}
+
+
+def everything_stands_there(design) -> None:
+    pages = pdf_runs(circuit_written(CircuitOrder(design)).pdf)
+    first, said = pages[0], [run for page in pages for run in page]
+    revision = design.design.revision
+    for n, page in enumerate(pages, start=1):
+        assert revision in page and f"{n}/{len(pages)}" in page
+    nets = list(csv.DictReader(io.StringIO(table_file(design).decode())))
+    # of board 1 and element 1 every component is drawn
+    drawn = {row["designator"] for row in nets if row["board"] == "1" and row["element"] in ("", "1")}
+    words = set(re.findall(r"\w+", " ".join(first)))
+    assert drawn <= words | {"X1"} and "X1.1" in first and "X1.2" in first
+    # every gauge in the matrix, with the channel's pins as the netlist has them
+    for gauge in {row["designator"] for row in nets if row["kind"] == "gauge"}:
+        n = gauge[1:]
+        mux = [r for r in nets if r["net"] == f"E{n}_PLUS" and r["kind"] == "multiplexer"]
+        minus = [r for r in nets if r["net"] == f"E{n}_MINUS" and r["kind"] == "multiplexer"]
+        assert gauge in said
+        assert f"{mux[0]['designator']}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
+    # every lead of the wiring list, in its order of columns
+    text = " ".join(said)
+    for row in csv.DictReader(io.StringIO(wiring_file(design).decode())):
+        cells = (row["lead"], f"E{row['element']}", row["from"], row["to"], row["colour"], row["wire"])
+        assert " ".join(cells) in text
+
+
+@pytest.mark.parametrize("name", names())
+def test_the_shipped_designs(name):
+    everything_stands_there(read(name))
+
+
+@pytest.mark.parametrize("what", OTHERS)
+def test_other_circuits(what):
+    everything_stands_there(variant(OTHERS[what]))
+
+
+def test_a_draft_says_so():
+    assert all("PRELIMINARY" in [t.text for t in s.texts] for s in sheets.circuit_sheets(variant(), True))
+
+
+def test_a_text_over_a_line_is_refused(monkeypatch):
+    kept = sheets.plan_page
+    monkeypatch.setattr(sheets, "plan_page", lambda layout, says: kept(layout, says * 20))
+    with pytest.raises(CheckFailure, match="Wiring plan"):
+        sheets.circuit_sheets(variant())
+
+
+def test_the_plan_is_to_scale():
+    """The tie's distance from the rear ends, on paper over in mm: the scale that the sheet states."""
+    design = read("macro-array")
+    (plan,) = [s for s in sheets.circuit_sheets(design) if s.title.startswith("Wiring plan")]
+    assert layout_faults(plan) == []
+    ties = [i for i in plan.items if getattr(i, "radius", 0) == 1.2]
+    apart = abs(ties[0].centre[0] - ties[1].centre[0])
+    real = 2 * (Layout(design).rear_end + design.wiring.gather)
+    assert apart / real == pytest.approx(2.0) and "2:1" in [t.text for t in plan.texts]
