@@ -261,3 +261,17 @@ def test_the_pins_are_standard_where_a_standard_one_is_long_enough():
     assert pin == "ISO8734-3x24-pin"
     rig = rig_of()
     assert rig.pin_length - rig.pin_depth == pytest.approx(rig.rest + rig.bar_bottom + 6.0)
+
+
+def test_an_array_is_built_the_same_with_and_without_its_fixture():
+    """What the fixture draws by chance does not move the array's own numbers."""
+    with_it, without = (
+        sensor(design, [make_scene(design, "array"), *more])
+        for design, more in (
+            (variant(), [make_scene(variant(), "bonding")]),
+            (variant({"bonding": DROP}), []),
+        )
+    )
+    assert [e.stiffness for e in with_it.built(200).elements] == [
+        e.stiffness for e in without.built(200).elements
+    ]

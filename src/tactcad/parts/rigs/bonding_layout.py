@@ -187,7 +187,8 @@ class BondingLayout:
     @property
     def pin_x(self) -> tuple[float, float]:
         """x of the pairs of pins: behind step and clamp's nose, and before the nearest rear end."""
-        first = max(self.sill + EDGE, self.pad_x[1] + LEAST_GAP) + self.pin_d / 2
+        beside_nose = self.pad_x[1] + ROOT + PLAY / 2 + LEAST_GAP
+        first = max(self.sill + EDGE, beside_nose) + self.pin_d / 2
         return round(ceil(10 * first) / 10, 6), round(self.rear_ends[0] - self.pin_d / 2, 6)
 
     @property
