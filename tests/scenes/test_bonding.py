@@ -235,6 +235,7 @@ def test_the_guide_says_every_step_with_its_limits():
     text = {s.title: s.text for s in scene.steps}
     assert "within 0.06 mm" in text["Gauge"] and "more than 3 % wrong" in text["Gauge"]
     assert "119.4 to 120.6 ohm" in text["Check resistance and insulation"]
+    assert "weight of 20 g (0.2 N)" in text["Check zero and sign"]
     assert "must rise" in text["Check zero and sign"] and "at arm 8" in text["Check zero and sign"]
     assert "0.18 %" in text["Check creep after 24 h"]
     backed, free = (float(v) for v in re.findall(r"at ([\d.]+) MPa", text["Clamp and cure"])[:2])

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from math import floor
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, PUSH, allowed_places, gauge_checks, volts
+from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, allowed_places, gauge_checks, volts
 from tactcad.parts.rigs.bonding_layout import AHEAD_OF_LEADS, BondingLayout
+from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 
 LOUPE = "stereo microscope or loupe, 20x"
 FIXTURE_TOOLS = ("arbor press or vice with soft jaws", "balance, 1 g")
@@ -16,7 +17,7 @@ GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
 TRIM_TOOLS = ("scalpel",)
 SOLDER_TOOLS = ("soldering iron with a 0.4 mm tip, temperature controlled",)
 OHMS_TOOLS = ("ohmmeter, four wires, 0.01 ohm", "insulation tester, 50 V at most")
-SIGN_TOOLS = ("weight of 20 g", "the array's read-out, or a bridge amplifier")
+SIGN_TOOLS = ("a small weight", "the array's read-out, or a bridge amplifier")
 THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
@@ -48,7 +49,7 @@ def surface(rig: BondingLayout) -> str:
         "flat stick, lightly, at 45 degrees and crosswise, no more than takes the gloss off: what is taken "
         "off the hinge is lost to its stiffness. Wet with conditioner, wipe, wet with neutraliser, wipe "
         "dry: each swab one stroke, one way, until none shows a trace. Water must then wet the face without "
-        "drawing back. Bond within 30 minutes, before the aluminium has its oxide again."
+        "drawing back. Bond within 30 minutes, before the metal has its oxide again."
     )
 
 
@@ -169,9 +170,10 @@ def zero(rig: BondingLayout) -> str:
     )
     return (
         f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
-        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of 20 g "
-        f"({PUSH:g} N) on the pad, which is how the object pushes. The resistance must rise, by about {arms} "
-        "(beam theory); where it falls, two leads are exchanged or the gauge is not on the pads' side."
+        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
+        f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
+        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the pads' "
+        "side; where only the read-out falls, two leads are exchanged."
     )
 
 
