@@ -172,8 +172,8 @@ def zero(rig: BondingLayout) -> str:
         f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
         "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
         f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
-        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the pads' "
-        "side; where only the read-out falls, two leads are exchanged."
+        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the "
+        "pads' side; where only the read-out falls, two leads are exchanged."
     )
 
 
