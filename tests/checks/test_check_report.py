@@ -110,7 +110,7 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     scenes = [make_scene(macro, name) for name in names]
     posed = [make_scene(macro, name, pose) for name in names for pose in poses(macro, name)]
     parts = {p.part_no: p for s in scenes for p in s.parts}
-    assert len(scenes) == 4 and len(posed) > 10
+    assert len(scenes) == 5 and len(posed) > 10
     expected = {
         (check, macro.name)
         for check in (

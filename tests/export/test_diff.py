@@ -111,8 +111,8 @@ def test_the_page_needs_nothing_else_and_shows_values_and_contours(thicker, tmp_
     assert_offline(text)
     assert "element.hinge_thickness" in text and "soft-tissue-element-a9mm" in text
     assert (
-        text.count('<path class="old"') == text.count('<path class="new"') == 4
-    )  # two parts, whole and enlarged
+        text.count('<path class="old"') == text.count('<path class="new"') == 6
+    )  # two elements and the bonding nest, whose tongue lies under the hinge; whole and enlarged
 
 
 def test_hostile_text_stays_text():

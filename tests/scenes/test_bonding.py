@@ -235,6 +235,7 @@ def test_the_guide_says_every_step_with_its_limits():
     text = {s.title: s.text for s in scene.steps}
     assert "within 0.06 mm" in text["Gauge"] and "more than 3 % wrong" in text["Gauge"]
     assert "119.4 to 120.6 ohm" in text["Check resistance and insulation"]
+    assert "weight of 20 g (0.2 N)" in text["Check zero and sign"]
     assert "must rise" in text["Check zero and sign"] and "at arm 8" in text["Check zero and sign"]
     assert "0.18 %" in text["Check creep after 24 h"]
     backed, free = (float(v) for v in re.findall(r"at ([\d.]+) MPa", text["Clamp and cure"])[:2])
@@ -261,3 +262,17 @@ def test_the_pins_are_standard_where_a_standard_one_is_long_enough():
     assert pin == "ISO8734-3x24-pin"
     rig = rig_of()
     assert rig.pin_length - rig.pin_depth == pytest.approx(rig.rest + rig.bar_bottom + 6.0)
+
+
+def test_an_array_is_built_the_same_with_and_without_its_fixture():
+    """What the fixture draws by chance does not move the array's own numbers."""
+    with_it, without = (
+        sensor(design, [make_scene(design, "array"), *more])
+        for design, more in (
+            (variant(), [make_scene(variant(), "bonding")]),
+            (variant({"bonding": DROP}), []),
+        )
+    )
+    assert [e.stiffness for e in with_it.built(200).elements] == [
+        e.stiffness for e in without.built(200).elements
+    ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -30,6 +31,13 @@ TONGUE_ = "bonding nest: tongue width"
 
 def bonding_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     """Requirements on a design with [bonding]; adds the variables they depend on to `known`."""
+    own: dict[str, DimensionLimits] = {}
+    wanted = _requirements(layout, own)
+    known |= {name: replace(v, apart=True) for name, v in own.items()}
+    return wanted
+
+
+def _requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
     rigs = bonding_rigs(layout.design)
     wanted = [_on_hinge(layout, rigs, known)]
     for rig in rigs:
@@ -60,7 +68,7 @@ def _on_hinge(
 
 def _on_backing(rig: BondingLayout, known: dict[str, DimensionLimits]) -> Requirement:
     """The rear body stands off its rest until the leaf lies on the tongue."""
-    nest, body = f"bonding nest{_kind(rig)}: tip over rest", "element: rear body's height over the leaf"
+    nest, body = f"bonding nest{_kind(rig)}: tip over rest", "bonding: rear body's height over the leaf"
     known[nest] = variable(nest, -TIP, TIP, stated=((_nest(rig), TIP_OVER_REST),))
     own = general(rig.design.element.rear_height)
     known.setdefault(body, variable(body, -own, own))

@@ -32,12 +32,14 @@ class DimensionLimits:
     name          part and dimension, as stack and findings call it
     lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
     stated        part number and limit that it is of; empty where it is of elements, or general
+    apart         of no array: drawn by chance of its own, so that an array is the same with and without it
     """
 
     name: str
     lower: Array
     upper: Array
     stated: tuple[tuple[str, str], ...] = ()
+    apart: bool = False
 
     @property
     def pieces(self) -> int:

@@ -51,12 +51,14 @@ def made(
         correlation of OFFSET_SHARE, so that each piece's own distribution is just the one asked for.
     """
     out = {}
+    own_chance = rng.spawn(1)[0]  # which draws nothing from rng itself
     for name, v in variables.items():
+        chance = own_chance if v.apart else rng
         middle, half = (v.upper + v.lower) / 2, (v.upper - v.lower) / 2
         if only is not None and name not in only:
             out[name] = np.broadcast_to(middle, (count, v.pieces))
             continue
-        shared, own = rng.standard_normal((count, 1)), rng.standard_normal((count, v.pieces))
+        shared, own = chance.standard_normal((count, 1)), chance.standard_normal((count, v.pieces))
         z = np.sqrt(OFFSET_SHARE) * shared + np.sqrt(1.0 - OFFSET_SHARE) * own if alike else own
         out[name] = middle + half * within_limits(z, distribution)
     return out

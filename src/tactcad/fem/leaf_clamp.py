@@ -64,6 +64,11 @@ def clamped(
         Of the gauge's grid, mm.
     tongue
         Flat length of its tip, mm; None: the leaf is not backed.
+
+    Raises
+    ------
+    CheckFailure
+        Where the leaf is too long and thin for these elements, or the mesh does not reach the design.
     """
     mesh = plane_mesh(reference_shape(s), DENSITY, whole=True, order=ORDER)
     space = PlaneSpace.of(mesh)
@@ -80,7 +85,7 @@ def clamped(
     solution = PlaneSolution(np.nan, u.reshape(-1, 2).T, space, mesh, len(u), E, nu, False)
     flat, slot = face_strain(solution, "flat"), face_strain(solution, "slot")
     free = np.abs(slot.x) > ((tongue or 0.0) + float(s.hinge_thickness)) / 2
-    stress = max(np.abs(flat.stress).max(), np.abs(slot.stress[free]).max())
+    stress = np.abs(np.concatenate([flat.stress, slot.stress[free]])).max()
     return Clamped(float(stress), float(flat.mean(grid_length)), on_tongue)
 
 

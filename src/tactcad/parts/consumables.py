@@ -68,7 +68,7 @@ def bonding_supplies() -> tuple[Supply, ...]:
     return (
         Supply(
             "SURFACE-PREPARATION",
-            "solvent, acid conditioner and neutraliser for aluminium, lint-free swabs",
+            "solvent, acid conditioner and neutraliser for the elements' metal, lint-free swabs",
             1,
             "set",
             "surface preparation set for strain gauges",

@@ -22,7 +22,7 @@ HURT = 0.005
 # Installation Tester 1300).
 FRESH_INSULATION = 1e10
 CREEP_FROM, CREEP_TO = 1.0, 60.0  # min of the held load; chosen: an hour shows 1.8 decades
-PUSH = 0.2  # N on the pad for sign and size of the signal; chosen: a weight of 20 g
+PUSH = 0.2  # N on the pad for sign and size of the signal, or rating.force; chosen: a weight of 20 g
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class GaugeChecks:
     zero         dR/R, most of the bonded gauge against its bridge, so that no reading leaves amplifier or
                  converter
     creep        share of the signal, most between CREEP_FROM and CREEP_TO under a held load
-    rise         by arm length (mm): dR/R, about, under PUSH away from the object
+    push, rise   N on the pad, away from the object, and by arm length (mm) dR/R under it, about
     """
 
     resistance: tuple[float, float]
@@ -42,6 +42,7 @@ class GaugeChecks:
     leak: float
     zero: float
     creep: float
+    push: float
     rise: tuple[tuple[float, float], ...]
 
 
@@ -59,13 +60,15 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     signal = factor * per_newton * d.rating.force
     # as 4 V/(U G) of what the output may span less the signal: the bridge's slope at zero
     room = 4 * min(electronics.highest, -electronics.lowest) / (electronics.excitation * electronics.gain)
-    arms = dict(zip((p.arm for p in layout.elements), factor * per_newton * PUSH, strict=True))
+    push = min(PUSH, d.rating.force)
+    arms = dict(zip((p.arm for p in layout.elements), factor * per_newton * push, strict=True))
     return GaugeChecks(
         (R * (1 - HURT), R * (1 + HURT)),
         FRESH_INSULATION,
         R / d.tolerance.zero_drift if d.tolerance.zero_drift else FRESH_INSULATION,
         max(0.0, room - float(np.max(signal))),
         d.tolerance.creep * log10(CREEP_TO / CREEP_FROM),
+        push,
         tuple(sorted((arm, float(rise)) for arm, rise in arms.items())),
     )
 

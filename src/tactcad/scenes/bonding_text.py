@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import floor
 
-from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, PUSH, allowed_places, gauge_checks, volts
+from tactcad.design.messages import CheckFailure
+from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, allowed_places, gauge_checks, volts
 from tactcad.parts.rigs.bonding_layout import AHEAD_OF_LEADS, BondingLayout
+from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 
 LOUPE = "stereo microscope or loupe, 20x"
 FIXTURE_TOOLS = ("arbor press or vice with soft jaws", "balance, 1 g")
@@ -15,7 +17,7 @@ GAUGE_TOOLS = (LOUPE, "tweezers", "clear tape for gauges")
 TRIM_TOOLS = ("scalpel",)
 SOLDER_TOOLS = ("soldering iron with a 0.4 mm tip, temperature controlled",)
 OHMS_TOOLS = ("ohmmeter, four wires, 0.01 ohm", "insulation tester, 50 V at most")
-SIGN_TOOLS = ("weight of 20 g", "the array's read-out, or a bridge amplifier")
+SIGN_TOOLS = ("a small weight", "the array's read-out, or a bridge amplifier")
 THUMB = 20.0  # N; chosen: a thumb that presses hard
 
 
@@ -29,13 +31,11 @@ def fixture(rigs: Sequence[BondingLayout]) -> str:
     )
     return (
         f"Press the pins square into the nest from above, {rig.pin_depth:g} mm deep: "
-        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's "
-        f"nose, edges "
-        f"flush, with silicone adhesive; weigh the bar: {rig.bar_mass:.3g} g within 5 %, which "
-        f"press {rig.bar_pressure:.2g} MPa on the gauge. It must slide down on the pins by its own weight, "
-        "either way round. Hold the nest in a vice by its foot, level. The tongue's ends stand out at both "
-        f"sides of an element: they are the marks that the gauge is set by, so do not break their "
-        f"edges.{kinds}"
+        f"{rig.pin_length - rig.pin_depth:g} mm stand out. Stick the rubber under the clamp bar's nose, "
+        f"edges flush, with silicone adhesive; weigh the bar: {rig.bar_mass:.3g} g within 5 %, which press "
+        f"{rig.bar_pressure:.2g} MPa on the gauge. It must slide down on the pins by its own weight, either "
+        "way round. Hold the nest in a vice by its foot, level. The tongue's ends stand out at both sides "
+        f"of an element: they are the marks that the gauge is set by, so do not break their edges.{kinds}"
     )
 
 
@@ -44,12 +44,12 @@ def surface(rig: BondingLayout) -> str:
     face = "flat face" if d.element.sides == "one" else "floor of the slot on the pads' side"
     thinnest = min(place.hinge.t for place in rig.array.elements)
     return (
-        "Hold an element by its rear body only, never by its arm: the hinge is "
-        f"{thinnest:g} mm thick. Degrease all of it with solvent. Abrade the {face} over the gauge's length "
-        "with P400 paper on a flat stick, lightly, at 45 degrees and crosswise, no more than takes the gloss "
-        "off: what is taken off the hinge is lost to its stiffness. Wet with conditioner, wipe, wet with "
-        "neutraliser, wipe dry: each swab one stroke, one way, until none shows a trace. Water must then wet "
-        "the face without drawing back. Bond within 30 minutes, before the aluminium has its oxide again."
+        f"Hold an element by its rear body only, never by its arm: the hinge is {thinnest:g} mm thick. "
+        f"Degrease all of it with solvent. Abrade the {face} over the gauge's length with P400 paper on a "
+        "flat stick, lightly, at 45 degrees and crosswise, no more than takes the gloss off: what is taken "
+        "off the hinge is lost to its stiffness. Wet with conditioner, wipe, wet with neutraliser, wipe "
+        "dry: each swab one stroke, one way, until none shows a trace. Water must then wet the face without "
+        "drawing back. Bond within 30 minutes, before the metal has its oxide again."
     )
 
 
@@ -58,9 +58,8 @@ def element_in(rig: BondingLayout) -> str:
         "Lay the element on its back into the nest, between the pins, its slot over the tongue, the rear "
         f"body down on its rest, which is {rig.drop:g} mm low: the leaf lies on the tongue, and the rear end "
         "on the rest. Tap the rear body with a plastic rod: it must lie still. Along the tongue the element "
-        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it "
-        f"lies from now "
-        "on."
+        f"has {rig.play:g} mm of play, or what its slot is longer than drawn; leave it where it lies from "
+        "now on."
     )
 
 
@@ -73,38 +72,43 @@ def gauge(rigs: Sequence[BondingLayout]) -> str:
         f"Trim the gauge's carrier to {d.gauge.carrier_arm_side:g} mm before its grid's middle and "
         f"{d.gauge.carrier_body_side:g} mm behind it, {d.gauge.carrier_width:g} mm wide, solder tabs to the "
         "rear. Pick it up with tape and set it on the face under the microscope, the marks of its grid's "
-        "middle halfway between the tongue's two edges, which stand out at both sides of the element, within "
-        f"{table.sight:g} mm, and in the middle of its width. The grid must lie on the hinge's middle within "
-        f"{floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest "
-        f"arm's signal is "
-        f"more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the gauge, "
-        f"then lift it from "
-        "the arm's side with the gauge on it. Put one thin drop of adhesive on the face, lay gauge and tape "
-        "down again from the rear with one stroke of a finger on release film, and let go."
+        "middle halfway between the tongue's two edges, which stand out at both sides of the element, "
+        f"within {table.sight:g} mm, and in the middle of its width. The grid must lie on the hinge's middle "
+        f"within {floor(1e3 * allowed) / 1e3:g} mm, the tongue's play included: further off the shortest "
+        f"arm's signal is more than {100 * table.signal_share:g} % wrong. Stick the tape down behind the "
+        "gauge, then lift it from the arm's side with the gauge on it. Put one thin drop of adhesive on the "
+        "face, lay gauge and tape down again from the rear with one stroke of a finger on release film, and "
+        "let go."
     )
 
 
 def clamp(rigs: Sequence[BondingLayout]) -> str:
     """What presses how much for how long, and what the leaf bears."""
     rig = rigs[0]
-    backed, free = (min(borne(each, by) for each in rigs) for by in (True, False))
-    thumb = THUMB / rig.pad_area
-    safe = "the leaf bears that too, backed" if thumb < backed else "never do that"
     return (
-        "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. "
-        f"Let it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to "
-        f"30 degrees "
-        "C and 30 to 65 % relative humidity for cyanoacrylates. It presses "
-        f"{rig.bar_pressure:.2g} MPa; the leaf yields at {backed:.2g} MPa on its tongue, and at {free:.2g} "
-        f"MPa if the tongue is forgotten (plane elements). A thumb of {THUMB:g} N on the bar is "
-        f"{thumb:.2g} MPa: "
-        f"{safe}. Lift the bar straight up; peel film and tape back over themselves."
+        "Release film on the gauge, then at once the clamp bar down on the pins, rubber on the gauge. Let "
+        f"it lie {rig.table.cure:g} min, or as long as the adhesive's own sheet asks, at 20 to 30 degrees C "
+        f"and 30 to 65 % relative humidity for cyanoacrylates. It presses {rig.bar_pressure:.2g} MPa; "
+        f"{_bears(rigs)} Lift the bar straight up; peel film and tape back over themselves."
+    )
+
+
+def _bears(rigs: Sequence[BondingLayout]) -> str:
+    try:
+        backed, free = (min(borne(rig, by) for rig in rigs) for by in (True, False))
+    except CheckFailure:  # far thinner than long: the elements say so
+        return "press on it no harder: what so thin a leaf bears, plane elements do not tell."
+    thumb = THUMB / rigs[0].pad_area
+    safe = "the leaf bears that too, backed." if thumb < backed else "do not."
+    return (
+        f"the leaf yields at {backed:.2g} MPa on its tongue, and at {free:.2g} MPa if the tongue is "
+        f"forgotten (plane elements). A thumb of {THUMB:g} N on the bar is {thumb:.2g} MPa: {safe}"
     )
 
 
 def borne(rig: BondingLayout, backed: bool) -> float:
-    """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its
-    tongue."""
+    """Pressure on the gauge at which a leaf of this kind yields, MPa, in the fixture or without its tongue.
+    Raises CheckFailure where elements do not reach it."""
     from tactcad.fem.leaf_clamp import clamped  # scipy
     from tactcad.parts.hinge_section import hinge_section
 
@@ -121,9 +125,9 @@ def borne(rig: BondingLayout, backed: bool) -> float:
 def terminals(rig: BondingLayout) -> str:
     return (
         "Cut away adhesive that stands out beside the leaf, with the scalpel along the face, never across "
-        "the hinge: both slots must be free. Bond the solder terminals, "
-        f"{rig.table.terminal_length:g} x {rig.terminal_width:g} mm, on the floor of the wire recess, their "
-        f"front end {AHEAD_OF_LEADS:g} mm behind its wall: there nothing bends, and leads and solder stay "
+        f"the hinge: both slots must be free. Bond the solder terminals, {rig.table.terminal_length:g} x "
+        f"{rig.terminal_width:g} mm, on the floor of the wire recess, their front end {AHEAD_OF_LEADS:g} mm "
+        "behind its wall: there nothing bends, and leads and solder stay "
         f"{rig.design.element.recess_depth:g} mm below the face."
     )
 
@@ -131,9 +135,9 @@ def terminals(rig: BondingLayout) -> str:
 def solder(rig: BondingLayout) -> str:
     return (
         "Tin tabs and terminals, then join each tab to its terminal with one bare strand in a loose arc, so "
-        "that no lead pulls on the gauge. Solder three leads to the terminals, two on one of them: the third "
-        "takes the leads' own resistance out of the bridge. Lay them in the recess to the rear end. Each "
-        "joint within 2 s; clean off all flux."
+        "that no lead pulls on the gauge. Solder three leads to the terminals, two on one of them: the "
+        "third takes the leads' own resistance out of the bridge. Lay them in the recess to the rear end. "
+        "Each joint within 2 s; clean off all flux."
     )
 
 
@@ -144,9 +148,8 @@ def resistance(rig: BondingLayout) -> str:
         f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
         f"ohm, which is the gauge's own within {100 * HURT:g} %; more says that the grid was hurt. "
         f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
-        f"let pass in a laboratory; flux or moisture is below. Never use one below "
-        f"{c.leak / 1e6:.2g} Mohm: a "
-        "leak of that, which comes and goes, reads as all of tolerance.zero_drift."
+        f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: "
+        "a leak of that, which comes and goes, reads as all of tolerance.zero_drift."
     )
 
 
@@ -167,9 +170,10 @@ def zero(rig: BondingLayout) -> str:
     )
     return (
         f"Zero: the unloaded bridge within {100 * c.zero:.2g} % of dR/R, or amplifier or converter is full "
-        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of 20 g "
-        f"({PUSH:g} N) on the pad, which is how the object pushes. The resistance must rise, by about {arms} "
-        "(beam theory); where it falls, two leads are exchanged or the gauge is not on the pads' side."
+        "before the pad bears rating.force. Sign: hold the rear body, pad up, and set a weight of "
+        f"{1e3 * c.push / STANDARD_GRAVITY:.2g} g ({c.push:g} N) on the pad, which is how the object pushes. "
+        f"The resistance must rise, by about {arms} (beam theory). Where it falls, the gauge is not on the "
+        "pads' side; where only the read-out falls, two leads are exchanged."
     )
 
 
@@ -177,9 +181,8 @@ def creep(rig: BondingLayout) -> str:
     c, d = gauge_checks(rig.array), rig.design
     return (
         "Not before the adhesive has cured for 24 h. Hold the rated force on the pad: between "
-        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of "
-        f"itself at most "
-        f"(tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero must "
-        "come back within as much. Where a gauge fails here or before, take it off with solvent and bond a "
-        "spare; the hinge's thickness is then measured anew."
+        f"{CREEP_FROM:g} and {CREEP_TO:g} min the signal may change by {100 * c.creep:.2g} % of itself at "
+        f"most (tolerance.creep, {100 * d.tolerance.creep:g} %, for each decade of time); unloaded, the zero "
+        "must come back within as much. Where a gauge fails here or before, take it off with solvent and "
+        "bond a spare; the hinge's thickness is then measured anew."
     )

@@ -43,6 +43,7 @@ FLOOR_GAP = 0.5
 # Rear body over its rest where the leaf lies on the tongue, beside what general tolerances take; chosen: so
 # that the tongue bears, and never the rest alone.
 DROP = 0.05
+TONGUE_EDGE = 0.025  # radius of the tongue's edges, plus and minus mm; chosen: one pass of the wire
 BASE = 10.0  # nest under the rest, mm; chosen: the pins' holes, and for a vice to hold it
 SILL = 0.3  # the nest's step before the rear body, mm; chosen: the shortest clamp edge stays free of it
 ROOT = 0.3  # inside corners of what the wire cuts, mm; chosen: twice the wire's least
@@ -126,9 +127,11 @@ class BondingLayout:
 
     @property
     def tongue_radius(self) -> float:
-        """Of the tongue's edges: they stay clear of the slot's fillets, its tip lies on the floor."""
-        wanted = self.hinge.r + self.design.tolerance.fillet_radius
-        return round(min(wanted, self.tongue / 2), 6)
+        """Of the tongue's edges: they stay clear of the slot's fillets at any limits, its tip lies on the
+        floor. A tip with hardly a flat is one round."""
+        wanted = self.hinge.r + self.design.tolerance.fillet_radius + TONGUE_EDGE
+        half = self.tongue / 2
+        return round(wanted if wanted + TONGUE_EDGE <= half else half, 6)
 
     @property
     def play(self) -> float:
@@ -187,7 +190,8 @@ class BondingLayout:
     @property
     def pin_x(self) -> tuple[float, float]:
         """x of the pairs of pins: behind step and clamp's nose, and before the nearest rear end."""
-        first = max(self.sill + EDGE, self.pad_x[1] + LEAST_GAP) + self.pin_d / 2
+        beside_nose = self.pad_x[1] + ROOT + PLAY / 2 + LEAST_GAP
+        first = max(self.sill + EDGE, beside_nose) + self.pin_d / 2
         return round(ceil(10 * first) / 10, 6), round(self.rear_ends[0] - self.pin_d / 2, 6)
 
     @property

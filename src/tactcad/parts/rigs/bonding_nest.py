@@ -14,13 +14,12 @@ from tactcad.contour import Contour, Corner, rounded_polygon
 from ..description import Extrusion, Hole, Part
 from ..end_plate import PRESS_FIT, pressed
 from ..library.dowels import dowel_diameter
-from ..limits import FACES, Characteristic, DatumFeature, Geometric, within
+from ..limits import FACES, DatumFeature, Geometric, within
 from ..part_materials import STAINLESS
 from ..plate import BREAK_EDGES, PLACE, RIG_COLOUR
-from .bonding_layout import BASE, ROOT, TIP, TONGUE, BondingLayout, kind_suffix
+from .bonding_layout import BASE, ROOT, TIP, TONGUE, TONGUE_EDGE, BondingLayout, kind_suffix
 
 TONGUE_WIDTH, TIP_OVER_REST, EDGE_RADIUS = "tongue width", "tongue's tip over the rest", "tongue's edges"
-EDGE_MORE = 0.05  # mm that the tongue's edges may be rounder; chosen: three passes of the wire
 
 
 def bonding_nest(rig: BondingLayout) -> Part:
@@ -37,7 +36,7 @@ def bonding_nest(rig: BondingLayout) -> Part:
     if tip == "tongue_tip":  # a full round's width defines it
         r = rig.tongue_radius
         edges = ("tongue_back_edge", "tongue_front_edge")
-        limits.append(Characteristic(EDGE_RADIUS, r, round(r + EDGE_MORE, 9), r, between=edges))
+        limits.append(within(EDGE_RADIUS, r, TONGUE_EDGE, between=edges))
     return Part(
         part_no=f"{rig.design.name}-bonding-nest{kind_suffix(rig)}",
         name="Bonding fixture, nest",
