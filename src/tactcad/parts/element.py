@@ -25,7 +25,6 @@ from .plate import PLACE
 from .wire_passes import least_passes
 
 BARE_METAL = "#c3c8ce"
-SPARES = 1  # of every number; chosen: the paper's no. 5 of ten did not work
 
 
 def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Part:
@@ -53,7 +52,6 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         body=Extrusion(outer, design.sheet.thickness, mounting_holes(layout)),
         colour=BARE_METAL,
         finish="Ra 0.8 on hinge faces",
-        spares=SPARES,
         notes=(
             f"wire-cut in at least {passes}, both hinge faces skimmed",
             "burr-free, do not tumble",
