@@ -51,7 +51,7 @@ def circuit_written(order: CircuitOrder) -> Written:
     identity = order.design.design
     sheets = circuit_sheets(order.design, order.draft)
     pdf = pdf_bytes(
-        sheets, f"{order.name} revision {identity.revision}: circuit", identity.author, identity.date
+        sheets, f"{order.name} revision {identity.revision}: circuit", identity.author or "", identity.date
     )
     runs = " ".join(run for page in pdf_runs(pdf) for run in page)
     wanted = [c.designator for c in netlist(Layout(order.design)).of_kind("gauge")]
