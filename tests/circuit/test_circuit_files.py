@@ -18,7 +18,6 @@ from tactcad.circuit.wiring_list import wiring
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
 from tactcad.export import circuit_files
-from tactcad.parts.consumables import array_supplies
 from tactcad.parts.layout import Layout
 from tactcad.parts.lead_route import lead_routes
 from tactcad.scenes import make_scene
@@ -195,9 +194,10 @@ def test_every_lead_joins_a_terminal_and_a_pin_of_its_own():
 )
 def test_the_bill_counts_the_netlist(changes):
     """Every component but a lead is a piece of its line of the bill, and no line has more."""
-    layout = Layout(variant(changes))
+    design = variant(changes)
+    layout = Layout(design)
     counted = Counter(c.part_no for c in netlist(layout).components if c.kind != "lead")
-    bill = {s.part_no: s for s in array_supplies(layout)}
+    bill = {s.part_no: s for s in make_scene(design, "array").supplies}
     billed = {n: s.qty for n, s in bill.items() if n not in ("ADHESIVE", "COATING", "LEAD-WIRE")}
     assert counted == billed
     metres = sum(float(lead.length) for lead in wiring(layout)) / 1000

@@ -12,7 +12,7 @@ from tactcad.circuit.wiring_list import wiring
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.bridge_figures import settling_time
-from tactcad.parts.electronic_parts import wire_metres
+from tactcad.parts.electronic_supplies import wire_metres
 from tactcad.parts.layout import Layout
 from tactcad.parts.lead_route import leads
 

@@ -1,25 +1,22 @@
-"""What the array needs and is not modelled as a solid: gauges, adhesive, terminals, wire, bridge
-resistors.
+"""What the array needs and is not modelled as a solid: gauges, adhesive, terminals; electronic_supplies.py
+has what reads it.
 """
 
 from __future__ import annotations
 
-from tactcad.design.electronics import WIRES
 from tactcad.design.materials import family
 
-from .electronic_parts import GAUGE, LEAD, TERMINAL, board_supplies, completion_supply, wire_metres
+from .electronic_parts import GAUGE, TERMINAL
 from .layout import Layout
-from .lead_route import leads
 from .spares import bonded_spares
 from .supply import Supply
 
 
 def array_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """Gauges, what they are bonded and wired with, and the boards' parts."""
+    """Gauge and bonding supplies of the array, none of them verified in a maker's own data."""
     g, material = layout.design.gauge, layout.design.material
     n = len(layout.elements)
     spare_gauges = bonded_spares(n)
-    wire = WIRES[layout.design.wiring.wire]
     ohm = f"{g.resistance:g} ohm"
     return (
         Supply(
@@ -34,7 +31,6 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             spares=spare_gauges,
             consumable=False,
         ),
-        completion_supply(layout),
         Supply(
             TERMINAL,
             "solder terminal pair, self-adhesive",
@@ -51,15 +47,6 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             "pack",
             "polyurethane or silicone gauge coating",
         ),
-        Supply(
-            LEAD,
-            f"lead wire, {leads(layout)} per gauge, in their colours",
-            wire_metres(layout),
-            "m",
-            f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation",
-            spares=round(wire_metres(layout) * spare_gauges / n, 1),
-        ),
-        *board_supplies(layout),
     )
 
 

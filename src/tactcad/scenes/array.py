@@ -12,6 +12,7 @@ from tactcad.parts.blank import blank
 from tactcad.parts.carrier import carrier
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.description import Part
+from tactcad.parts.electronic_supplies import electronic_supplies
 from tactcad.parts.element import element
 from tactcad.parts.end_plate import end_plate
 from tactcad.parts.fasteners import carrier_screw, clamping
@@ -68,7 +69,7 @@ def without_gaps(design: Design) -> Scene:
 def _placed(layout: Layout, instead: Mapping[int, Part], stops: bool) -> Builder:
     """Every part at its place, with its contacts and the step that puts it there."""
     b = Builder()
-    b.supplies += array_supplies(layout)
+    b.supplies += (*array_supplies(layout), *electronic_supplies(layout))
     on_ledge = _stack(b, layout, instead)
     _clamping(b, layout)
     _carrier_screws(b, layout)
