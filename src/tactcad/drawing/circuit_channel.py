@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactcad.circuit.bridges import EXCITATION
+from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.circuit.wiring_list import COLOURS
 
@@ -13,6 +13,7 @@ from .page import Page
 from .paper import A3
 from .title import notes
 
+SUPPLIES = (POSITIVE, NEGATIVE, LOGIC)
 RAIL = 262.0  # mm on the paper: the bridges' supply
 RED, WHITE, MINUS, BLACK = 224.0, 210.0, 200.0, 176.0
 
@@ -110,6 +111,8 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
     items.append(line((foot[0] + 12.0, BLACK - 8.0), (166.0, BLACK - 8.0), (166.0, gate[1]), gate))
     items += symbols.box(196.0, 190.0, 30.0, 30.0, multiplexer.designator, multiplexer.value)
     items += symbols.box(196.0, 128.0, 30.0, 30.0, decoder.designator, decoder.value)
+    items.append(label((196.0, 186.0), _fed(multiplexer), SMALL))
+    items.append(label((196.0, 124.0), _fed(decoder), SMALL))
     items.append(label((198.0, gate[1] - 0.9), f"{_pin(decoder, 'Y0')} Y0", SMALL))
     for role, y in (("S1A", WHITE), ("S1B", MINUS)):
         items.append(label((198.0, y - 0.9), f"{_pin(multiplexer, role)} {role}", SMALL))
@@ -123,6 +126,15 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
         named = f"{multiplexer.net(role)}, also {multiplexer.designator}.{_pin(multiplexer, role)}"
         items += symbols.stub((226.0, y), 0.0, named)
     return items
+
+
+def _fed(component: Component) -> str:
+    """Which of its pins, but for channels that are not used, are on supplies and ground."""
+    pins: dict[str, list[str]] = {}
+    for pin in component.pins:
+        if pin.net in (GROUND, *SUPPLIES) and not pin.role.startswith("S"):
+            pins.setdefault(pin.net, []).append(pin.number)
+    return "pins " + "; ".join(f"{', '.join(numbers)} on {net}" for net, numbers in pins.items())
 
 
 def _pin(component: Component, role: str) -> str:

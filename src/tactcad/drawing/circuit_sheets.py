@@ -103,7 +103,7 @@ def _channel_notes(layout: Layout) -> list[str]:
         "all others are off",
         f"Sample {settled:.0f} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
         "the output is read between OUT and GND",
-        "All other channels are alike: next sheets",
+        "All other channels are alike: next sheets; inputs of channels that are not used are on GND",
     ]
 
 
