@@ -5,6 +5,7 @@ import json
 import pytest
 
 from tactcad.cli.main import main
+from tactcad.design.load import find
 
 
 def test_the_shipped_array_goes_together(capsys):
@@ -17,6 +18,22 @@ def test_the_shipped_array_goes_together(capsys):
     for line in made["requirements"]:
         assert line["worst_low"] <= line["nominal"] <= line["worst_high"]
         assert sum(c["share"] for c in line["contributors"]) == pytest.approx(1.0)
+
+
+def test_what_has_no_stiffness_says_null(tmp_path, capsys):
+    """A hinge of 0.05 mm lies outside the closed form: JSON has no NaN (RFC 8259), and Python's reader would
+    take one."""
+
+    def no_number(text):
+        raise AssertionError(text)
+
+    text = find("macro-array").read_text().replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
+    (tmp_path / "thin.toml").write_text(text)
+    main(["build", str(tmp_path / "thin.toml"), "--count", "5", "--json"])
+    made = json.loads(capsys.readouterr().out, parse_constant=no_number)
+    for element in made["elements"]:
+        assert element["stiffness"] == [None, None] and element["stop_closes_at_least"] is None
+        assert element["stop_gap"][0] > 0
 
 
 def test_the_same_seed_says_the_same(capsys):

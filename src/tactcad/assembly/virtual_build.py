@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +38,17 @@ class ElementBuilt:
     load_arm: tuple[float, float]
     stop_gap: tuple[float, float]
     stop_closes_at_least: float
+
+    def known(self) -> dict[str, Any]:
+        """By field, with None for figures that are not: arrays built outside the closed form's range have no
+        stiffness."""
+
+        def figures(value: Any) -> Any:
+            if isinstance(value, tuple):
+                return tuple(map(figures, value))
+            return value if isfinite(value) else None
+
+        return {name: figures(value) for name, value in asdict(self).items()}
 
 
 @dataclass(frozen=True)

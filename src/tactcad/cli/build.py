@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     lines = made.stack()
     refusal = made.refusal(builds)
     if args.json:
-        print(json.dumps(_record(builds, lines, seconds, refusal), indent=1))
+        print(json.dumps(_record(builds, lines, seconds, refusal), indent=1, allow_nan=False))
     else:
         _print(made.layout.design.name, builds, lines)
     if refusal:
@@ -87,7 +87,7 @@ def _record(builds: Builds, lines: list[StackLine], seconds: float, refusal: str
             }
             for line in lines
         ],
-        "elements": [asdict(e) for e in builds.elements],
+        "elements": [e.known() for e in builds.elements],
         "refused": refusal,
         "seconds": seconds,
     }

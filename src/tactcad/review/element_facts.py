@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from math import isfinite, sqrt
+from math import sqrt
 from typing import Any
 
 from tactcad.assembly.stack import SEED, StackLine
@@ -92,20 +92,9 @@ def _facts(design: Design, builds: Builds) -> ElementFacts:
             "estimate": asdict(row) if row else None,
             "gauge_per_newton": _per_newton(low.gauge_strain, low) if low else None,
             "fillet_per_newton": _per_newton(low.peak_strain, low) if low else None,
-            "built": _known(asdict(built[place.number])) if place.number in built else None,
+            "built": built[place.number].known() if place.number in built else None,
         }
     return ElementFacts(DEFAULT_RUNG, elements, tuple(_pairs(rows)), why_not, _fit(builds))
-
-
-def _known(figures: dict[str, Any]) -> dict[str, Any]:
-    """With None for figures that are not: arrays built outside the closed form's range have no stiffness."""
-
-    def known(value: Any) -> Any:
-        if isinstance(value, tuple):
-            return tuple(map(known, value))
-        return value if isfinite(value) else None
-
-    return {name: known(value) for name, value in figures.items()}
 
 
 def _per_newton(strain: float | None, row: ElementEstimate) -> float | None:
