@@ -85,12 +85,13 @@ def seed(design: str, old: str, new: str, path: str, **means) -> Seed:
 SOFT_E = {"element-a5mm", "element-a9mm"}
 MACRO_E = {f"element-a{n}mm" for n in (4, 5, 6, 7, 8)}
 SMALL_E = {"element-a4mm", "element-a8mm"}
+FIXTURE = {"bonding-nest", "bonding-clamp"}
 SPRING = {"stiffness", "rated_force", "signal_per_force", "stop_gap"}
 
 SEEDS = {
     "5 um of hinge, soft": seed(
         SOFT, "hinge_thickness = 0.15", "hinge_thickness = 0.155", "element.hinge_thickness",
-        elements="E1 E2 E3 E4 E5 E6 E7 E8", revised=SOFT_E, figures=SPRING,
+        elements="E1 E2 E3 E4 E5 E6 E7 E8", revised=SOFT_E | {"bonding-nest"}, figures=SPRING,
     ),
     "two elements swapped, soft": seed(
         SOFT, "[[5, 9, 5, 9]", "[[9, 5, 5, 9]", "array.row_arms", elements="E1 E2", figures=SPRING,
@@ -105,8 +106,10 @@ SEEDS = {
     ),
     "one element's hinge": seed(
         SOFT, "[gauge]", "[element.override.3]\nhinge_thickness = 0.16\n[gauge]",
-        "element.override.3.hinge_thickness", elements="E3", added={"element-a5mm-t0.16mm"},
-        bill=r"soft-tissue-element-a5mm(-t0\.16mm)?", figures={"stiffness", "signal_per_force", "stop_gap"},
+        "element.override.3.hinge_thickness", elements="E3",
+        added={"element-a5mm-t0.16mm", "bonding-nest-t0.16mm", "bonding-clamp-t0.16mm"},
+        bill=r"soft-tissue-(element-a5mm|bonding-nest|bonding-clamp)(-t0\.16mm)?|ISO8734-3x24-pin|PAD-4x1x1-rubber",
+        figures={"stiffness", "signal_per_force", "stop_gap"},
     ),
     "an element added, soft": seed(
         SOFT, "[[5, 9, 5, 9]", "[[5, 9, 9, 5, 9]", "array.row_arms",
@@ -115,7 +118,7 @@ SEEDS = {
         "|IRLML6244TRPBF",
     ),
     "pad 0.05 higher": seed(
-        SOFT, "pad_height = 1.6", "pad_height = 1.65", "element.pad_height", revised=SOFT_E,
+        SOFT, "pad_height = 1.6", "pad_height = 1.65", "element.pad_height", revised=SOFT_E | FIXTURE,
     ),
     "another gauge factor": seed(
         SOFT, "[gauge]", "[gauge]\nfactor = 2.0", "gauge.factor", figures={"signal_per_force"},
@@ -131,7 +134,7 @@ SEEDS = {
     "a date": seed(SOFT, 'date = "2026-11-21"', 'date = "2026-11-22"', "design.date"),
     "5 um of hinge, macro": seed(
         MACRO, "hinge_thickness = 0.25", "hinge_thickness = 0.255", "element.hinge_thickness",
-        elements="E1 E2 E3 E4 E5 E6 E7 E8 E9 E10", revised=MACRO_E, figures=SPRING,
+        elements="E1 E2 E3 E4 E5 E6 E7 E8 E9 E10", revised=MACRO_E | {"bonding-nest"}, figures=SPRING,
     ),
     "rounder corners": seed(
         MACRO, "\ncorner_radius = 0.3", "\ncorner_radius = 0.35", "element.corner_radius", revised=MACRO_E,
@@ -167,12 +170,13 @@ SEEDS = {
     ),
     "5 um of slot": seed(
         SMALL, "hinge_length = 0.88", "hinge_length = 0.885", "element.hinge_length", elements="E1 E2 E3 E4",
-        revised=SMALL_E | OF_ARRAY | {"carrier", "stop-plate", "array-mount", "ballast"},
+        revised=SMALL_E | OF_ARRAY | FIXTURE | {"carrier", "stop-plate", "array-mount", "ballast"},
         figures={"stiffness", "rated_force", "signal_per_force"},
     ),
     "5 um of fillet": seed(
         SMALL, "fillet_radius = 0.30", "fillet_radius = 0.305", "element.fillet_radius",
-        elements="E1 E2 E3 E4", revised=SMALL_E, figures={"stiffness", "rated_force", "signal_per_force"},
+        elements="E1 E2 E3 E4", revised=SMALL_E | {"bonding-nest"},
+        figures={"stiffness", "rated_force", "signal_per_force"},
     ),
     "less travel": seed(SMALL, "[calibration]", "[calibration]\ntravel = 0.1", "calibration.travel"),
     "an element and longer screws": seed(
