@@ -38,6 +38,7 @@ WHOLE = {
     "full round": {"element.fillet_radius": 0.44},
     "arm 0.5 mm": {
         "array.row_arms": [[0.5, 0.5]],
+        "readout.excitation": 2.0,  # so small a grid bears no more
         "tolerance.ledge": 0.0005,
         "tolerance.pad_height": 0.002,
         "array.row_pitch": 0.4,
@@ -71,6 +72,7 @@ WHOLE = {
         "array.pitch": 1.1,
         "gauge.carrier_width": 0.1,
         "gauge.grid_width": 0.1,
+        "readout.excitation": 2.0,  # so small a grid bears no more
         "rating.overload_force": 5.0,
     },
     "block of 20 mm": {"sheet.thickness": 20.0, "array.pitch": 21.0},

@@ -117,8 +117,8 @@ def test_what_is_in_it(files):
     sheets = {n for n in files if n.startswith("pdf/")}
     made = {
         n for n in files if n.startswith("step/tiny-") and "-ap242" not in n
-    }  # one sheet a part made, one drawing a scene
-    assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made}
+    }  # one sheet a part made, one drawing a scene, and the circuit's
+    assert {Path(n).stem for n in sheets} == {Path(n).stem for n in made} | {f"tiny-circuit_{REVISION}"}
     assert {"bom.csv", "inspection.csv", "strength.csv", f"dxf/tiny-element-a5mm_{REVISION}.dxf"} <= set(
         files
     )
@@ -359,7 +359,7 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
     with zipfile.ZipFile(copy / "out" / f"tiny-{REVISION}-PRELIMINARY.zip") as archive:
         readme = archive.read("README.txt").decode()
         sheets = {n: pdf_runs(archive.read(n)) for n in archive.namelist() if n.endswith(".pdf")}
-    assert len(sheets) == 8 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
+    assert len(sheets) == 9 and all("PRELIMINARY" in runs for pages in sheets.values() for runs in pages)
     assert DRAFT in readme.splitlines()[:5]
     flat = " ".join(readme.split())
     assert all(" ".join(failure.split()) in flat for failure in record["failures"])
