@@ -304,6 +304,9 @@ def test_the_page_follows_the_file(running, live, server):
     for what, estimated in zip(("K, N/mm", "rated, N", "yields at, N"), zip(*map(estimates, (TEXT, THICK)))):
         rows = [row[2:5:2] for row in told if row[:2] == ["E1", what]]
         assert rows == ([[f"{value:.4g}" for value in estimated]] if len(set(estimated)) > 1 else [])
+    # what is said to have changed reads other after than before, the mass by its seventh figure, too
+    assert all(row[2] != row[4] for row in told if len(row) > 4)
+    assert any(row[1] == "mass, g" for row in told if len(row) > 4)
     page.click("#live summary")
     assert page.locator("#tree [data-designator] > .row > input:checked").count() == 1
     # another part: it is drawn anew, and what was chosen and hidden stays so

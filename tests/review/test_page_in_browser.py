@@ -149,6 +149,10 @@ def test_the_strain_is_shown_on_the_body_with_its_scale(fresh):
     fresh.page.click("[data-designator=E1] > .row > b")
     fresh.page.click("#views button >> nth=0")
     before = fresh.picture()
+    # a box stands in the line of its own words: the name at its right end is not on the next one
+    name = fresh.page.locator("label:has(#strain-body)")
+    letters = name.evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
+    assert name.bounding_box()["height"] < 1.6 * letters
     fresh.page.check("#strain-body")
     shown = fresh.picture()
     red, blue = shown[..., 0] - shown[..., 2] > 60, shown[..., 2] - shown[..., 0] > 60

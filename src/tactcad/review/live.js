@@ -2,9 +2,11 @@
 const SLIDERS = '#controls input, #controls select';
 
 function liveBar(live) {
-  const shown = (value) => (value === null ? '\u2013' : typeof value === 'number' ? figures(value) : String(value));
+  const shown = (value, digits) => (value === null ? '\u2013' : typeof value === 'number' ? figures(value, digits) : String(value));
+  // As many digits as tell before from after: a thicker hinge is a ten-thousandth of the array's mass.
+  const digits = ({before: a, after: b}) => [4, 6, 8, 10, 12].find((n) => shown(a, n) !== shown(b, n)) ?? 17;
   const moved = (a, b) => (typeof a === 'number' && typeof b === 'number' && a !== 0 ? percent((b - a) / Math.abs(a), 2) : '');
-  const rows = live.changes.map((c) => [c.about, c.what, shown(c.before), '\u2192', shown(c.after), moved(c.before, c.after)]);
+  const rows = live.changes.map((c) => [c.about, c.what, shown(c.before, digits(c)), '\u2192', shown(c.after, digits(c)), moved(c.before, c.after)]);
   const first = rows.length ? `${rows.length} changes: ${rows.map((row) => row.slice(0, 5).join(' ').trim()).join('; ')}` : 'No change yet.';
   byId('live').className = live.message ? 'broken' : '';
   byId('live-said').textContent = live.message ? `${live.message}. Shown is the last good model.`
