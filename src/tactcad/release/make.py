@@ -187,7 +187,7 @@ def _path_in_zip(file: FileRecord) -> str:
     """Path of an exported file in the zip; "" where it is of no use to a shop or a builder."""
     if file.path.startswith("guide/"):
         return file.path
-    if file.kind in ("dxf", "step-part", "step-pmi", "step-assembly", "inspection"):
+    if file.kind in ("dxf", "step-part", "step-pmi", "step-assembly", "inspection", "netlist", "wiring"):
         return file.path
     if file.kind == "drawing" and file.path.endswith(".pdf"):
         return f"pdf/{Path(file.path).name}"

@@ -29,6 +29,8 @@ FOLDERS = {
     "plates the blank with its plain through holes. Compensation for wire and spark gap is yours.",
     "step/": "every part as a solid, and every assembly (AP214, millimetres); NAME-ap242.step: the same "
     "part with its limits and datums on its faces, for machines to read (AP242)",
+    "circuit/": "the circuit that reads the array: KiCad netlist, the same as a table and as a SPICE "
+    "deck, and the list of leads to cut",
     "pdf/": "a drawing sheet for every part made, and an assembly sheet with parts list for every scene",
     "guide/": "how each scene is put together, step by step: open guide/SCENE.html in a browser",
     "bom": "bills of materials: bom.csv of the array, bom-SCENE.csv of the other scenes",
