@@ -1,0 +1,170 @@
+"""A study's tasks on Dask, which decides where and when each runs; results go to the store, not through it."""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad.design.files import scratch_folder
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.inputs import Inputs, reasons
+
+from .kept import MARK, Kept, mark_of
+from .measured import identity, made_by, measured
+from .study import Study
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+# Tasks that the scheduler knows of at a time: enough for some hundred workers, and little memory however
+# many designs there are.
+AT_ONCE = 500
+ANSWER = "10s"  # within which a scheduler answers, or nobody is there
+
+# One task at a time in a process, whatever threads its worker has: the CAD kernel holds the interpreter's
+# lock, and is not made for threads.
+_ALONE = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Order:
+    """One task: designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what
+    `inputs` says."""
+
+    study: Study
+    inputs: Inputs
+    folder: str
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True)
+class Done:
+    """A task at its end: whether it was computed now, or found in the store; `unable`: why neither."""
+
+    designs: int
+    computed: bool
+    unable: str = ""
+
+
+def carry_out(order: Order) -> Done:
+    """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
+    finished ones too."""
+    designs = order.stop - order.start
+    with _ALONE:
+        if order.inputs != (own := made_by(order.study.measure.what)):
+            return Done(designs, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
+        folder = Path(order.folder)
+        if not (folder / MARK).is_file() or mark_of(folder).get("study") != identity(order.study):
+            return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
+        kept = Kept(order.study, folder, order.inputs.key)
+        if kept.get(order.start, order.stop) is not None:
+            return Done(designs, False)
+        kept.put(order.start, order.stop, measured(order.study, order.start, order.stop, folder))
+    return Done(designs, True)
+
+
+@contextmanager
+def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> Iterator[Client]:
+    """A client of the scheduler at that address, or of processes on this machine where there is none.
+
+    Parameters
+    ----------
+    address
+        As "tcp://HOST:8786".
+    workers
+        Processes on this machine.
+    say
+        Receives the dashboard's address.
+
+    Raises
+    ------
+    InputError
+        Where nobody answers.
+    """
+    import dask
+
+    quiet = {"logging": {"distributed": "critical", "tornado": "critical", "asyncio": "critical"}}
+    with dask.config.set(quiet):
+        from distributed import Client, LocalCluster
+
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)
+        if address is not None:
+            with _connected(Client, address) as client:
+                say(f"dashboard: {client.dashboard_link}")
+                yield client
+            return
+        with scratch_folder("sweep") as scratch:
+            with (
+                LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    processes=True,
+                    host="127.0.0.1",
+                    dashboard_address="127.0.0.1:0",
+                    local_directory=str(scratch),
+                    silence_logs=logging.CRITICAL,
+                ) as local,
+                Client(local) as client,
+            ):
+                say(f"dashboard: {client.dashboard_link}")
+                yield client
+
+
+def _connected(client: type[Client], address: str) -> Client:
+    try:
+        return client(address, timeout=ANSWER)
+    except (OSError, ValueError) as error:  # a timeout is an OSError
+        raise InputError(
+            "--scheduler", "nobody answers there", value=address, legal="a Dask scheduler, as tcp://HOST:8786"
+        ) from error
+
+
+def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
+    """Each task's end, as they come; never more than AT_ONCE of them are handed out.
+
+    Raises
+    ------
+    InputError
+        Where a worker is of another version, or does not see the folder.
+    CheckFailure
+        Where a task killed every worker it was given to, or the scheduler is gone.
+    """
+    from distributed import CancelledError, KilledWorker, as_completed
+    from distributed.comm.core import CommClosedError
+
+    left = iter(orders)
+
+    def handed(order: Order):  # type: ignore[no-untyped-def]
+        return client.submit(carry_out, order, pure=False)
+
+    running = as_completed([handed(order) for order in islice(left, AT_ONCE)])
+    try:
+        for future in running:
+            done = future.result()
+            if done.unable:
+                raise InputError("--scheduler", f"a worker {done.unable}", legal="the same tactcad everywhere")
+            yield done
+            for order in islice(left, 1):
+                running.add(handed(order))
+    except KilledWorker as error:
+        raise CheckFailure(
+            f"a task killed every worker it was given to, the last one {error.last_worker.address}: too "
+            "little memory? What was finished is kept"
+        ) from error
+    except (CancelledError, CommClosedError, TimeoutError) as error:
+        raise CheckFailure(
+            "the scheduler is gone; what was finished is kept, and the same command goes on from there"
+        ) from error
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
