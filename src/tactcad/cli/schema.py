@@ -14,9 +14,7 @@ EXAMPLES = """\
 
 def configure(parser: argparse.ArgumentParser) -> None:
     other = parser.add_mutually_exclusive_group()
-    other.add_argument(
-        "--target", action="store_true", help="of a target file, which `tactcad design` takes"
-    )
+    other.add_argument("--target", action="store_true", help="of a target file, which `tactcad design` takes")
     other.add_argument("--study", action="store_true", help="of a study file, which `tactcad sweep` takes")
     parser.add_argument("--json", action="store_true", help="print JSON Schema")
 

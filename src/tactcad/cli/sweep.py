@@ -22,9 +22,10 @@ EXAMPLES = """\
   tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
   tactcad schema --study                  every field of a study file
 
-DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's result
-is kept in DIR/store as it finishes: the same command again takes up where it was stopped, computes nothing
-twice and gives the same bytes. Refused designs are rows with their reason; where all are, exit status is 1."""
+DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
+result is kept in DIR/store as it finishes: the same command again takes up where it was stopped, computes
+nothing twice and gives the same bytes. Refused designs are rows with their reason; where all are, the exit
+status is 1."""
 
 NEEDED = ("distributed", "pyarrow")
 MOST_WORKERS = 1000

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -52,34 +52,33 @@ def closed_forms(
         there = len(many.layout.elements)
         for number in study.elements:
             if number > there:
-                _refuse(reason, rows, np.ones(len(rows), bool), f"the design has no element {number}")
+                _refuse(reason, rows, f"the design has no element {number}")
                 continue
             section = many.section(number)
             for rung in rungs:
-                why = np.broadcast_to(ladder.validity.reasons(section, rung), len(rows))
-                _refuse(reason, rows, why != "", lambda i, r=rung, n=number, w=why: f"{r} E{n}: {w[i]}")
-                columns_ = names_of(study, rung, number)
-                for name, values in zip(columns_, _evaluated(study, many, section, rung, len(rows))):
-                    results[name][rows] = np.where(why == "", values, np.nan)
+                result = ladder.evaluate(section, rung)
+                why = np.broadcast_to(result.reason, len(rows))
+                if (why != "").any():
+                    said = [w and f"{rung} E{number}: {w}" for w in why]
+                    _refuse(reason, rows, np.array(said, object))
+                values = [result.stiffness, expected_error_of(section, rung)]
+                if STRENGTH in study.measure.what:
+                    values += _forces(many, section, rung, result)
+                for name, column in zip(names_of(study, rung, number), values):
+                    results[name][rows] = np.where(why == "", column, np.nan)
 
 
-def _evaluated(
-    study: Study, many: VectorDesigns, section: HingeSection, rung: str, count: int
-) -> Iterator[Floats]:
-    """In the order of `names_of`, each over all designs; NaN where out of the rung's range."""
-    result = ladder.evaluate(section, rung)
-    yield result.stiffness
-    yield expected_error_of(section, rung)
-    if STRENGTH not in study.measure.what:
-        return
-    valid = np.broadcast_to(result.valid, count)
-    per_newton = np.full(count, np.nan)
-    if valid.any():
-        per_newton[valid] = _stress(section.rows(valid) if section.shape else section, rung)
+def _forces(many: VectorDesigns, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
+    """In the order of FORCES, each over all designs; NaN where out of the rung's range."""
+    per_newton = np.full(section.shape, np.nan)
+    if result.valid.any():
+        per_newton[result.valid] = _stress(section.rows(result.valid.reshape(-1)), rung)
     yield_force = many.of("material.yield_strength") / per_newton
-    yield yield_force
-    yield np.minimum(many.of("rating.force"), yield_force / many.of("rating.yield_factor"))
-    yield yield_force / many.of("rating.deflection_factor") / result.stiffness
+    return [
+        yield_force,
+        np.minimum(many.of("rating.force"), yield_force / many.of("rating.yield_factor")),
+        yield_force / many.of("rating.deflection_factor") / result.stiffness,
+    ]
 
 
 def _stress(section: HingeSection, rung: str) -> Floats:
@@ -104,7 +103,7 @@ def _alike(
         try:
             design = from_table(table_of(study, others, rows[0])) if rows.size else None
         except InputError as error:
-            _refuse(reason, rows, np.ones(len(rows), bool), str(error))
+            _refuse(reason, rows, str(error))
             continue
         own = {path: column[rows] for path, column in numbers.items()}
         if design is not None and any(path.startswith("material.") for path in own):
@@ -130,7 +129,7 @@ def _with_material(
     return kept
 
 
-def _refuse(reason: Column, rows: np.ndarray, which: np.ndarray, why: str | Callable[[int], str]) -> None:
-    """Keep the first reason of each."""
-    for i in np.flatnonzero(which & (reason[rows] == "")):
-        reason[rows[i]] = why if isinstance(why, str) else why(i)
+def _refuse(reason: Column, rows: np.ndarray, why: Column | str) -> None:
+    """Keep the first reason of each of the rows."""
+    first = reason[rows] == ""
+    reason[rows[first]] = np.broadcast_to(why, len(rows))[first]

@@ -22,9 +22,7 @@ def designs_taken(study: Study, start: int, stop: int) -> dict[str, Column]:
     if study.study.sampling in (GRID, LIST):
         return _counted(study, np.arange(start, stop))
     shares = _shares(study, start, stop)
-    return {
-        path: _drawn(study, path, one, share) for (path, one), share in zip(study.vary.items(), shares.T)
-    }
+    return {path: _drawn(study, path, one, share) for (path, one), share in zip(study.vary.items(), shares.T)}
 
 
 def table_of(study: Study, columns: dict[str, Column], i: int) -> dict[str, Any]:
@@ -40,7 +38,8 @@ def _counted(study: Study, index: NDArray[np.int64]) -> dict[str, Column]:
     """In a grid the last field runs fastest; in a list all run together."""
     columns, left = {}, index
     for path, one in reversed(study.vary.items()):
-        values = np.linspace(*one.range, one.steps or 2) if one.range else _column(one.values or ())
+        low, high = one.range or (0.0, 0.0)
+        values = np.linspace(low, high, one.steps or 2) if one.range else _column(one.values or ())
         columns[path] = values[left % len(values)]
         left = left // len(values) if study.study.sampling == GRID else left
     return {path: columns[path] for path in study.vary}
@@ -63,7 +62,7 @@ def _drawn(study: Study, path: str, one: Varied, share: NDArray[np.float64]) -> 
         return low + (high - low) * share
     from scipy.special import ndtri
 
-    return value_at(study.design, path) + one.normal * within_limits(ndtri(share), "normal")
+    return value_at(study.design, path) + (one.normal or 0.0) * within_limits(ndtri(share), "normal")
 
 
 def _shares(study: Study, start: int, stop: int) -> NDArray[np.float64]:

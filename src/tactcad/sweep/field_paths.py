@@ -20,7 +20,7 @@ def spec_at(design: Design, path: str) -> Spec | None:
         return None
     field, places = found["field"], _places(path)
     spec = _spec(field)
-    value = paths(design).get(field) if places else None
+    value: Any = paths(design).get(field) if places else None
     for place in places:
         if not isinstance(spec, (NumberRows, Numbers)) or value is None or place >= len(value):
             return None
@@ -34,7 +34,7 @@ def value_at(design: Design, path: str) -> Any:
     known = paths(design)
     if field not in known and field.startswith("element.override."):
         field = f"element.{field.rpartition('.')[2]}"  # what an override leaves out is [element]'s
-    value = known.get(field)
+    value: Any = known.get(field)
     for place in _places(path):
         value = value[place]
     return value

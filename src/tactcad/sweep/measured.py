@@ -28,7 +28,13 @@ RULES_A_TASK = 16
 ROOMS = ("", "design", "contour", "mechanics", "fem", "parts", "scenes", "assembly", "export", "lab", "sweep")
 LIBRARIES = ("numpy", "pyarrow", "scikit-fem", "scipy")
 WITH_SOLIDS = ("solids", "checks", "drawing")
-KERNEL = ("build123d", first_installed("cadquery-ocp", "cadquery-ocp-novtk"), "ezdxf", "manifold3d", "trimesh")
+KERNEL = (
+    "build123d",
+    first_installed("cadquery-ocp", "cadquery-ocp-novtk"),
+    "ezdxf",
+    "manifold3d",
+    "trimesh",
+)
 
 
 @cache
@@ -109,5 +115,3 @@ def from_bytes(data: bytes) -> pa.Table:
     import pyarrow as pa
 
     return pa.ipc.open_stream(data).read_all()
-
-

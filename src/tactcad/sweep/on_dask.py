@@ -1,4 +1,5 @@
-"""A study's tasks on Dask, which decides where and when each runs; results go to the store, not through it."""
+"""A study's tasks on Dask, which decides where and when each runs; results go to the store, not through
+it."""
 
 from __future__ import annotations
 
@@ -8,10 +9,12 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import metadata
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tactcad.account import KERNEL
 from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import Inputs, reasons
@@ -21,7 +24,7 @@ from .measured import identity, made_by, measured
 from .study import Study
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, LocalCluster
 
 # Tasks that the scheduler knows of at a time: enough for some hundred workers, and little memory however
 # many designs there are.
@@ -34,7 +37,7 @@ _ALONE = threading.Lock()
 
 
 @dataclass(frozen=True)
-class Order:
+class SweepTask:
     """One task: designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what
     `inputs` says."""
 
@@ -54,7 +57,7 @@ class Done:
     unable: str = ""
 
 
-def carry_out(order: Order) -> Done:
+def carry_out(order: SweepTask) -> Done:
     """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
     finished ones too."""
     designs = order.stop - order.start
@@ -91,31 +94,35 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     """
     import dask
 
-    quiet = {"logging": {"distributed": "critical", "tornado": "critical", "asyncio": "critical"}}
-    with dask.config.set(quiet):
+    quiet = dict.fromkeys(("distributed", "distributed.client", "tornado.application", "asyncio"), "critical")
+    with dask.config.set({"logging": quiet}):
         from distributed import Client, LocalCluster
 
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)
         if address is not None:
             with _connected(Client, address) as client:
-                say(f"dashboard: {client.dashboard_link}")
+                _refuse_without_tactcad(client)
+                say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
                 yield client
             return
         with scratch_folder("sweep") as scratch:
-            with (
-                LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    processes=True,
-                    host="127.0.0.1",
-                    dashboard_address="127.0.0.1:0",
-                    local_directory=str(scratch),
-                    silence_logs=logging.CRITICAL,
-                ) as local,
-                Client(local) as client,
-            ):
+            options = {"local_directory": str(scratch), "dashboard_address": "127.0.0.1:0"}
+            with _started(LocalCluster, workers, options) as local, Client(local) as client:
                 say(f"dashboard: {client.dashboard_link}")
                 yield client
+
+
+def _started(local: type[LocalCluster], workers: int, options: dict[str, str]) -> LocalCluster:
+    """Processes of one thread each, by spawn, which is Dask's own way."""
+    try:
+        return local(
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            silence_logs=logging.CRITICAL,
+            **options,
+        )
+    except RuntimeError as error:
+        raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
 
 
 def _connected(client: type[Client], address: str) -> Client:
@@ -127,7 +134,16 @@ def _connected(client: type[Client], address: str) -> Client:
         ) from error
 
 
-def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
+def _refuse_without_tactcad(client: Client) -> None:
+    """A worker without tactcad cannot even read a task: it would end, and the study would wait."""
+    try:
+        client.run(metadata.version, "tactcad")
+    except metadata.PackageNotFoundError as error:
+        what = "a worker has no tactcad"
+        raise InputError("--scheduler", what, legal="pip install 'tactcad[sweep]' there") from error
+
+
+def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
     """Each task's end, as they come; never more than AT_ONCE of them are handed out.
 
     Raises
@@ -142,7 +158,7 @@ def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
 
     left = iter(orders)
 
-    def handed(order: Order):  # type: ignore[no-untyped-def]
+    def handed(order: SweepTask):  # type: ignore[no-untyped-def]
         return client.submit(carry_out, order, pure=False)
 
     running = as_completed([handed(order) for order in islice(left, AT_ONCE)])
@@ -150,7 +166,9 @@ def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
         for future in running:
             done = future.result()
             if done.unable:
-                raise InputError("--scheduler", f"a worker {done.unable}", legal="the same tactcad everywhere")
+                raise InputError(
+                    "--scheduler", f"a worker {done.unable}", legal="the same tactcad everywhere"
+                )
             yield done
             for order in islice(left, 1):
                 running.add(handed(order))
@@ -159,6 +177,11 @@ def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
             f"a task killed every worker it was given to, the last one {error.last_worker.address}: too "
             "little memory? What was finished is kept"
         ) from error
+    except ImportError as error:
+        if (error.name or "").split(".")[0] in KERNEL:
+            raise
+        what = f"a worker lacks {error.name}"
+        raise InputError("--scheduler", what, legal="pip install 'tactcad[sweep]' there") from error
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise CheckFailure(
             "the scheduler is gone; what was finished is kept, and the same command goes on from there"

@@ -16,9 +16,9 @@ from tactcad.design.messages import CheckFailure
 
 from .kept import SCHEMA, Kept, claimed
 from .measured import designs_a_task, identity, made_by
-from .on_dask import Order, all_done, cluster
+from .on_dask import SweepTask, all_done, cluster
+from .results_table import CSV, PARQUET, Tally, write_tables
 from .study import Study
-from .tables import CSV, PARQUET, Tally, write_tables
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -80,12 +80,14 @@ def sweep(
     kept = Kept(study, folder, inputs.key)
     step, count = designs_a_task(study), study.count
     tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
+    tell(0, count, "reading what is finished")
     missing = [task for task in tasks if kept.get(*task) is None]
-    orders = (Order(study, inputs, str(folder), *task) for task in missing)
+    orders = (SweepTask(study, inputs, str(folder), *task) for task in missing)
     wanted = sum(stop - start for start, stop in missing)
     clock = _Stopwatch()
     computed = 0
     if missing:
+        tell(count - wanted, count, "starting")
         with cluster(address, min(workers, len(missing)), say) as client:
             clock.lap("starting")
             done = 0
@@ -128,7 +130,9 @@ class _Stopwatch:
 def _rate(done: int, wanted: int, seconds: float) -> str:
     rate = done / max(seconds, 1e-6)
     left = (wanted - done) / rate
-    shown = f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min" if left < 7200 else f"{left / 3600:.1f} h"
+    shown = (
+        f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min" if left < 7200 else f"{left / 3600:.1f} h"
+    )
     return f"designs, {rate:.3g} a second, {shown} left"
 
 

@@ -11,15 +11,7 @@ from typing import Any
 
 from tactcad.design.fields import Number, Numbers, OneOf, SomeOf, TextLine, Values, Whole, given
 from tactcad.design.files import read_text
-from tactcad.design.load import (
-    DEFAULT_DESIGN,
-    MOST_BYTES,
-    find,
-    from_table,
-    paths,
-    read_table,
-    unknown_field,
-)
+from tactcad.design.load import DEFAULT_DESIGN, MOST_BYTES, find, from_table, paths, read_table, unknown_field
 from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
 from tactcad.design.toml_text import parse_toml
@@ -158,11 +150,7 @@ def study_schema() -> dict[str, Any]:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "tactcad study file",
         "type": "object",
-        "properties": {
-            "study": table_schema(StudyHead),
-            "vary": fields,
-            "measure": table_schema(Measures),
-        },
+        "properties": {"study": table_schema(StudyHead), "vary": fields, "measure": table_schema(Measures)},
         "required": list(TABLES),
         "additionalProperties": False,
     }
@@ -194,9 +182,7 @@ def read_study(path: str | Path) -> Study:
             raise InputError(name, "missing table", legal=f"a table [{name}]")
     head = read_table(StudyHead, table["study"], "study")
     base = _base(head.design, Path(path).parent)
-    study = Study(
-        head, _varied(table["vary"], base), read_table(Measures, table["measure"], "measure"), base
-    )
+    study = Study(head, _varied(table["vary"], base), read_table(Measures, table["measure"], "measure"), base)
     for name, one in study.vary.items():
         _refuse_contradiction(study, name, one)
     _refuse_count(study)
@@ -279,7 +265,9 @@ def _refuse_count(study: Study) -> None:
     lengths = {path: len(one.values or ()) for path, one in study.vary.items()}
     if head.sampling == LIST and len(set(lengths.values())) > 1:
         said = ", ".join(f"{path}: {n}" for path, n in lengths.items())
-        raise InputError("vary", f"lists of different lengths ({said})", legal="as many values of every field")
+        raise InputError(
+            "vary", f"lists of different lengths ({said})", legal="as many values of every field"
+        )
     most = MOST_HYPERCUBE if head.sampling == HYPERCUBE else MOST_DESIGNS
     if study.count > most:
         legal = f"at most {most}" + (", or sampling sobol" if head.sampling == HYPERCUBE else "")

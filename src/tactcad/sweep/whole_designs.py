@@ -15,7 +15,7 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.rules import refuse_broken
 
 from .closed_forms import names_of
-from .study import BUILDS, CHECKS, EXPORT, STRENGTH, Study
+from .study import BUILDS, CHECKS, EXPORT, Study
 
 # Columns beside those of the elements, by what is measured: numbers, then texts.
 NUMBERS = {BUILDS: ("yield",), CHECKS: ("checks_failed", "checks_flagged"), EXPORT: ("files",)}
@@ -27,7 +27,9 @@ def numbers_of(study: Study) -> list[str]:
     elements = [
         name for rung in study.measure.rungs for n in study.elements for name in names_of(study, rung, n)
     ]
-    return elements + [name for what, names in NUMBERS.items() if what in study.measure.what for name in names]
+    return elements + [
+        name for what, names in NUMBERS.items() if what in study.measure.what for name in names
+    ]
 
 
 def texts_of(study: Study) -> list[str]:
