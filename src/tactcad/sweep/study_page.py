@@ -18,7 +18,7 @@ from .results_table import PARQUET
 
 PAGE = "plot.html"
 MOST_BYTES = 10_000_000  # of a manifest
-MOST_ROWS = 200_000  # that the page is made of: every n-th of a longer table
+MOST_ROWS = 200_000  # that the page is made of, of a longer table by chance
 MOST_RESULTS = 6  # on the page: the first that vary
 MOST_PAIRED, MOST_POINTS = 7, 1500  # columns and rows of the pairs' figure
 LEAST_IN_BIN, MOST_BINS = 10, 24
@@ -74,20 +74,28 @@ def _columns(folder: Path) -> dict[str, Floats]:
         raise InputError(
             str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
         ) from None
-    every = max(1, -(-file.metadata.num_rows // MOST_ROWS))
+    share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
     groups = (file.read_row_group(i) for i in range(file.num_row_groups))
-    table = pa.concat_tables(group.take(pa.array(range(0, group.num_rows, every))) for group in groups)
+    table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
     table = table.filter(table["valid"])
     numbers = [f.name for f in table.schema if pa.types.is_floating(f.type)]
     columns = {name: table[name].to_numpy() for name in numbers if table.num_rows > LEAST_IN_BIN}
     return {name: v for name, v in columns.items() if np.isfinite(v).all() and np.ptp(v) > 0}
 
 
+def _some(count: int, share: float) -> NDArray[np.int64]:
+    """That share of rows by chance: every n-th of a Sobol sequence would leave out parts of the ranges."""
+    rows = np.random.default_rng(count).permutation(count)
+    return np.sort(rows[: max(1, round(share * count))])
+
+
 def _results(columns: dict[str, Floats], fields: Sequence[str]) -> list[str]:
     """Results that differ from each other, stiffnesses first; promised errors are none."""
     names = [n for n in columns if n not in fields and not n.endswith(".expected_error")]
-    distinct = {columns[name].tobytes(): name for name in reversed(names)}
-    return sorted(reversed(distinct.values()), key=lambda name: not name.endswith(".stiffness"))
+    first: dict[bytes, str] = {}
+    for name in names:
+        first.setdefault(columns[name].tobytes(), name)
+    return sorted(first.values(), key=lambda name: not name.endswith(".stiffness"))
 
 
 def binned(field: Floats, result: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -175,8 +183,8 @@ def _pairs_section(
     columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
 ) -> ReportSection:
     names = [*fields, *results][: max(MOST_PAIRED, len(fields) + 1)]
-    rows = np.linspace(0, len(columns[names[0]]) - 1, MOST_POINTS).astype(int)
-    rows = np.unique(rows)
+    count = len(columns[names[0]])
+    rows = _some(count, min(1.0, MOST_POINTS / count))
     n = len(names)
     with panels(n, n, (1.75 * n + 1, 1.75 * n), squeeze=False) as (figure, axes):
         for i, y in enumerate(names):
