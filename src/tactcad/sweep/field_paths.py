@@ -53,16 +53,14 @@ def placed(table: dict[str, Any], design: Design, path: str, value: Any) -> dict
         As `spec_at` knows it.
     """
     field, places = path.partition("[")[0], _places(path)
-    if places:
-        whole = paths(design)[field]
-        value = _replaced(whole, places, value)
     head, *names = field.split(".", 2 if field.startswith("stop.gaps.") else -1)
     out = dict(table)
     node = out[head] = dict(out.get(head, {}))
     for name in names[:-1]:
         node[name] = dict(node.get(name, {}))
         node = node[name]
-    node[names[-1]] = value
+    whole = node.get(names[-1], paths(design).get(field)) if places else None
+    node[names[-1]] = _replaced(whole, places, value) if places else value
     return out
 
 
@@ -87,7 +85,8 @@ def _places(path: str) -> list[int]:
 
 
 def _replaced(whole: Any, places: list[int], value: Any) -> list:
-    out = [list(item) if isinstance(item, tuple) else item for item in whole]
+    """A copy of a list, or of a list of lists, with the value at its place."""
+    out = list(whole)
     first, *rest = places
     out[first] = _replaced(out[first], rest, value) if rest else value
     return out

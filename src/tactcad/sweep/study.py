@@ -206,10 +206,11 @@ def _varied(table: dict[str, Any], base: dict[str, Any]) -> dict[str, Varied]:
     varied = {}
     for path, how in table.items():
         where = f"vary.{path}"
-        if not isinstance(how, dict) or not how:
-            legal = f'[vary."{path}"] with values, range or normal; dotted paths stand in quotes'
-            raise InputError(where, "not a table of values", value=how, legal=legal)
         spec = spec_at(design, path)
+        nested = spec is None and isinstance(how, dict) and any(isinstance(v, dict) for v in how.values())
+        if not isinstance(how, dict) or not how or nested:
+            legal = '[vary."element.hinge_thickness"] with values, range or normal; the path stands in quotes'
+            raise InputError(where, "not a table of values", value=how, legal=legal)
         if spec is None:
             raise unknown_field(path, list(paths(design)))
         one = read_table(Varied, how, where)

@@ -47,9 +47,20 @@ class VectorDesigns:
         """The field in every design, or the one value that all have."""
         return self.columns[path] if path in self.columns else np.asarray(self._known[path], float)
 
-    def _hinge(self, number: int, name: str) -> Floats:
+    def _overridden(self, number: int, name: str) -> bool:
         own = f"element.override.{number}.{name}"
-        return self.of(own if own in self.columns or self._known.get(own) is not None else f"element.{name}")
+        return own in self.columns or self._known.get(own) is not None
+
+    def _hinge(self, number: int, name: str) -> Floats:
+        own = f"override.{number}." if self._overridden(number, name) else ""
+        return self.of(f"element.{own}{name}")
+
+    def _fillet_radius(self, number: int) -> Floats:
+        """A full round of [element] stays one in an element whose slot alone is of another length."""
+        radius = self._hinge(number, "fillet_radius")
+        if not self._overridden(number, "fillet_radius"):
+            radius = _filling(radius, self.of("element.hinge_length"))
+        return _filling(radius, self._hinge(number, "hinge_length"))
 
     def _arm(self, number: int) -> Floats:
         place = self.layout.elements[number - 1]
@@ -59,13 +70,11 @@ class VectorDesigns:
     def section(self, number: int) -> HingeSection:
         """Section of the element of that number in every design."""
         length = self._hinge(number, "hinge_length")
-        radius = self._hinge(number, "fillet_radius")
-        full = np.abs(2 * radius - length) <= NINE_DIGITS * length
         hinge_x = self._pad_inner + self._arm(number)
         return HingeSection(
             hinge_thickness=self._hinge(number, "hinge_thickness"),
             hinge_length=length,
-            fillet_radius=np.where(full, length / 2, radius),
+            fillet_radius=self._fillet_radius(number),
             load_arm=self._arm(number) - self.of("element.pad_length") / 2,
             arm_height=self._hinge(number, "arm_height"),
             body_height=self.of("element.body_height"),
@@ -89,3 +98,8 @@ class VectorDesigns:
             half = self._hinge(place.number, "hinge_length") / 2
             end = np.maximum(end, self._pad_inner + self._arm(place.number) + half)
         return np.round(end + self.of("element.seat_length"), 6)
+
+
+def _filling(radius: Floats, length: Floats) -> Floats:
+    """`plain_numbers.filling_radius` of arrays."""
+    return np.where(np.abs(2 * radius - length) <= NINE_DIGITS * length, length / 2, radius)
