@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
+
+import psutil
 
 SMALL = """
 [study]
@@ -43,6 +47,7 @@ what = ["solid", "fem-plane"]
 elements = [4]
 """
 
+DASK = [sys.executable, "-m", "dask"]
 TACTCAD = [sys.executable, "-m", "tactcad"]
 ONE_THREAD = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
@@ -75,3 +80,37 @@ def tables(folder: Path) -> dict[str, bytes]:
 def entries(folder: Path) -> dict[str, int]:
     """The store's finished tasks, each with the number of its file: another one if it was written again."""
     return {p.name: p.stat().st_ino for p in (folder / "store").glob("??/*") if len(p.name) == 64}
+
+
+def started(*command: object) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        list(map(str, command)), env=ONE_THREAD, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def computing(process: subprocess.Popen) -> list[psutil.Process]:
+    """Worker processes of a sweep on this machine."""
+    try:
+        children = psutil.Process(process.pid).children(recursive=True)
+        return [c for c in children if "spawn_main" in " ".join(c.cmdline())]
+    except psutil.Error:
+        return []
+
+
+@contextmanager
+def cluster(folder: Path, workers: int = 1):
+    """`dask scheduler` and `dask worker` processes, and the address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    address = f"tcp://127.0.0.1:{port}"
+    scheduler = started(*DASK, "scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard")
+    worker = ("worker", address, "--nthreads", 2, "--local-directory", folder, "--death-timeout", 30)
+    processes = [scheduler, *(started(*DASK, *worker) for _ in range(workers))]
+    try:
+        yield address, processes
+    finally:
+        for process in processes:
+            for child in (*computing(process), process):
+                child.kill()
+            process.communicate()

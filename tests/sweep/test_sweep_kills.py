@@ -5,18 +5,12 @@ from __future__ import annotations
 import random
 import shutil
 import signal
-import socket
-import subprocess
 import sys
 import time
-from contextlib import contextmanager
-from pathlib import Path
 
 import psutil
 import pytest
-from small_study import ELEMENTS, ONE_THREAD, SMALL, TACTCAD, entries, swept, tables, written
-
-DASK = [sys.executable, "-m", "dask"]
+from small_study import ELEMENTS, SMALL, TACTCAD, cluster, computing, entries, started, swept, tables, written
 
 
 @pytest.fixture(scope="module")
@@ -30,45 +24,11 @@ def undisturbed(tmp_path_factory):
     return path, tables(folder / "out")
 
 
-def started(*command: object) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        list(map(str, command)), env=ONE_THREAD, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-
-
 def wait_for(what, seconds: float = 90.0) -> None:
     end = time.monotonic() + seconds
     while not what():
         assert time.monotonic() < end, "nothing happened"
         time.sleep(0.05)
-
-
-def computing(process: subprocess.Popen) -> list[psutil.Process]:
-    """Worker processes of a sweep on this machine."""
-    try:
-        children = psutil.Process(process.pid).children(recursive=True)
-        return [c for c in children if "spawn_main" in " ".join(c.cmdline())]
-    except psutil.Error:
-        return []
-
-
-@contextmanager
-def cluster(folder: Path, workers: int = 1):
-    """`dask scheduler` and `dask worker` processes, and the address."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    address = f"tcp://127.0.0.1:{port}"
-    scheduler = started(*DASK, "scheduler", "--host", "127.0.0.1", "--port", port, "--no-dashboard")
-    worker = ("worker", address, "--nthreads", 2, "--local-directory", folder, "--death-timeout", 30)
-    processes = [scheduler, *(started(*DASK, *worker) for _ in range(workers))]
-    try:
-        yield address, processes
-    finally:
-        for process in processes:
-            for child in (*computing(process), process):
-                child.kill()
-            process.communicate()
 
 
 def test_a_killed_client_and_killed_workers(undisturbed, tmp_path):

@@ -28,7 +28,8 @@ PATHS = (
 
 
 def table(design: Design) -> dict:
-    return nested(flattened(dataclasses.replace(design, origin={"material.youngs_modulus": "paper"})))
+    origin = {f"material.{name}": "measured" for name in ("youngs_modulus", "poisson")}
+    return nested(flattened(dataclasses.replace(design, origin=origin)))
 
 
 def sections(design: Design) -> dict[str, np.ndarray]:
@@ -51,9 +52,8 @@ def test_they_are_the_layouts_own(name):
             at = getattr(at, part)
         middle = at if isinstance(at, float) else 6.0
         columns[path] = np.round(middle * rng.uniform(0.97, 1.03, 40) + 1e-3, 5)
-    columns["element.fillet_radius"][:20] = (
-        columns["element.hinge_length"][:20] / 2 * (1 - 3e-9)
-    )  # full rounds
+    full_round = columns["element.hinge_length"][:20] / 2
+    columns["element.fillet_radius"][:20] = full_round * (1 - 3e-9)
     many = VectorDesigns(base, columns)
     got = {p.number: many.section(p.number) for p in many.layout.elements}
     for i in range(40):
