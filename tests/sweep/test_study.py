@@ -82,7 +82,7 @@ def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "o")]) == 1
     assert capsys.readouterr().err == (
-        "tactcad: this needs distributed and pyarrow, which is not installed: pip install 'tactcad[sweep]'\n"
+        "tactcad: this needs distributed and pyarrow, not installed here: pip install 'tactcad[sweep]'\n"
     )
 
 

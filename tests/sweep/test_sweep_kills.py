@@ -20,7 +20,7 @@ def undisturbed(tmp_path_factory):
     path = written(folder, ELEMENTS)
     got = swept(path, "--out", folder / "out")
     assert got.returncode == 0, got.stderr
-    assert len(entries(folder / "out")) == 12
+    assert len(entries(folder / "out")) == 8
     return path, tables(folder / "out")
 
 
@@ -41,7 +41,7 @@ def test_a_killed_client_and_killed_workers(undisturbed, tmp_path):
     client.communicate()
     wait_for(lambda: not any(h.is_running() and h.status() != psutil.STATUS_ZOMBIE for h in helpers))
     finished = entries(out)
-    assert 2 <= len(finished) < 12
+    assert 2 <= len(finished) < 8
     assert not (out / "results.parquet").exists()
 
     again = started(*TACTCAD, "sweep", path, "--out", out, "--json")
@@ -52,7 +52,7 @@ def test_a_killed_client_and_killed_workers(undisturbed, tmp_path):
     assert again.returncode == 0, err
     assert tables(out) == wanted
     after = entries(out)
-    assert len(after) == 12 and {name: after[name] for name in finished} == finished
+    assert len(after) == 8 and {name: after[name] for name in finished} == finished
     assert f'"kept": {len(finished)}' in said
 
 
@@ -123,7 +123,7 @@ def test_twenty_kills_at_random(undisturbed, tmp_path):
         now = entries(out)
         assert {name: now[name] for name in kept} == kept
         kept = now
-        if len(kept) == 12:
+        if len(kept) == 8:
             shutil.rmtree(out)
             kept = {}
     assert swept(path, "--out", out).returncode == 0

@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
         raise CheckFailure(
-            f"this needs {' and '.join(missing)}, which is not installed: pip install 'tactcad[sweep]'"
+            f"this needs {' and '.join(missing)}, not installed here: pip install 'tactcad[sweep]'"
         )
     if args.study[0] == "plot":
         return _plot(args)

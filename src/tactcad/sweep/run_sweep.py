@@ -90,6 +90,7 @@ def sweep(
         tell(count - wanted, count, "starting")
         with cluster(address, min(workers, len(missing)), say) as client:
             clock.lap("starting")
+            tell(count - wanted, count, "designs, none finished yet")
             done = 0
             for each in all_done(client, orders):
                 done += each.designs
