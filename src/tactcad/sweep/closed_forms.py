@@ -57,15 +57,16 @@ def closed_forms(
             section = many.section(number)
             for rung in rungs:
                 result = ladder.evaluate(section, rung)
-                why = np.broadcast_to(result.reason, len(rows))
-                if (why != "").any():
+                all_valid = result.valid.all()
+                if not all_valid:
+                    why = np.broadcast_to(result.reason, len(rows))
                     said = [w and f"{rung} E{number}: {w}" for w in why]
                     _refuse(reason, rows, np.array(said, object))
                 values = [result.stiffness, expected_error_of(section, rung)]
                 if STRENGTH in study.measure.what:
                     values += _forces(many, section, rung, result)
                 for name, column in zip(names_of(study, rung, number), values):
-                    results[name][rows] = np.where(why == "", column, np.nan)
+                    results[name][rows] = column if all_valid else np.where(result.valid, column, np.nan)
 
 
 def _forces(many: VectorDesigns, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
@@ -96,12 +97,13 @@ def _alike(
     numbers = {path: column for path, column in columns.items() if column.dtype != object}
     others = {path: column for path, column in columns.items() if column.dtype == object}
     count = len(next(iter(columns.values())))
-    keys = [json.dumps(row) for row in zip(*others.values())] if others else [""] * count
-    for key in dict.fromkeys(keys):
-        rows = np.flatnonzero(np.array(keys, object) == key) if others else np.arange(count)
+    alike: dict[str, list[int]] = {}
+    for i, row in enumerate(zip(*others.values())):
+        alike.setdefault(json.dumps(row), []).append(i)
+    for rows in map(np.array, alike.values()) if others else [np.arange(count)]:
         rows = rows[reason[rows] == ""]
         try:
-            design = from_table(table_of(study, others, rows[0])) if rows.size else None
+            design = _design(study, others, rows) if rows.size else None
         except InputError as error:
             _refuse(reason, rows, str(error))
             continue
@@ -111,6 +113,10 @@ def _alike(
             rows, own = rows[kept], {path: column[kept] for path, column in own.items()}
         if rows.size and design is not None:
             yield rows, design, own
+
+
+def _design(study: Study, others: dict[str, Column], rows: np.ndarray) -> Design:
+    return from_table(table_of(study, others, rows[0])) if others else study.design
 
 
 def _with_material(

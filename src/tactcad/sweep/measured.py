@@ -20,9 +20,9 @@ from .whole_designs import measured_whole, numbers_of, texts_of
 if TYPE_CHECKING:
     import pyarrow as pa
 
-# Designs a task. Of closed forms as many as one vector call takes in some 30 ms, beside which the 2 ms of a
-# task are small; of rules, a second's worth. All else takes long enough alone.
-CLOSED_FORMS_A_TASK = 1 << 16
+# Designs a task. Of closed forms as many as one vector call takes in some 100 ms, beside which a task's own
+# time is small; of rules, a second's worth. All else takes long enough alone.
+CLOSED_FORMS_A_TASK = 1 << 18
 RULES_A_TASK = 16
 
 ROOMS = ("", "design", "contour", "mechanics", "fem", "parts", "scenes", "assembly", "export", "lab", "sweep")
@@ -87,8 +87,9 @@ def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
     table["rung"] = pa.repeat(" ".join(study.measure.rungs), count)
     table |= {name: pa.array(column, from_pandas=True) for name, column in numbers.items()}
     table |= {name: pa.array(column, pa.string()) for name, column in texts.items()}
-    table["valid"] = pa.array(reason == "")
-    table["reason"] = pa.array(reason, pa.string())
+    valid = reason == ""
+    table["valid"] = pa.array(valid)
+    table["reason"] = pa.repeat("", count) if valid.all() else pa.array(reason, pa.string())
     return pa.table(table)
 
 
