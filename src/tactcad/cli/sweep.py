@@ -100,6 +100,7 @@ def _record(study: Study, got: Swept) -> dict:
         "computed": got.computed,
         "kept": got.kept,
         "seconds": got.seconds,
+        "in_workers": round(got.in_workers, 3),
         "folder": str(got.folder),
         "files": list(got.files),
     }

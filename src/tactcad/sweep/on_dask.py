@@ -4,8 +4,10 @@ it."""
 from __future__ import annotations
 
 import logging
+import multiprocessing
 import os
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,7 +23,7 @@ from tactcad.export.inputs import Inputs, reasons
 
 from .kept import MARK, Kept, mark_of
 from .measured import identity, made_by, measured
-from .study import Study
+from .study import EXPORT, Study
 
 if TYPE_CHECKING:
     from distributed import Client, LocalCluster
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
 # many designs there are.
 AT_ONCE = 500
 ANSWER = "10s"  # within which a scheduler answers, or nobody is there
+
+NO_HELPERS = "may start no processes, which an export needs; set DASK_DISTRIBUTED__WORKER__DAEMON=False where it starts"
 
 # One task at a time in a process, whatever threads its worker has: the CAD kernel holds the interpreter's
 # lock, and is not made for threads.
@@ -50,11 +54,15 @@ class SweepTask:
 
 @dataclass(frozen=True)
 class Done:
-    """A task at its end: whether it was computed now, or found in the store; `unable`: why neither."""
+    """A task at its end: whether it was computed now, or found in the store; `unable`: why neither.
+
+    `seconds`: processor time of computing, without what the store takes.
+    """
 
     designs: int
     computed: bool
     unable: str = ""
+    seconds: float = 0.0
 
 
 def carry_out(order: SweepTask) -> Done:
@@ -64,14 +72,19 @@ def carry_out(order: SweepTask) -> Done:
     with _ALONE:
         if order.inputs != (own := made_by(order.study.measure.what)):
             return Done(designs, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
+        if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
+            return Done(designs, False, NO_HELPERS)
         folder = Path(order.folder)
         if not (folder / MARK).is_file() or mark_of(folder).get("study") != identity(order.study):
             return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
         kept = Kept(order.study, folder, order.inputs.key)
         if kept.get(order.start, order.stop) is not None:
             return Done(designs, False)
-        kept.put(order.start, order.stop, measured(order.study, order.start, order.stop, folder))
-    return Done(designs, True)
+        start = time.process_time()
+        table = measured(order.study, order.start, order.stop, folder)
+        seconds = time.process_time() - start
+        kept.put(order.start, order.stop, table)
+    return Done(designs, True, seconds=seconds)
 
 
 @contextmanager
@@ -95,7 +108,7 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     import dask
 
     quiet = dict.fromkeys(("distributed", "distributed.client", "tornado.application", "asyncio"), "critical")
-    with dask.config.set({"logging": quiet}):
+    with dask.config.set({"logging": quiet, "distributed.worker.daemon": False}):
         from distributed import Client, LocalCluster
 
         if address is not None:

@@ -30,7 +30,7 @@ MOST_CSV = 1_000_000  # rows that are written as CSV unasked
 @dataclass(frozen=True)
 class Swept:
     """A finished study: its folder, its files, designs computed now and taken from the store, seconds that
-    starting, computing and writing took."""
+    starting, computing and writing took; `in_workers`: processor seconds of the measuring alone."""
 
     folder: Path
     files: tuple[str, ...]
@@ -38,6 +38,7 @@ class Swept:
     computed: int
     kept: int
     seconds: dict[str, float]
+    in_workers: float
 
 
 def sweep(
@@ -85,7 +86,7 @@ def sweep(
     orders = (SweepTask(study, inputs, str(folder), *task) for task in missing)
     wanted = sum(stop - start for start, stop in missing)
     clock = _Stopwatch()
-    computed = 0
+    computed, in_workers = 0, 0.0
     if missing:
         tell(count - wanted, count, "starting")
         with cluster(address, min(workers, len(missing)), say) as client:
@@ -95,6 +96,7 @@ def sweep(
             for each in all_done(client, orders):
                 done += each.designs
                 computed += each.designs * each.computed
+                in_workers += each.seconds
                 tell(count - wanted + done, count, _rate(done, wanted, clock.lapsed))
             clock.lap("computing")
         clock.lap("ending")
@@ -111,7 +113,7 @@ def sweep(
     files = (PARQUET, *([CSV] if with_csv else []))
     write_whole(folder / MANIFEST, _manifest(study, folder, files, tally))
     clock.lap("writing")
-    return Swept(folder, (*files, MANIFEST), tally, computed, count - computed, clock.seconds)
+    return Swept(folder, (*files, MANIFEST), tally, computed, count - computed, clock.seconds, in_workers)
 
 
 class _Stopwatch:
