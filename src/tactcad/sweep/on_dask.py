@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 AT_ONCE = 500
 ANSWER = "10s"  # within which a scheduler answers, or nobody is there
 
-NO_HELPERS = "may start no processes, which an export needs; set DASK_DISTRIBUTED__WORKER__DAEMON=False where it starts"
+NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
 # One task at a time in a process, whatever threads its worker has: the CAD kernel holds the interpreter's
 # lock, and is not made for threads.
