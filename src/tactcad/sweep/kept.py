@@ -16,7 +16,7 @@ from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.cache import Cache
 
-from .measured import EXPORT, as_bytes, export_folder, from_bytes, identity
+from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ class Kept:
 
     def __init__(self, study: Study, folder: Path, made_by: str) -> None:
         self.study, self.folder = study, folder
-        self._prefix = f"{SCHEMA} {identity(study)} {made_by}"
+        self._prefix = f"{SCHEMA} {study.identity} {made_by}"
         self._said: list[str] = []
         self._cache = Cache(folder / STORE, self._said.append)
 
@@ -86,10 +86,10 @@ def claimed(study: Study, out: str | Path) -> Path:
         if left := sorted(os.listdir(folder)):
             what = f"holds files that are no study's, such as {left[0]}"
             raise InputError(str(out), what, legal="a new or empty folder, or one of this study")
-        mark = {"schema": SCHEMA, "name": study.study.name, "study": identity(study)}
+        mark = {"schema": SCHEMA, "name": study.study.name, "study": study.identity}
         write_whole(folder / MARK, (json.dumps(mark, indent=1) + "\n").encode())
     found = mark_of(folder)
-    if found.get("study") != identity(study):
+    if found.get("study") != study.identity:
         raise InputError(
             str(out),
             f"holds another study, or this one as it was before a change: {found.get('name')}",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tactcad.export.inputs import Inputs, digest, first_installed, inputs_of
+from tactcad.export.inputs import Inputs, first_installed, inputs_of
 from tactcad.mechanics.ladder import FINITE_ELEMENTS
 
 from .closed_forms import closed_forms
@@ -42,11 +42,6 @@ def made_by(what: tuple[str, ...]) -> Inputs:
     """The rooms and libraries that what is measured depends on, as this process found them."""
     solids = bool({CHECKS, EXPORT} & set(what))
     return inputs_of({}, ROOMS + WITH_SOLIDS * solids, LIBRARIES + KERNEL * solids)
-
-
-def identity(study: Study) -> str:
-    """Digest of what a study asks: equal for equal tables, whatever their comments and order."""
-    return digest([study.study, study.vary, study.measure, study.base])
 
 
 def designs_a_task(study: Study) -> int:

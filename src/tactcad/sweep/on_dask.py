@@ -22,7 +22,7 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import Inputs, reasons
 
 from .kept import MARK, Kept, mark_of
-from .measured import identity, made_by, measured
+from .measured import made_by, measured
 from .study import EXPORT, Study
 
 if TYPE_CHECKING:
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
 # many designs there are.
 AT_ONCE = 500
 ANSWER = "10s"  # within which a scheduler answers, or nobody is there
+
+# Dask has its workers' C library give back every freed array at once; vector calls then take 2.5 times as
+# long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most that it takes.
+MEMORY = {"MALLOC_TRIM_THRESHOLD_": 1 << 28, "MALLOC_MMAP_THRESHOLD_": 1 << 25}
 
 NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
@@ -75,7 +79,7 @@ def carry_out(order: SweepTask) -> Done:
         if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
             return Done(designs, False, NO_HELPERS)
         folder = Path(order.folder)
-        if not (folder / MARK).is_file() or mark_of(folder).get("study") != identity(order.study):
+        if not (folder / MARK).is_file() or mark_of(folder).get("study") != order.study.identity:
             return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
         kept = Kept(order.study, folder, order.inputs.key)
         if kept.get(order.start, order.stop) is not None:
@@ -108,7 +112,12 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     import dask
 
     quiet = dict.fromkeys(("distributed", "distributed.client", "tornado.application", "asyncio"), "critical")
-    with dask.config.set({"logging": quiet, "distributed.worker.daemon": False}):
+    ours = {
+        "logging": quiet,
+        "distributed.worker.daemon": False,
+        "distributed.nanny.pre-spawn-environ": MEMORY,
+    }
+    with dask.config.set(ours):
         from distributed import Client, LocalCluster
 
         if address is not None:

@@ -15,7 +15,7 @@ from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure
 
 from .kept import SCHEMA, Kept, claimed
-from .measured import designs_a_task, identity, made_by
+from .measured import designs_a_task, made_by
 from .on_dask import SweepTask, all_done, cluster
 from .results_table import CSV, PARQUET, Tally, write_tables
 from .study import Study
@@ -145,7 +145,7 @@ def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) 
         "schema": SCHEMA,
         "study": {
             "name": study.study.name,
-            "sha256": identity(study),
+            "sha256": study.identity,
             "table": _plain(study.study),
             "vary": {path: _plain(one) for path, one in study.vary.items()},
             "measure": _plain(study.measure),

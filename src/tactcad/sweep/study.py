@@ -16,6 +16,7 @@ from tactcad.design.messages import InputError
 from tactcad.design.schema import table_schema, table_text
 from tactcad.design.toml_text import parse_toml
 from tactcad.design.tree import Design, Identity
+from tactcad.export.inputs import digest
 from tactcad.mechanics.ladder import CLOSED_FORMS, RUNGS
 from tactcad.parts.layout import Layout
 
@@ -122,6 +123,11 @@ class Study:
     def design(self) -> Design:
         """The design with nothing varied."""
         return from_table(self.base)
+
+    @cached_property
+    def identity(self) -> str:
+        """Digest of what is asked: equal for equal tables, whatever their comments and order."""
+        return digest([self.study, self.vary, self.measure, self.base])
 
     @property
     def count(self) -> int:
