@@ -4,6 +4,7 @@ design."""
 from __future__ import annotations
 
 import csv
+import dataclasses
 import hashlib
 import io
 import json
@@ -16,7 +17,7 @@ from small_study import SMALL, entries, swept, tables, written
 
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
-from tactcad.design.load import from_table
+from tactcad.design.load import from_table, read
 from tactcad.sweep.designs_taken import designs_taken, table_of
 from tactcad.sweep.study import read_study
 
@@ -165,3 +166,28 @@ def test_yield_is_what_build_says(tmp_path, capsys, scheduler):
     assert got.returncode == 0, got.stderr
     main(["build", "macro-array", "--count", "40", "--json"])
     assert float(rows(tmp_path)[0]["yield"]) == json.loads(capsys.readouterr().out)["yield"]
+
+
+@pytest.mark.cad
+def test_exports_are_kept_until_they_are_gone(tmp_path):
+    """In this machine's own processes, which may start those that an export needs."""
+    macro = read("macro-array")
+    rigs = dict.fromkeys(("cart", "holder", "sample", "calibration", "grasping"))
+    one = dataclasses.replace(macro, array=dataclasses.replace(macro.array, row_arms=((6.0,),)), **rigs)
+    origin = {"material.youngs_modulus": "the paper's"}
+    (tmp_path / "one.toml").write_text(design_text(dataclasses.replace(one, origin=origin)))
+    text = '[study]\nname = "files"\ndesign = "one.toml"\n[vary."element.hinge_thickness"]\nvalues = [0.3]\n'
+    path = written(tmp_path, text + '[measure]\nwhat = ["export"]\n')
+    got = swept(path, "--out", tmp_path / "out")
+    assert got.returncode == 0, got.stderr
+    (row,) = rows(tmp_path)
+    manifest = tmp_path / "out" / "exports" / "000001" / "manifest.json"
+    assert hashlib.sha256(manifest.read_bytes()).hexdigest() == row["manifest_sha256"]
+    assert int(row["files"]) == sum(p.is_file() for p in manifest.parent.rglob("*"))
+    before = tables(tmp_path / "out")
+    manifest.unlink()
+    for left in sorted(manifest.parent.rglob("*"), reverse=True):
+        left.unlink() if left.is_file() else left.rmdir()
+    again = swept(path, "--out", tmp_path / "out", "--json")
+    assert json.loads(again.stdout)["computed"] == 1 and tables(tmp_path / "out") == before
+    assert manifest.exists()

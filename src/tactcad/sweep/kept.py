@@ -22,7 +22,8 @@ from .study import Study
 if TYPE_CHECKING:
     import pyarrow as pa
 
-SCHEMA = "tactcad-sweep-1"
+# Not "tactcad-...": an export takes a folder marked so for its own, and refuses to lie inside it.
+SCHEMA = "sweep-1"
 MARK, STORE = "study.json", "store"
 MOST_BYTES = 100_000
 

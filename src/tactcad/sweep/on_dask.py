@@ -85,7 +85,10 @@ def carry_out(order: SweepTask) -> Done:
         if kept.get(order.start, order.stop) is not None:
             return Done(designs, False)
         start = time.process_time()
-        table = measured(order.study, order.start, order.stop, folder)
+        try:
+            table = measured(order.study, order.start, order.stop, folder)
+        except InputError as error:
+            return Done(designs, False, f"cannot export: {error}")
         seconds = time.process_time() - start
         kept.put(order.start, order.stop, table)
     return Done(designs, True, seconds=seconds)
@@ -161,8 +164,8 @@ def _refuse_without_tactcad(client: Client) -> None:
     try:
         client.run(metadata.version, "tactcad")
     except metadata.PackageNotFoundError as error:
-        what = "a worker has no tactcad"
-        raise InputError("--scheduler", what, legal="pip install 'tactcad[sweep]' there") from error
+        what = "has no tactcad"
+        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
 
 
 def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
@@ -188,9 +191,7 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
         for future in running:
             done = future.result()
             if done.unable:
-                raise InputError(
-                    "--scheduler", f"a worker {done.unable}", legal="the same tactcad everywhere"
-                )
+                raise InputError("a worker", done.unable)
             yield done
             for order in islice(left, 1):
                 running.add(handed(order))
@@ -202,8 +203,8 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
     except ImportError as error:
         if (error.name or "").split(".")[0] in KERNEL:
             raise
-        what = f"a worker lacks {error.name}"
-        raise InputError("--scheduler", what, legal="pip install 'tactcad[sweep]' there") from error
+        what = f"lacks {error.name}"
+        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
     except (CancelledError, CommClosedError, TimeoutError) as error:
         raise CheckFailure(
             "the scheduler is gone; what was finished is kept, and the same command goes on from there"

@@ -48,6 +48,11 @@ def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[d
         The design, as TOML would give it.
     folder
         Where an export goes.
+
+    Raises
+    ------
+    InputError
+        The export's folder is not ours to write, which says nothing about the design.
     """
     found: dict[str, Any] = {}
     try:
@@ -59,9 +64,12 @@ def measured_whole(study: Study, table: dict[str, Any], folder: Path) -> tuple[d
         for what, measure in ((BUILDS, _builds), (CHECKS, _checks)):
             if what in study.measure.what:
                 found |= measure(study, design)
+    except (InputError, CheckFailure) as refusal:
+        return found, str(refusal)
+    try:
         if EXPORT in study.measure.what:
             found |= _export(design, folder)
-    except (InputError, CheckFailure) as refusal:
+    except CheckFailure as refusal:
         return found, str(refusal)
     return found, ""
 
