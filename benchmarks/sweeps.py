@@ -138,7 +138,7 @@ def closed_forms(folder: Path, designs: int) -> list[str]:
     once = time.perf_counter() - start
     inside = designs / got.in_workers
     return [
-        f"| {designs:,} closed forms, 2 worker processes | |".replace(",", " "),
+        f"| {designs:.0e} closed forms, 2 worker processes | |",
         "|---|---|",
         *(f"| {name}, s | {seconds:.3g} |" for name, seconds in got.seconds.items()),
         f"| whole, s | {whole:.3g} |",

@@ -9,11 +9,13 @@ import hashlib
 import io
 import json
 import math
+import subprocess
+import sys
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from small_study import SMALL, entries, swept, tables, written
+from small_study import ONE_THREAD, SMALL, entries, swept, tables, written
 
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
@@ -191,3 +193,18 @@ def test_exports_are_kept_until_they_are_gone(tmp_path):
     again = swept(path, "--out", tmp_path / "out", "--json")
     assert json.loads(again.stdout)["computed"] == 1 and tables(tmp_path / "out") == before
     assert manifest.exists()
+
+
+def test_two_sweeps_of_one_process(tmp_path):
+    """The first leaves Dask's settings as the second needs them."""
+    script = (
+        "import sys\nfrom tactcad.cli.main import main\n"
+        "if __name__ == '__main__':\n"
+        "    study, out = sys.argv[1:]\n"
+        "    sys.exit(any(main(['sweep', study, '--out', out + n, '--workers', '1']) for n in 'ab'))\n"
+    )
+    (tmp_path / "twice.py").write_text(script)
+    command = [sys.executable, tmp_path / "twice.py", written(tmp_path), tmp_path / "out"]
+    got = subprocess.run(command, env=ONE_THREAD, capture_output=True, text=True, timeout=300, check=False)
+    assert got.returncode == 0, got.stderr
+    assert tables(tmp_path / "outa") == tables(tmp_path / "outb")

@@ -114,15 +114,13 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     """
     import dask
 
-    quiet = dict.fromkeys(("distributed", "distributed.client", "tornado.application", "asyncio"), "critical")
-    ours = {
-        "logging": quiet,
-        "distributed.worker.daemon": False,
-        "distributed.nanny.pre-spawn-environ": MEMORY,
-    }
-    with dask.config.set(ours):
+    logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
+    quiet = {"logging": dict.fromkeys(logs, "critical")}
+    with dask.config.set(quiet):  # read when it is loaded
         from distributed import Client, LocalCluster
 
+    environ = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
+    with dask.config.set({**quiet, **environ, "distributed.worker.daemon": False}):
         if address is not None:
             with _connected(Client, address) as client:
                 _refuse_without_tactcad(client)
