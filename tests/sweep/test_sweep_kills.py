@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import shutil
 import signal
@@ -53,7 +54,8 @@ def test_a_killed_client_and_killed_workers(undisturbed, tmp_path):
     assert tables(out) == wanted
     after = entries(out)
     assert len(after) == 8 and {name: after[name] for name in finished} == finished
-    assert f'"kept": {len(finished)}' in said
+    record = json.loads(said)  # the worker may have kept a task and died before it said so
+    assert record["kept"] >= len(finished) and record["kept"] + record["computed"] == 8
 
 
 def test_a_killed_scheduler_of_a_cluster(undisturbed, tmp_path):
