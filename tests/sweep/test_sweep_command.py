@@ -21,6 +21,9 @@ from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import from_table, read
 from tactcad.sweep.designs_taken import designs_taken, table_of
+from tactcad.sweep.kept import claimed
+from tactcad.sweep.measured import made_by
+from tactcad.sweep.on_dask import SweepTask, carry_out
 from tactcad.sweep.study import read_study
 
 
@@ -208,3 +211,14 @@ def test_two_sweeps_of_one_process(tmp_path):
     got = subprocess.run(command, env=ONE_THREAD, capture_output=True, text=True, timeout=300, check=False)
     assert got.returncode == 0, got.stderr
     assert tables(tmp_path / "outa") == tables(tmp_path / "outb")
+
+
+def test_a_task_handed_out_twice_is_computed_once(tmp_path):
+    """As Dask does with what a dead worker had finished."""
+    study = read_study(written(tmp_path))
+    folder = claimed(study, tmp_path / "out")
+    task = SweepTask(study, made_by(study.measure.what), str(folder), 0, 24)
+    first, kept = carry_out(task), entries(folder)
+    second = carry_out(task)
+    assert (first.computed, second.computed) == (True, False) and first.designs == second.designs == 24
+    assert len(kept) == 1 and entries(folder) == kept
