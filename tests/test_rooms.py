@@ -30,6 +30,7 @@ ROOMS = (
     "bench",
     "synthesis",
     "review",
+    "sweep",
     "cli",
 )
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}

@@ -152,6 +152,14 @@ def test_what_needs_the_kernel_says_what_to_install(installed, empty, command):
     assert not list(empty.iterdir())
 
 
+def test_what_needs_dask_says_what_to_install(installed, empty):
+    done = run(installed / "tactcad", "sweep", "study.toml", "--out", "out", cwd=empty)
+    assert done.returncode == 1 and not list(empty.iterdir())
+    assert done.stderr == (
+        "tactcad: this needs distributed and pyarrow, not installed here: pip install 'tactcad[sweep]'\n"
+    )
+
+
 def test_a_design_that_came_with_the_wheel_has_no_golden_file_there(installed, empty):
     """Nothing is ever written into the installed package."""
     done = run(installed / "tactcad", "golden", cwd=empty)

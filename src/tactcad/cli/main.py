@@ -28,6 +28,7 @@ COMMANDS = {
     "export": "write the files of a design: STEP, DXF, bill of materials, pictures",
     "check": "run every check on a design",
     "build": "build a thousand arrays virtually from parts within their limits, and say what fails",
+    "sweep": "measure many designs, on one machine or a cluster, into one table; stopped, it goes on",
     "release": "run every check, and write one zip that a shop can quote from",
     "review": "one offline page: the sensor in 3-D, with limits, findings, estimates and bill part by part",
     "view": "the same page live: it follows the design file while it is written",

@@ -223,7 +223,27 @@ class NumberRows:
         return {"type": "array", "items": self.row.schema(), "minItems": 1, "maxItems": 2}
 
 
-Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | NumberRows
+@dataclass(frozen=True)
+class Values:
+    """A list of values of a field that is named elsewhere, whose own spec reads each of them."""
+
+    meaning: str
+    unit: str = ""
+
+    @property
+    def legal(self) -> str:
+        return "a list of one or more of the field's values"
+
+    def read(self, value: Any, where: str) -> tuple[Any, ...]:
+        if not isinstance(value, list) or not value:
+            raise InputError(where, "not a list of values", value=value, legal=self.legal)
+        return tuple(value)
+
+    def schema(self) -> dict:
+        return {"type": "array", "minItems": 1}
+
+
+Spec = Number | Whole | OneOf | TextLine | Day | Numbers | SomeOf | NumberRows | Values
 
 
 def given(spec: Spec, default: Any = REQUIRED, derived: str = "") -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,7 +46,11 @@ class ElementEstimate:
 
 
 def estimate(
-    layout: Layout, rung: str, force: float | None = None, mesh: int | None = None
+    layout: Layout,
+    rung: str,
+    force: float | None = None,
+    mesh: int | None = None,
+    numbers: Collection[int] = (),
 ) -> list[ElementEstimate]:
     """Estimate every element of a design.
 
@@ -58,6 +63,8 @@ def estimate(
         On each pad, N; by default the design's rating.
     mesh : int, optional
         Density of rung fem-solid's finer mesh.
+    numbers : collection of int, optional
+        Only these elements; ratios are then to the stiffest of them.
 
     Returns
     -------
@@ -71,14 +78,16 @@ def estimate(
     """
     design = layout.design
     force = design.rating.force if force is None else force
-    section = hinge_section(layout, layout.elements)
-    if why := not_reached(layout, section, rung):
+    places = tuple(p for p in layout.elements if not numbers or p.number in numbers)
+    section = hinge_section(layout, places)
+    if why := not_reached(layout, places, section, rung):
         raise CheckFailure(why)
     if rung not in ladder.FINITE_ELEMENTS:
-        return estimate_sections(layout, section, rung, force)
-    K, per_newton = _by_elements(layout, layout.elements, section, rung, design.gauge.grid_length, mesh)
+        return _by_closed_form(layout, places, section, rung, force)
+    K, per_newton = _by_elements(layout, places, section, rung, design.gauge.grid_length, mesh)
     errors = strain_errors.stated(section, design.gauge.grid_length, rung)
-    return _estimates(layout, section, K, per_newton, expected_error_of(section, rung, mesh), errors, force)
+    promised = expected_error_of(section, rung, mesh)
+    return _estimates(layout, places, section, K, per_newton, promised, errors, force)
 
 
 def estimate_sections(
@@ -86,10 +95,16 @@ def estimate_sections(
 ) -> list[ElementEstimate]:
     """`estimate` by a closed form, with the dimensions in `section` (arrays over the elements) instead of the
     design's."""
+    return _by_closed_form(layout, layout.elements, section, rung, force)
+
+
+def _by_closed_form(
+    layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str, force: float
+) -> list[ElementEstimate]:
     K, grid = np.asarray(ladder.stiffness(section, rung)), layout.design.gauge.grid_length
     errors = strain_errors.stated(section, grid, rung)
     strains = _closed_form_strains(section, rung, grid)
-    return _estimates(layout, section, K, strains, expected_error_of(section, rung), errors, force)
+    return _estimates(layout, places, section, K, strains, expected_error_of(section, rung), errors, force)
 
 
 def choose_rung(layout: Layout, accuracy: float) -> Choice:
@@ -176,6 +191,7 @@ def _by_elements(
 
 def _estimates(
     layout: Layout,
+    places: Sequence[ElementPlace],
     section: HingeSection,
     K: Array,
     per_newton: _PerNewton,
@@ -184,9 +200,9 @@ def _estimates(
     force: float,
 ) -> list[ElementEstimate]:
     alloy, rating = design_alloy(layout.design), layout.design.rating
-    stiffness_error = np.broadcast_to(stiffness_error, len(layout.elements))
+    stiffness_error = np.broadcast_to(stiffness_error, len(places))
     rows = []
-    for i, place in enumerate(layout.elements):
+    for i, place in enumerate(places):
         stress = float(per_newton.fillet_stress[i])
         yield_force = alloy.yield_strength / stress
         face_yield = alloy.yield_strength / float(per_newton.face_stress[i])

@@ -152,10 +152,10 @@ def _path(name: str, layout: Layout, place: ElementPlace) -> str:
     return PATHS[name]
 
 
-def not_reached(layout: Layout, section: HingeSection, rung: str) -> str:
-    """Why a rung does not reach the first of the array's elements that it does not, their parameters in
-    `section`; "" where it reaches all."""
-    for place, reason in zip(layout.elements, validity.reasons(section, rung).ravel()):
+def not_reached(layout: Layout, places: Sequence[ElementPlace], section: HingeSection, rung: str) -> str:
+    """Why a rung does not reach the first of these elements that it does not, their parameters in `section`;
+    "" where it reaches all."""
+    for place, reason in zip(places, validity.reasons(section, rung).ravel()):
         if reason:
             return f"rung {rung} does not reach element {place.number}: {in_design(reason, layout, place)}"
     return ""

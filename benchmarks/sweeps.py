@@ -1,0 +1,177 @@
+"""What a sweep costs beside what it computes, as the tables of docs/sweeps.md.
+
+    python benchmarks/sweeps.py docs/sweeps.md --designs 10000000     some minutes on a quiet machine
+
+Every sweep is one of this machine's own processes, into a new folder. Memory is what each process holds in
+pages (RSS), looked at every 0.2 s. Rates are by processor time, which other work on the machine hardly moves;
+seconds of a whole sweep, and of two workers against one, want a quiet machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import psutil
+import pyarrow.parquet as pq
+
+from tactcad.mechanics import ladder
+from tactcad.mechanics.accuracy import expected_error_of
+from tactcad.sweep import measured as one_task
+from tactcad.sweep import run_sweep
+from tactcad.sweep.designs_taken import designs_taken
+from tactcad.sweep.study import Study, read_study
+from tactcad.sweep.vector_sections import VectorDesigns
+
+HEAD = '[study]\nname = "speed"\nsampling = "sobol"\ncount = {count}\n'
+VARY = (
+    '[vary."element.hinge_thickness"]\nrange = [0.2, 0.4]\n'
+    '[vary."array.row_arms[0][3]"]\nrange = [5, 9]\n'
+    '[vary."element.fillet_radius"]\nrange = [0.25, 0.35]\n'
+)
+CLOSED = '[measure]\nwhat = ["solid"]\nelements = [4]\n'
+ELEMENTS = '[measure]\nwhat = ["fem-plane"]\nelements = [4]\n'
+SMALL_TASKS, SOLVED = 400, 60
+
+
+def study_of(folder: Path, count: int, measure: str) -> Study:
+    path = folder / "study.toml"
+    path.write_text(HEAD.format(count=count) + VARY + measure)
+    return read_study(path)
+
+
+@contextmanager
+def watched() -> Iterator[dict[str, float]]:
+    """Most memory of this process, and of any that it started, in MB."""
+    most, ended, me = {"client": 0.0, "worker": 0.0}, threading.Event(), psutil.Process()
+
+    def look() -> None:
+        while not ended.wait(0.2):
+            most["client"] = max(most["client"], me.memory_info().rss / 1e6)
+            for child in me.children(recursive=True):
+                try:
+                    most["worker"] = max(most["worker"], child.memory_info().rss / 1e6)
+                except psutil.Error:
+                    pass
+
+    thread = threading.Thread(target=look)
+    thread.start()
+    try:
+        yield most
+    finally:
+        ended.set()
+        thread.join()
+
+
+def swept(study: Study, folder: Path, workers: int) -> run_sweep.Swept:
+    return run_sweep.sweep(study, folder, None, workers, False, lambda _: None, lambda *_: None)
+
+
+def bare(study: Study, step: int) -> float:
+    """Processor seconds of the same calls in this process, nothing kept."""
+    one_task.measured(study, 0, min(step, study.count), Path())  # loads what is loaded once
+    start = time.process_time()
+    for i in range(0, study.count, step):
+        one_task.measured(study, i, min(i + step, study.count), Path())
+    return time.process_time() - start
+
+
+def vector_call(study: Study) -> float:
+    """Designs a second of processor time of the closed form and its promised error alone, in one call."""
+    columns = designs_taken(study, 0, study.count)
+    section = VectorDesigns(study.design, columns).section(4)
+    best = float("inf")
+    for _ in range(3):
+        start = time.process_time()
+        ladder.evaluate(section, "solid")
+        expected_error_of(section, "solid")
+        best = min(best, time.process_time() - start)
+    return study.count / best
+
+
+def overhead(folder: Path) -> list[str]:
+    study, usual = study_of(folder, SMALL_TASKS, CLOSED), one_task.CLOSED_FORMS_A_TASK
+    one_task.CLOSED_FORMS_A_TASK = 1
+    try:
+        took = swept(study, folder / "small", 1).seconds["computing"]
+    finally:
+        one_task.CLOSED_FORMS_A_TASK = usual
+    call = bare(study, 1)
+    return [
+        "| one task of one closed form | ms |",
+        "|---|---|",
+        f"| calling the function | {1e3 * call / SMALL_TASKS:.2g} |",
+        f"| as a task, kept in the store | {1e3 * took / SMALL_TASKS:.2g} |",
+        f"| overhead | {1e3 * (took - call) / SMALL_TASKS:.2g} |",
+    ]
+
+
+def two_workers(folder: Path) -> list[str]:
+    study = study_of(folder, SOLVED, ELEMENTS)
+    one, two = (swept(study, folder / f"{n}-workers", n).seconds["computing"] for n in (1, 2))
+    return [
+        f"| {SOLVED} elements by fem-plane, worker processes | s |",
+        "|---|---|",
+        f"| 1 | {one:.3g} |",
+        f"| 2 | {two:.3g} |",
+        f"| times as fast | {one / two:.2f} |",
+    ]
+
+
+def closed_forms(folder: Path, designs: int) -> list[str]:
+    study = study_of(folder, designs, CLOSED)
+    with watched() as memory:
+        start = time.perf_counter()
+        got = swept(study, folder / "closed", 2)
+        whole = time.perf_counter() - start
+    some = study_of(folder, min(designs, 1 << 19), CLOSED)
+    rate = vector_call(some)
+    table = pq.read_table(folder / "closed" / "results.parquet")
+    start = time.perf_counter()
+    pq.write_table(table, folder / "once.parquet")
+    once = time.perf_counter() - start
+    inside = designs / got.in_workers
+    return [
+        f"| {designs:.0e} closed forms, 2 worker processes | |",
+        "|---|---|",
+        *(f"| {name}, s | {seconds:.3g} |" for name, seconds in got.seconds.items()),
+        f"| whole, s | {whole:.3g} |",
+        f"| the same columns written once by pyarrow, s | {once:.3g} |",
+        f"| whole against that | {whole / once:.2g} |",
+        f"| designs a second of processor time inside workers | {inside:.3g} |",
+        f"| of the vector call alone | {rate:.3g} |",
+        f"| share | {inside / rate:.2g} |",
+        f"| most memory of the client, MB | {memory['client']:.0f} |",
+        f"| most memory of a worker, MB | {memory['worker']:.0f} |",
+        f"| results.parquet, MB | {(folder / 'closed' / 'results.parquet').stat().st_size / 1e6:.0f} |",
+    ]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("document", type=Path, help="Markdown file that has the tables' place")
+    parser.add_argument("--designs", type=int, default=1_000_000, help="closed forms (default 1e6)")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        parts = [closed_forms(folder, args.designs), overhead(folder), two_workers(folder)]
+    begin, end = "<!-- tables sweeps -->\n", "<!-- end -->\n"
+    new = begin + "\n\n".join("\n".join(part) for part in parts) + "\n" + end
+    text = args.document.read_text(encoding="utf-8")
+    pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
+    if not pattern.search(text):
+        parser.error(f"{args.document}: no place for the tables: {begin.strip()}")
+    args.document.write_text(pattern.sub(lambda _: new, text), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

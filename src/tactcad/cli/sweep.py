@@ -1,0 +1,125 @@
+"""tactcad sweep STUDY.toml --out DIR [--scheduler ADDRESS] [--workers N] [--csv] [--json]; sweep plot DIR"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import CheckFailure, InputError
+
+from .parser import add_json
+
+if TYPE_CHECKING:
+    from tactcad.sweep.run_sweep import Swept
+    from tactcad.sweep.study import Study
+
+EXAMPLES = """\
+  tactcad sweep hardware/studies/hinges.toml --out hinges
+  tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a cluster that is there already
+  tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
+  tactcad schema --study                  every field of a study file
+
+DIR gets results.parquet, results.csv (up to 1e6 rows, above with --csv) and manifest.json. Each task's
+result is kept in DIR/store as it finishes: the same command again takes up where it was stopped, computes
+nothing twice and gives the same bytes. Refused designs are rows with their reason; where all are, the exit
+status is 1."""
+
+NEEDED = ("distributed", "pyarrow")
+MOST_WORKERS = 1000
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "study", nargs="+", metavar="STUDY.toml", help="what varies and what is measured; or: plot DIR"
+    )
+    parser.add_argument("--out", metavar="DIR", help="folder of this study: new, empty, or begun before")
+    parser.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="of a Dask scheduler, as tcp://HOST:8786, whose workers see DIR by the same path (default: "
+        "processes on this machine)",
+    )
+    parser.add_argument(
+        "--workers", type=int, metavar="N", help="processes on this machine (default: one a core)"
+    )
+    parser.add_argument("--csv", action="store_true", help="write results.csv above 1e6 rows, too")
+    add_json(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if missing:
+        raise CheckFailure(
+            f"this needs {' and '.join(missing)}, not installed here: pip install 'tactcad[sweep]'"
+        )
+    if args.study[0] == "plot":
+        return _plot(args)
+    return _sweep(args)
+
+
+def _sweep(args: argparse.Namespace) -> int:
+    from tactcad.sweep.on_dask import cores
+    from tactcad.sweep.run_sweep import sweep
+    from tactcad.sweep.study import read_study
+
+    from .progress import progress, slow_work
+
+    if len(args.study) > 1:
+        raise InputError("STUDY.toml", "more than one", value=args.study[1], legal="one study, or plot DIR")
+    if args.out is None:
+        raise InputError("--out", "missing", legal="a folder for this study")
+    if args.workers is not None and not 1 <= args.workers <= MOST_WORKERS:
+        raise InputError("--workers", "out of range", value=args.workers, legal=f"1 to {MOST_WORKERS}")
+    if args.workers is not None and args.scheduler is not None:
+        raise InputError("--workers", "are the scheduler's own", value=args.workers, legal="left out")
+    study = read_study(args.study[0])
+    workers = args.workers or cores()
+    say = progress(sys.stderr).line
+    with slow_work(sys.stderr) as tell:
+        got = sweep(study, args.out, args.scheduler, workers, args.csv, say, tell)
+    if args.json:
+        print(json.dumps(_record(study, got), indent=1))
+    else:
+        _print(study, got)
+    if got.tally.refused == got.tally.rows:
+        why, count = got.tally.reasons.most_common(1)[0]
+        raise CheckFailure(f"{study.study.name}: every design is refused ({count} of them: {why})")
+    return 0
+
+
+def _record(study: Study, got: Swept) -> dict:
+    return {
+        "study": study.study.name,
+        "designs": got.tally.rows,
+        "measured": got.tally.rows - got.tally.refused,
+        "refused": got.tally.refused,
+        "reasons": dict(got.tally.reasons.most_common()),
+        "computed": got.computed,
+        "kept": got.kept,
+        "seconds": got.seconds,
+        "in_workers": round(got.in_workers, 3),
+        "folder": str(got.folder),
+        "files": list(got.files),
+    }
+
+
+def _print(study: Study, got: Swept) -> None:
+    tally = got.tally
+    refused = f", {tally.refused} refused" if tally.refused else ""
+    print(f"{study.study.name}: {tally.rows} designs{refused}; {got.computed} computed now, {got.kept} kept")
+    for why, count in tally.reasons.most_common(5):
+        print(f"  {count} refused: {why}")
+    print("  " + ", ".join(f"{name} {seconds:.1f} s" for name, seconds in got.seconds.items()))
+    print(f"{got.folder}: {', '.join(got.files)}")
+
+
+def _plot(args: argparse.Namespace) -> int:
+    from tactcad.sweep.study_page import write_page
+
+    if len(args.study) != 2:
+        raise InputError("plot", "takes one folder", legal="tactcad sweep plot DIR")
+    print(f"{write_page(args.study[1])}: written")
+    return 0

@@ -1,0 +1,141 @@
+"""Closed forms of many designs, one vector call for each rung and element."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from tactcad.design.load import from_table
+from tactcad.design.materials import differences
+from tactcad.design.messages import InputError
+from tactcad.design.tree import Design
+from tactcad.mechanics import ladder, strain
+from tactcad.mechanics.accuracy import expected_error_of
+from tactcad.mechanics.section import HingeSection
+
+from .designs_taken import Column, table_of
+from .study import STRENGTH, Study
+from .vector_sections import Floats, VectorDesigns
+
+STIFFNESS = ("stiffness", "expected_error")  # N/mm; relative, at most
+FORCES = ("yield_force", "rated_force", "rated_deflection")  # N, N, mm
+
+
+def names_of(study: Study, rung: str, number: int) -> list[str]:
+    """Columns of one element's results by one rung."""
+    return [f"{rung}.E{number}.{name}" for name in STIFFNESS + FORCES * (STRENGTH in study.measure.what)]
+
+
+def closed_forms(
+    study: Study, columns: dict[str, Column], reason: Column, results: Mapping[str, Floats]
+) -> None:
+    """Fill in what closed forms say of these designs.
+
+    Parameters
+    ----------
+    study
+        The study.
+    columns
+        The designs.
+    reason
+        Of each design why it is refused, "" where it is not: filled in where this refuses it first.
+    results
+        By column, NaN where nothing is known: filled in.
+    """
+    rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
+    if not rungs:
+        return
+    for rows, design, numbers in _alike(study, columns, reason):
+        many = VectorDesigns(design, numbers)
+        there = len(many.layout.elements)
+        for number in study.elements:
+            if number > there:
+                _refuse(reason, rows, f"the design has no element {number}")
+                continue
+            section = many.section(number)
+            for rung in rungs:
+                result = ladder.evaluate(section, rung)
+                all_valid = result.valid.all()
+                if not all_valid:
+                    why = np.broadcast_to(result.reason, len(rows))
+                    said = [w and f"{rung} E{number}: {w}" for w in why]
+                    _refuse(reason, rows, np.array(said, object))
+                values = [result.stiffness, expected_error_of(section, rung)]
+                if STRENGTH in study.measure.what:
+                    values += _forces(many, section, rung, result)
+                for name, column in zip(names_of(study, rung, number), values):
+                    results[name][rows] = column if all_valid else np.where(result.valid, column, np.nan)
+
+
+def _forces(many: VectorDesigns, section: HingeSection, rung: str, result: ladder.Result) -> list[Floats]:
+    """In the order of FORCES, each over all designs; NaN where out of the rung's range."""
+    per_newton = np.full(section.shape, np.nan)
+    if result.valid.any():
+        per_newton[result.valid] = _stress(section.rows(result.valid.reshape(-1)), rung)
+    yield_force = many.of("material.yield_strength") / per_newton
+    return [
+        yield_force,
+        np.minimum(many.of("rating.force"), yield_force / many.of("rating.yield_factor")),
+        yield_force / many.of("rating.deflection_factor") / result.stiffness,
+    ]
+
+
+def _stress(section: HingeSection, rung: str) -> Floats:
+    """MPa/N at the fillet; rungs without one have the leaf's own, as `tactcad estimate` has it."""
+    if rung in ladder.FITTED:
+        return strain.peak_stress(section, 1.0)
+    return strain.peak(section, 1.0, rung) * section.youngs_modulus
+
+
+def _alike(
+    study: Study, columns: dict[str, Column], reason: Column
+) -> Iterator[tuple[np.ndarray, Design, dict[str, Floats]]]:
+    """Rows that differ in numbers only, a design that has all else of theirs, and those numbers. Designs
+    that cannot be read are refused."""
+    numbers = {path: column for path, column in columns.items() if column.dtype != object}
+    others = {path: column for path, column in columns.items() if column.dtype == object}
+    count = len(next(iter(columns.values())))
+    alike: dict[str, list[int]] = {}
+    for i, row in enumerate(zip(*others.values())):
+        alike.setdefault(json.dumps(row), []).append(i)
+    for rows in map(np.array, alike.values()) if others else [np.arange(count)]:
+        rows = rows[reason[rows] == ""]
+        try:
+            design = _design(study, others, rows) if rows.size else None
+        except InputError as error:
+            _refuse(reason, rows, str(error))
+            continue
+        own = {path: column[rows] for path, column in numbers.items()}
+        if design is not None and any(path.startswith("material.") for path in own):
+            kept = _with_material(design, own, reason, rows)
+            rows, own = rows[kept], {path: column[kept] for path, column in own.items()}
+        if rows.size and design is not None:
+            yield rows, design, own
+
+
+def _design(study: Study, others: dict[str, Column], rows: np.ndarray) -> Design:
+    return from_table(table_of(study, others, rows[0])) if others else study.design
+
+
+def _with_material(
+    design: Design, numbers: dict[str, Floats], reason: Column, rows: np.ndarray
+) -> np.ndarray:
+    """Which designs' material may bear its name; the others are refused, as when their file is read."""
+    material = {path: column for path, column in numbers.items() if path.startswith("material.")}
+    kept = np.ones(len(rows), bool)
+    for i, values in enumerate(zip(*material.values())):
+        own = {path.partition(".")[2]: float(value) for path, value in zip(material, values)}
+        try:
+            differences(design.material.alloy, vars(design.material) | own, design.origin)
+        except InputError as error:
+            kept[i] = False
+            reason[rows[i]] = str(error)
+    return kept
+
+
+def _refuse(reason: Column, rows: np.ndarray, why: Column | str) -> None:
+    """Keep the first reason of each of the rows."""
+    first = reason[rows] == ""
+    reason[rows[first]] = np.broadcast_to(why, len(rows))[first]

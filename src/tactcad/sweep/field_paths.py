@@ -1,0 +1,92 @@
+"""One value of a design file by its path, as messages name it: "element.hinge_thickness",
+"element.override.3.arm_height", "array.row_arms[0][2]"."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from tactcad.design.fields import NumberRows, Numbers, Spec
+from tactcad.design.load import SECTION_TYPES, paths
+from tactcad.design.tree import Design, Hinge
+
+_PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[[0-9]{1,4}\])*)")
+
+
+def spec_at(design: Design, path: str) -> Spec | None:
+    """What the field at that path takes; None where there is no such field, or no such place in its list."""
+    found = _PLACE.fullmatch(path)
+    if not found:
+        return None
+    field, places = found["field"], _places(path)
+    spec = _spec(field)
+    value: Any = paths(design).get(field) if places else None
+    for place in places:
+        if not isinstance(spec, (NumberRows, Numbers)) or value is None or place >= len(value):
+            return None
+        spec, value = spec.row if isinstance(spec, NumberRows) else spec.item, value[place]
+    return spec
+
+
+def value_at(design: Design, path: str) -> Any:
+    """The design's own value there, None where it gives none."""
+    field = path.partition("[")[0]
+    known = paths(design)
+    if field not in known and field.startswith("element.override."):
+        field = f"element.{field.rpartition('.')[2]}"  # what an override leaves out is [element]'s
+    value: Any = known.get(field)
+    for place in _places(path):
+        value = value[place]
+    return value
+
+
+def placed(table: dict[str, Any], design: Design, path: str, value: Any) -> dict[str, Any]:
+    """A copy of a design's table with that value at the path; what is not on the way to it is shared.
+
+    Parameters
+    ----------
+    table
+        As TOML gives it.
+    design
+        The design read from it, for lists that it leaves to their default.
+    path, value
+        As `spec_at` knows it.
+    """
+    field, places = path.partition("[")[0], _places(path)
+    head, *names = field.split(".", 2 if field.startswith("stop.gaps.") else -1)
+    out = dict(table)
+    node = out[head] = dict(out.get(head, {}))
+    for name in names[:-1]:
+        node[name] = dict(node.get(name, {}))
+        node = node[name]
+    whole = node.get(names[-1], paths(design).get(field)) if places else None
+    node[names[-1]] = _replaced(whole, places, value) if places else value
+    return out
+
+
+def _spec(field: str) -> Spec | None:
+    section, _, name = field.partition(".")
+    kind = SECTION_TYPES.get(section)
+    if kind is None or section == "origin":
+        return None
+    override = re.fullmatch(r"override\.[1-9][0-9]{0,3}\.(\w+)", name)
+    if section == "element" and override:
+        kind, name = Hinge, override[1]
+    if section == "stop" and re.fullmatch(r"gaps\.[0-9.]+", name):
+        name = "gaps"
+    elif (section, name) == ("stop", "gaps"):
+        return None
+    known = kind.__dataclass_fields__.get(name)
+    return known.metadata.get("spec") if known else None
+
+
+def _places(path: str) -> list[int]:
+    return [int(place) for place in re.findall(r"\[([0-9]+)\]", path)]
+
+
+def _replaced(whole: Any, places: list[int], value: Any) -> list:
+    """A copy of a list, or of a list of lists, with the value at its place."""
+    out = list(whole)
+    first, *rest = places
+    out[first] = _replaced(out[first], rest, value) if rest else value
+    return out

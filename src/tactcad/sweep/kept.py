@@ -1,0 +1,110 @@
+"""The folder of a study: whose it is, what is finished in it, and the table at its end.
+
+DIR/study.json names the study by digest; DIR/store holds one entry for every task that is finished, each
+written in one step and verified when it is read (tactcad.export.cache); the rest is written whole at the end.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tactcad.design.files import absolute, make_folder, read_json, write_whole
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.cache import Cache
+
+from .measured import EXPORT, as_bytes, export_folder, from_bytes
+from .study import Study
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+# Not "tactcad-...": an export takes a folder marked so for its own, and refuses to lie inside it.
+SCHEMA = "sweep-1"
+MARK, STORE = "study.json", "store"
+MOST_BYTES = 100_000
+
+
+class Kept:
+    """A study's folder.
+
+    Parameters
+    ----------
+    study
+        The study.
+    folder
+        Where; absolute, so that a worker with another working folder finds it.
+    made_by
+        Digest of the rooms and libraries that results come from (`measured.made_by`).
+    """
+
+    def __init__(self, study: Study, folder: Path, made_by: str) -> None:
+        self.study, self.folder = study, folder
+        self._prefix = f"{SCHEMA} {study.identity} {made_by}"
+        self._said: list[str] = []
+        self._cache = Cache(folder / STORE, self._said.append)
+
+    def get(self, start: int, stop: int) -> pa.Table | None:
+        """What is kept of these designs; None where they are not finished, or the entry is damaged."""
+        data = self._cache.get(self._key(start, stop))
+        table = from_bytes(data) if data is not None else None
+        return None if table is None or self._lacks_files(start, table) else table
+
+    def put(self, start: int, stop: int, table: pa.Table) -> None:
+        """Keep it. Raises CheckFailure where it does not read back."""
+        self._cache.put(self._key(start, stop), as_bytes(table))
+        if self._cache.get(self._key(start, stop)) is None:
+            why = self._said[-1] if self._said else "it does not read back"
+            raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
+
+    def _key(self, start: int, stop: int) -> str:
+        return f"{self._prefix} {start} {stop}"
+
+    def _lacks_files(self, start: int, table: pa.Table) -> bool:
+        """Whether an export that was finished is no longer there as it was."""
+        if EXPORT not in self.study.measure.what:
+            return False
+        wanted = table["manifest_sha256"][0].as_py()
+        manifest = export_folder(self.folder, start + 1) / "manifest.json"
+        there = hashlib.sha256(manifest.read_bytes()).hexdigest() if manifest.is_file() else ""
+        return there != wanted
+
+
+def claimed(study: Study, out: str | Path) -> Path:
+    """The folder, absolute, made and marked as this study's.
+
+    Raises
+    ------
+    InputError
+        Where it holds another study, or anything else.
+    """
+    folder = absolute(out)
+    make_folder(folder)
+    if not (folder / MARK).exists():
+        if left := sorted(os.listdir(folder)):
+            what = f"holds files that are no study's, such as {left[0]}"
+            raise InputError(str(out), what, legal="a new or empty folder, or one of this study")
+        mark = {"schema": SCHEMA, "name": study.study.name, "study": study.identity}
+        write_whole(folder / MARK, (json.dumps(mark, indent=1) + "\n").encode())
+    found = mark_of(folder)
+    if found.get("study") != study.identity:
+        raise InputError(
+            str(out),
+            f"holds another study, or this one as it was before a change: {found.get('name')}",
+            value=study.study.name,
+            legal="a folder of its own for every study",
+        )
+    return folder
+
+
+def mark_of(folder: Path) -> dict[str, Any]:
+    """What the folder says of its study. Raises InputError where it is no study's."""
+    found = read_json(folder / MARK, MOST_BYTES, "a study's mark")
+    if not isinstance(found, dict) or found.get("schema") != SCHEMA:
+        raise InputError(
+            str(folder), "is not the folder of a study", legal="DIR of `tactcad sweep --out DIR`"
+        )
+    return found

@@ -1,0 +1,214 @@
+"""A study's tasks on Dask, which decides where and when each runs; results go to the store, not through
+it."""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import metadata
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad.account import KERNEL
+from tactcad.design.files import scratch_folder
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.inputs import Inputs, reasons
+
+from .kept import MARK, Kept, mark_of
+from .measured import made_by, measured
+from .study import EXPORT, Study
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster
+
+# Tasks that the scheduler knows of at a time: enough for some hundred workers, and little memory however
+# many designs there are.
+AT_ONCE = 500
+ANSWER = "10s"  # within which a scheduler answers, or nobody is there
+
+# Dask has its workers' C library give back every freed array at once; vector calls then take 2.5 times as
+# long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most that it takes.
+MEMORY = {"MALLOC_TRIM_THRESHOLD_": 1 << 28, "MALLOC_MMAP_THRESHOLD_": 1 << 25}
+
+NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
+
+# One task at a time in a process, whatever threads its worker has: the CAD kernel holds the interpreter's
+# lock, and is not made for threads.
+_ALONE = threading.Lock()
+
+
+@dataclass(frozen=True)
+class SweepTask:
+    """One task: designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what
+    `inputs` says."""
+
+    study: Study
+    inputs: Inputs
+    folder: str
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True)
+class Done:
+    """A task at its end: whether it was computed now, or found in the store; `unable`: why neither.
+
+    `seconds`: processor time of computing, without what the store takes.
+    """
+
+    designs: int
+    computed: bool
+    unable: str = ""
+    seconds: float = 0.0
+
+
+def carry_out(order: SweepTask) -> Done:
+    """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
+    finished ones too."""
+    designs = order.stop - order.start
+    with _ALONE:
+        if order.inputs != (own := made_by(order.study.measure.what)):
+            return Done(designs, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
+        if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
+            return Done(designs, False, NO_HELPERS)
+        folder = Path(order.folder)
+        if not (folder / MARK).is_file() or mark_of(folder).get("study") != order.study.identity:
+            return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
+        kept = Kept(order.study, folder, order.inputs.key)
+        if kept.get(order.start, order.stop) is not None:
+            return Done(designs, False)
+        start = time.process_time()
+        try:
+            table = measured(order.study, order.start, order.stop, folder)
+        except InputError as error:
+            return Done(designs, False, f"cannot export: {error}")
+        seconds = time.process_time() - start
+        kept.put(order.start, order.stop, table)
+    return Done(designs, True, seconds=seconds)
+
+
+@contextmanager
+def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> Iterator[Client]:
+    """A client of the scheduler at that address, or of processes on this machine where there is none.
+
+    Parameters
+    ----------
+    address
+        As "tcp://HOST:8786".
+    workers
+        Processes on this machine.
+    say
+        Receives the dashboard's address.
+
+    Raises
+    ------
+    InputError
+        Where nobody answers.
+    """
+    import dask
+
+    logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
+    quiet = {"logging": dict.fromkeys(logs, "critical")}
+    with dask.config.set(quiet):  # read when it is loaded
+        from distributed import Client, LocalCluster
+
+    environ = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
+    with dask.config.set({**quiet, **environ, "distributed.worker.daemon": False}):
+        if address is not None:
+            with _connected(Client, address) as client:
+                _refuse_without_tactcad(client)
+                say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
+                yield client
+            return
+        with scratch_folder("sweep") as scratch:
+            options = {"local_directory": str(scratch), "dashboard_address": "127.0.0.1:0"}
+            with _started(LocalCluster, workers, options) as local, Client(local) as client:
+                say(f"dashboard: {client.dashboard_link}")
+                yield client
+
+
+def _started(local: type[LocalCluster], workers: int, options: dict[str, str]) -> LocalCluster:
+    """Processes of one thread each, by spawn, which is Dask's own way."""
+    try:
+        return local(
+            n_workers=workers,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            silence_logs=logging.CRITICAL,
+            **options,
+        )
+    except RuntimeError as error:
+        raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
+
+
+def _connected(client: type[Client], address: str) -> Client:
+    try:
+        return client(address, timeout=ANSWER)
+    except (OSError, ValueError) as error:  # a timeout is an OSError
+        raise InputError(
+            "--scheduler", "nobody answers there", value=address, legal="a Dask scheduler, as tcp://HOST:8786"
+        ) from error
+
+
+def _refuse_without_tactcad(client: Client) -> None:
+    """A worker without tactcad cannot even read a task: it would end, and the study would wait."""
+    try:
+        client.run(metadata.version, "tactcad")
+    except metadata.PackageNotFoundError as error:
+        what = "has no tactcad"
+        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
+
+
+def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
+    """Each task's end, as they come; never more than AT_ONCE of them are handed out.
+
+    Raises
+    ------
+    InputError
+        Where a worker is of another version, or does not see the folder.
+    CheckFailure
+        Where a task killed every worker it was given to, or the scheduler is gone.
+    """
+    from distributed import CancelledError, KilledWorker, as_completed
+    from distributed.comm.core import CommClosedError
+
+    left = iter(orders)
+
+    def handed(order: SweepTask):  # type: ignore[no-untyped-def]
+        return client.submit(carry_out, order, pure=False)
+
+    running = as_completed([handed(order) for order in islice(left, AT_ONCE)])
+    try:
+        for future in running:
+            done = future.result()
+            if done.unable:
+                raise InputError("a worker", done.unable)
+            yield done
+            for order in islice(left, 1):
+                running.add(handed(order))
+    except KilledWorker as error:
+        raise CheckFailure(
+            f"a task killed every worker it was given to, the last one {error.last_worker.address}: too "
+            "little memory? What was finished is kept"
+        ) from error
+    except ImportError as error:
+        if (error.name or "").split(".")[0] in KERNEL:
+            raise
+        what = f"lacks {error.name}"
+        raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
+    except (CancelledError, CommClosedError, TimeoutError) as error:
+        raise CheckFailure(
+            "the scheduler is gone; what was finished is kept, and the same command goes on from there"
+        ) from error
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))

@@ -1,0 +1,92 @@
+"""The table of a study: chunk by chunk from the store to Parquet and CSV, never whole in memory."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad.design.files import whole_file
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+PARQUET, CSV = "results.parquet", "results.csv"
+ROWS_A_GROUP = 1 << 16  # of Parquet: a row group is what a reader takes at once
+MOST_REASONS = 1000  # that are counted; of more, the rest counts as one
+
+
+@dataclass
+class Tally:
+    """What a table holds: rows, those that are refused, and why, most frequent first."""
+
+    rows: int = 0
+    refused: int = 0
+    reasons: Counter[str] = field(default_factory=Counter)
+
+    def add(self, table: pa.Table) -> None:
+        import pyarrow.compute as pc
+
+        self.rows += table.num_rows
+        refused = table.filter(pc.invert(table["valid"]))
+        self.refused += refused.num_rows
+        for entry in refused["reason"].value_counts().to_pylist():
+            known = entry["values"] in self.reasons or len(self.reasons) < MOST_REASONS
+            self.reasons[entry["values"] if known else "other reasons"] += entry["counts"]
+
+
+def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Tally:
+    """Write results.parquet, and results.csv where asked, each whole or not at all.
+
+    Parameters
+    ----------
+    folder
+        The study's.
+    chunks
+        Tables of one schema, in the order of the designs.
+    with_csv
+        Whether CSV is written too.
+
+    Raises
+    ------
+    InputError, CheckFailure
+        As `whole_file`.
+    """
+    import pyarrow as pa
+    import pyarrow.csv
+    import pyarrow.parquet as pq
+
+    tally = Tally()
+    with ExitStack() as stack:
+        writers: list = []
+        for table in _grouped(chunks):
+            if not writers:
+                place = stack.enter_context(whole_file(folder / PARQUET))
+                words = [f.name for f in table.schema if pa.types.is_string(f.type)]
+                # numbers of a study hardly repeat: a dictionary of them is work for nothing
+                parquet = pq.ParquetWriter(place, table.schema, use_dictionary=words)
+                writers.append(stack.enter_context(parquet))
+                if with_csv:
+                    place = stack.enter_context(whole_file(folder / CSV))
+                    writers.append(stack.enter_context(pyarrow.csv.CSVWriter(place, table.schema)))
+            for writer in writers:
+                writer.write_table(table)
+            tally.add(table)
+    return tally
+
+
+def _grouped(chunks: Iterable[pa.Table]) -> Iterable[pa.Table]:
+    """Small chunks joined to row groups."""
+    import pyarrow as pa
+
+    waiting: list[pa.Table] = []
+    for chunk in chunks:
+        waiting.append(chunk)
+        if sum(t.num_rows for t in waiting) >= ROWS_A_GROUP:
+            yield pa.concat_tables(waiting).combine_chunks()
+            waiting = []
+    if waiting:
+        yield pa.concat_tables(waiting).combine_chunks()

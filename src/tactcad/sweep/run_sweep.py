@@ -1,0 +1,171 @@
+"""A study from its file to its table: what is not in the store is computed, then everything is joined."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tactcad import __version__
+from tactcad.design.files import write_whole
+from tactcad.design.messages import CheckFailure
+
+from .kept import SCHEMA, Kept, claimed
+from .measured import designs_a_task, made_by
+from .on_dask import SweepTask, all_done, cluster
+from .results_table import CSV, PARQUET, Tally, write_tables
+from .study import Study
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+MANIFEST = "manifest.json"
+MOST_CSV = 1_000_000  # rows that are written as CSV unasked
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A finished study: its folder, its files, designs computed now and taken from the store, seconds that
+    starting, computing and writing took; `in_workers`: processor seconds of the measuring alone."""
+
+    folder: Path
+    files: tuple[str, ...]
+    tally: Tally
+    computed: int
+    kept: int
+    seconds: dict[str, float]
+    in_workers: float
+
+
+def sweep(
+    study: Study,
+    out: str | Path,
+    address: str | None,
+    workers: int,
+    with_csv: bool,
+    say: Callable[[str], None],
+    tell: Callable[[int, int, str], None],
+) -> Swept:
+    """Measure every design of a study that is not measured yet, and write the table.
+
+    Parameters
+    ----------
+    study
+        As read.
+    out
+        Its folder: new, empty, or this study's.
+    address
+        Of a Dask scheduler; None for processes on this machine.
+    workers
+        How many of those.
+    with_csv
+        Whether CSV is written whatever the number of rows.
+    say
+        Receives lines worth keeping.
+    tell
+        Receives (done, total, text) as designs finish.
+
+    Raises
+    ------
+    InputError
+        The folder holds something else, nobody answers at the address, or a worker is of another version.
+    CheckFailure
+        Workers died of a task, or the scheduler is gone; what was finished stays.
+    """
+    folder = claimed(study, out)
+    inputs = made_by(study.measure.what)
+    kept = Kept(study, folder, inputs.key)
+    step, count = designs_a_task(study), study.count
+    tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
+    tell(0, count, "reading what is finished")
+    missing = [task for task in tasks if kept.get(*task) is None]
+    orders = (SweepTask(study, inputs, str(folder), *task) for task in missing)
+    wanted = sum(stop - start for start, stop in missing)
+    clock = _Stopwatch()
+    computed, in_workers = 0, 0.0
+    if missing:
+        tell(count - wanted, count, "starting")
+        with cluster(address, min(workers, len(missing)), say) as client:
+            clock.lap("starting")
+            tell(count - wanted, count, "designs, none finished yet")
+            done = 0
+            for each in all_done(client, orders):
+                done += each.designs
+                computed += each.designs * each.computed
+                in_workers += each.seconds
+                tell(count - wanted + done, count, _rate(done, wanted, clock.lapsed))
+            clock.lap("computing")
+        clock.lap("ending")
+
+    def chunks() -> Iterator[pa.Table]:
+        for start, stop in tasks:
+            table = kept.get(start, stop)
+            if table is None:
+                raise CheckFailure(f"{folder}: designs {start + 1} to {stop} are damaged; run it again")
+            yield table
+
+    with_csv = with_csv or count <= MOST_CSV
+    tally = write_tables(folder, chunks(), with_csv)
+    files = (PARQUET, *([CSV] if with_csv else []))
+    write_whole(folder / MANIFEST, _manifest(study, folder, files, tally))
+    clock.lap("writing")
+    return Swept(folder, (*files, MANIFEST), tally, computed, count - computed, clock.seconds, in_workers)
+
+
+class _Stopwatch:
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    @property
+    def lapsed(self) -> float:
+        return time.perf_counter() - self._last
+
+    def lap(self, name: str) -> None:
+        self.seconds[name] = round(self.lapsed, 3)
+        self._last = time.perf_counter()
+
+
+def _rate(done: int, wanted: int, seconds: float) -> str:
+    rate = done / max(seconds, 1e-6)
+    left = (wanted - done) / rate
+    shown = (
+        f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min" if left < 7200 else f"{left / 3600:.1f} h"
+    )
+    return f"designs, {rate:.3g} a second, {shown} left"
+
+
+def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) -> bytes:
+    inputs = made_by(study.measure.what)
+    record = {
+        "schema": SCHEMA,
+        "study": {
+            "name": study.study.name,
+            "sha256": study.identity,
+            "table": _plain(study.study),
+            "vary": {path: _plain(one) for path, one in study.vary.items()},
+            "measure": _plain(study.measure),
+            "design": study.base,
+        },
+        "designs": tally.rows,
+        "refused": tally.refused,
+        "versions": {"tactcad": __version__, **inputs.libraries},
+        "sources": dict(inputs.sources),
+        "files": [_file(folder, name) for name in files],
+    }
+    return (json.dumps(record, indent=1) + "\n").encode()
+
+
+def _plain(table: object) -> dict:
+    """A table of the study as its file has it."""
+    return {name: value for name, value in vars(table).items() if value is not None}
+
+
+def _file(folder: Path, name: str) -> dict:
+    with open(folder / name, "rb") as file:
+        sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+    return {"path": name, "sha256": sha256, "bytes": (folder / name).stat().st_size}

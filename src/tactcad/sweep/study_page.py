@@ -1,0 +1,212 @@
+"""A study's table as one offline page: what depends on what (shares of variance, main effects, pairs)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactcad.design.files import read_json, write_whole
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.paper.plots import BLUE, GREY, drawn, panels
+from tactcad.paper.report import ReportSection, ReportTable, ValidationReport, percent, to_html
+
+from .kept import mark_of
+from .results_table import PARQUET
+
+PAGE = "plot.html"
+MOST_BYTES = 10_000_000  # of a manifest
+MOST_ROWS = 200_000  # that the page is made of, of a longer table by chance
+MOST_RESULTS = 6  # on the page: the first that vary
+MOST_PAIRED, MOST_POINTS = 7, 1500  # columns and rows of the pairs' figure
+LEAST_IN_BIN, MOST_BINS = 10, 24
+
+Floats = NDArray[np.float64]
+
+
+def write_page(out: str | Path) -> Path:
+    """Write DIR/plot.html.
+
+    Raises
+    ------
+    InputError
+        The folder is no study's, or its table is not there.
+    CheckFailure
+        Fewer than two numbers vary, or hardly any design was measured.
+    """
+    folder = Path(out)
+    mark_of(folder)
+    manifest = read_json(folder / "manifest.json", MOST_BYTES, "a study's manifest")
+    vary = list(manifest["study"]["vary"])
+    columns = _columns(folder)
+    fields = [name for name in vary if name in columns]
+    results = _results(columns, fields)
+    if not fields or not results:
+        raise CheckFailure(f"{out}: nothing to plot: it needs a varied number and a result that varies")
+    shown = results[:MOST_RESULTS]
+    report = ValidationReport(
+        title=f"Study {manifest['study']['name']}",
+        subtitle=f"{manifest['designs']} designs of {manifest['study']['table']['design']}, "
+        f"{manifest['refused']} refused",
+        summary=tuple(_summary(columns, fields, shown)),
+        sections=(
+            _shares_section(columns, fields, shown),
+            _effects_section(columns, fields, shown),
+            _pairs_section(columns, fields, shown),
+        ),
+        colophon=f"Made of {PARQUET}, SHA-256 {manifest['files'][0]['sha256']}; results shown: "
+        f"{len(shown)} of {len(results)} that vary.",
+    )
+    write_whole(folder / PAGE, to_html(report).encode())
+    return folder / PAGE
+
+
+def _columns(folder: Path) -> dict[str, Floats]:
+    """Numbers that vary among the designs that were measured, in the order of the table."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        file = pq.ParquetFile(folder / PARQUET)
+    except (OSError, pa.ArrowInvalid) as error:
+        raise InputError(
+            str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
+        ) from None
+    share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
+    groups = (file.read_row_group(i) for i in range(file.num_row_groups))
+    table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
+    table = table.filter(table["valid"])
+    numbers = [f.name for f in table.schema if pa.types.is_floating(f.type)]
+    columns = {name: table[name].to_numpy() for name in numbers if table.num_rows > LEAST_IN_BIN}
+    return {name: v for name, v in columns.items() if np.isfinite(v).all() and np.ptp(v) > 0}
+
+
+def _some(count: int, share: float) -> NDArray[np.int64]:
+    """That share of rows by chance: every n-th of a Sobol sequence would leave out parts of the ranges."""
+    rows = np.random.default_rng(count).permutation(count)
+    return np.sort(rows[: max(1, round(share * count))])
+
+
+def _results(columns: dict[str, Floats], fields: Sequence[str]) -> list[str]:
+    """Results that differ from each other, stiffnesses first; promised errors are none."""
+    names = [n for n in columns if n not in fields and not n.endswith(".expected_error")]
+    first: dict[bytes, str] = {}
+    for name in names:
+        first.setdefault(columns[name].tobytes(), name)
+    return sorted(first.values(), key=lambda name: not name.endswith(".stiffness"))
+
+
+def binned(field: Floats, result: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Middles of the field's bins, and in each the result's count, mean and variance.
+
+    Bins hold as many designs each; a field of few values has a bin for each.
+    """
+    most = max(2, min(MOST_BINS, len(field) // LEAST_IN_BIN))
+    values = np.unique(field)
+    if len(values) <= most:
+        index = np.searchsorted(values, field)
+    else:
+        index = np.argsort(np.argsort(field, kind="stable"), kind="stable") * most // len(field)
+    count = np.bincount(index).astype(float)
+    mean = np.bincount(index, result) / count
+    variance = np.bincount(index, (result - mean[index]) ** 2) / count
+    return np.bincount(index, field) / count, count, mean, variance
+
+
+def first_order_share(field: Floats, result: Floats) -> float:
+    """First-order Sobol index Var(E[y|x])/Var(y), estimated from the designs as they are.
+
+    By the variance of the result's means over the field's bins, less what chance gives them: epsilon squared
+    of the analysis of variance (Kelley, 1935). Fields that vary together share what they explain.
+    """
+    _, count, mean, variance = binned(field, result)
+    total = float(((result - result.mean()) ** 2).sum())
+    between = float((count * (mean - result.mean()) ** 2).sum())
+    within = float((count * variance).sum())
+    free = len(result) - len(count)
+    by_chance = (len(count) - 1) * within / free if free > 0 else 0.0
+    return float(np.clip((between - by_chance) / total, 0.0, 1.0))
+
+
+def _shares(columns: dict[str, Floats], fields: Sequence[str], result: str) -> list[float]:
+    return [first_order_share(columns[field], columns[result]) for field in fields]
+
+
+def _summary(columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]) -> list[str]:
+    lines = []
+    for result in results:
+        shares = _shares(columns, fields, result)
+        most = int(np.argmax(shares))
+        lines.append(f"{result}: most by {fields[most]}, {percent(shares[most])} of its variance")
+    return lines
+
+
+def _shares_section(
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+) -> ReportSection:
+    rows = []
+    for result in results:
+        shares = _shares(columns, fields, result)
+        rows.append((result, *(percent(s) for s in shares), percent(max(0.0, 1.0 - sum(shares)))))
+    table = ReportTable(
+        "First-order shares of variance",
+        (("result", ""), *((field, "") for field in fields), ("together", "")),
+        tuple(rows),
+        "What is left to fields together, and to chance.",
+    )
+    findings = ("A share says by how much the result's variance would fall if that field alone were known.",)
+    return ReportSection("shares", "Sobol shares", "Which field decides?", findings, (table,))
+
+
+def _effects_section(
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+) -> ReportSection:
+    size = (2.6 * len(fields) + 1.2, 2.1 * len(results) + 0.4)
+    with panels(len(results), len(fields), size, squeeze=False, sharey="row", sharex="col") as (figure, axes):
+        for row, result in zip(axes, results):
+            for ax, field in zip(row, fields):
+                middle, _, mean, variance = binned(columns[field], columns[result])
+                deviation = np.sqrt(variance)
+                ax.fill_between(middle, mean - deviation, mean + deviation, color=BLUE, alpha=0.15, lw=0)
+                ax.plot(middle, mean, color=BLUE)
+            row[0].set_ylabel(_short(result), fontsize=9)
+        for ax, field in zip(axes[-1], fields):
+            ax.set_xlabel(_short(field), fontsize=9)
+        picture = drawn(figure, "effects", "Line: mean. Band: one standard deviation to either side.")
+    finding = "A field that moves the mean acts by itself; where the band is wide, the other fields act."
+    return ReportSection("effects", "Main effects", "What does each field do?", (finding,), (), (picture,))
+
+
+def _pairs_section(
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+) -> ReportSection:
+    names = [*fields, *results][: max(MOST_PAIRED, len(fields) + 1)]
+    count = len(columns[names[0]])
+    rows = _some(count, min(1.0, MOST_POINTS / count))
+    n = len(names)
+    with panels(n, n, (1.75 * n + 1, 1.75 * n), squeeze=False) as (figure, axes):
+        for i, y in enumerate(names):
+            for j, x in enumerate(names):
+                ax = axes[i, j]
+                if i == j:
+                    ax.hist(columns[x], bins=24, color=GREY)
+                    ax.set_yticks([])
+                else:
+                    ax.plot(columns[x][rows], columns[y][rows], ".", color=BLUE, ms=1.6, rasterized=True)
+                ax.tick_params(labelsize=7, labelbottom=i == n - 1, labelleft=j == 0)
+                ax.grid(False)
+            axes[i, 0].set_ylabel(_short(y), fontsize=8)
+            axes[-1, i].set_xlabel(_short(y), fontsize=8)
+        picture = drawn(
+            figure, "pairs", f"{len(rows)} designs; on the diagonal, how often each value occurs."
+        )
+    finding = "Fields were taken as the upper left shows; results that go together lie on one line."
+    return ReportSection("pairs", "Pairs", "Which go together?", (finding,), (), (picture,))
+
+
+def _short(name: str) -> str:
+    """A column's name on two lines."""
+    head, _, last = name.rpartition(".")
+    return f"{head}\n{last}" if head else name

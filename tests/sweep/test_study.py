@@ -1,0 +1,107 @@
+"""What a study file may say, and that everything else is refused in one line."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from small_study import SMALL, written
+
+from tactcad.cli.main import main
+from tactcad.design.messages import InputError
+from tactcad.sweep.study import read_study, study_schema
+
+THICKNESS = '[vary."element.hinge_thickness"]'
+BAD = {
+    "unknown field": (SMALL.replace("hinge_thickness", "hinge_thicknes"), "did you mean element.hinge_thick"),
+    "unknown table": (SMALL + "[mesure]\n", "mesure: unknown field"),
+    "unknown place": (SMALL.replace("[0][3]", "[0][7]"), "array.row_arms[0][7]: unknown field"),
+    "no quotes": (SMALL.replace(THICKNESS, "[vary.element.hinge_thickness]"), "the path stands in quotes"),
+    "empty range": (SMALL.replace("[0.2, 0.4]", "[0.4, 0.2]"), "range: is empty; found [0.4, 0.2]"),
+    "illegal end": (SMALL.replace("[0.2, 0.4]", "[0.2, 40]"), "range[1]: out of range; found 40"),
+    "no number": (SMALL.replace("[0.2, 0.4]", '[0.2, "x"]'), "range[1]: not a number"),
+    "two ways": (SMALL.replace("[0.2, 0.4]", "[0.2, 0.4]\nnormal = 0.01"), "range and normal"),
+    "no way": (SMALL.replace("range = [0.2, 0.4]", "steps = 3"), "needs one of values, range and normal"),
+    "steps of draws": (SMALL.replace("[0.2, 0.4]", "[0.2, 0.4]\nsteps = 4"), "belongs to a range in a grid"),
+    "no values": (SMALL.replace("range = [0.2, 0.4]", "values = []"), "not a list of values"),
+    "illegal value": (SMALL.replace("range = [0.2, 0.4]", "values = [0.2, -1]"), "values[1]: out of range"),
+    "a word's range": (SMALL.replace("element.hinge_thickness", "element.sides"), "takes no numbers between"),
+    "grid of draws": (SMALL.replace('"sobol"', '"grid"').replace("count = 24", ""), "needs steps"),
+    "count of a grid": (SMALL.replace('"sobol"', '"grid"').replace("0.4]", "0.4]\nsteps = 3"), "needs steps"),
+    "no count": (SMALL.replace("count = 24\n", ""), "study.count: missing"),
+    "too many": (SMALL.replace('"sobol"', '"latin-hypercube"').replace("24", "2000000"), "sampling sobol"),
+    "unknown measure": (SMALL.replace('"solid"', '"soild"'), "did you mean solid?"),
+    "strength alone": (SMALL.replace('"solid", ', ""), "strength goes with a rung"),
+    "no such element": (SMALL.replace("[4, 9]", "[4, 11]"), "no such element; found 11; legal: 1 to 10"),
+    "an element twice": (SMALL.replace("[4, 9]", "[4, 4]"), "an element twice"),
+    "unknown design": (SMALL.replace('"macro-array"', '"macro-aray"'), "did you mean macro-array?"),
+    "nothing varies": (SMALL.partition("[vary")[0] + '[measure]\nwhat = ["solid"]\n', "vary: missing table"),
+    "not TOML": ("[study\n", "is not TOML"),
+}
+
+
+@pytest.mark.parametrize("text, said", BAD.values(), ids=BAD)
+def test_bad_input_is_one_line_and_nothing_is_written(tmp_path, capsys, text, said):
+    path = written(tmp_path, text)
+    assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and said in err, err
+    assert not (tmp_path / "out").exists()
+
+
+def test_lists_are_of_one_length(tmp_path):
+    text = SMALL.replace('"sobol"', '"list"').replace("count = 24", "")
+    text = text.replace("range = [0.2, 0.4]", "values = [0.2, 0.3]").replace("range = [6, 9]", "values = [6]")
+    with pytest.raises(InputError, match=r"hinge_thickness: 2, array.row_arms\[0\]\[3\]: 1"):
+        read_study(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    "arguments, said",
+    [
+        ("{study}", "--out: missing"),
+        ("{study} {study} --out o", "more than one"),
+        ("{study} --out o --workers 0", "--workers: out of range"),
+        ("{study} --out o --workers 2 --scheduler tcp://x:1", "the scheduler's own"),
+        ("{study} --out o --scheduler nobody:1", "nobody answers there; found 'nobody:1'"),
+        ("{study} --out {folder}", "holds files that are no study's, such as study.toml"),
+        ("plot", "takes one folder"),
+        ("plot {folder}", "no such file"),
+    ],
+)
+def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
+    monkeypatch.chdir(tmp_path)
+    path = written(tmp_path)
+    words = arguments.format(study=path, folder=tmp_path).split()
+    assert main(["sweep", *words]) == 2
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert said in last
+
+
+def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name, *_: None)
+    assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "o")]) == 1
+    assert capsys.readouterr().err == (
+        "tactcad: this needs distributed and pyarrow, not installed here: pip install 'tactcad[sweep]'\n"
+    )
+
+
+def test_the_schema_names_every_field_and_takes_the_study(tmp_path, capsys):
+    assert main(["schema", "--study"]) == 0
+    said = capsys.readouterr().out
+    assert main(["schema", "--study", "--json"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert schema == study_schema() and set(schema["properties"]) == {"study", "vary", "measure"}
+    for table in ("study", "measure"):
+        for name in schema["properties"][table]["properties"]:
+            assert f"\n  {name} " in said
+
+
+def test_a_tomls_own_date_is_no_hindrance(tmp_path):
+    from tactcad.design.load import find
+
+    text = find("macro-array").read_text()
+    day = text.partition('date = "')[2][:10]
+    (tmp_path / "own.toml").write_text(text.replace(f'date = "{day}"', f"date = {day}"))
+    study = read_study(written(tmp_path, design='"own.toml"'))
+    assert study.design.design.date == day and study.count == 24

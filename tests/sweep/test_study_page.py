@@ -1,0 +1,43 @@
+"""Shares of variance against functions whose Sobol indices are known; the page stands alone."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from scipy.stats import qmc
+from small_study import swept, written
+
+from tactcad.cli.main import main
+from tactcad.sweep.study_page import first_order_share
+
+
+def test_shares_of_ishigamis_function():
+    """a = 7, b = 0.1: S1 = 0.3139, S2 = 0.4424, S3 = 0 (Ishigami and Homma 1990)."""
+    x = np.pi * (2 * qmc.Sobol(3, rng=1).random(8192) - 1)
+    y = np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+    shares = [first_order_share(x[:, i], y) for i in range(3)]
+    assert shares == pytest.approx([0.3139, 0.4424, 0.0], abs=0.015)
+
+
+def test_shares_of_a_sum():
+    """y = 3 a + b, both uniform: 9/10 and 1/10; a field of few values is binned by value."""
+    a, b = np.repeat(np.arange(5.0), 400), np.tile(np.arange(5.0), 400)
+    assert first_order_share(a, 3 * a + b) == pytest.approx(0.9, abs=1e-3)
+    assert first_order_share(b, 3 * a + b) == pytest.approx(0.1, abs=5e-3)
+
+
+def test_chance_explains_nothing():
+    rng = np.random.default_rng(3)
+    assert first_order_share(rng.random(500), rng.random(500)) < 0.05
+
+
+def test_the_page_stands_alone(tmp_path, scheduler):
+    path = written(tmp_path, count="128")
+    assert swept(path, "--out", tmp_path / "out", "--scheduler", scheduler).returncode == 0
+    assert main(["sweep", "plot", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "plot.html").read_text()
+    assert "element.hinge_thickness" in page and "solid.E4.stiffness" in page and page.count("<svg") == 2
+    assert not re.findall(r"(?:src|href)=[\"'](?!#|data:image)", page)
+    assert "solid.E9.stiffness: most by element.hinge_thickness" in page
