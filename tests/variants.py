@@ -24,7 +24,11 @@ BARE_TEXT = (HARDWARE / "macro-array.toml").read_text("utf-8").split("\n[origin]
 
 def without_rigs(name: str) -> str:
     """The text of a shipped design with its array only."""
-    text = (HARDWARE / f"{name}.toml").read_text("utf-8")
+    return array_only((HARDWARE / f"{name}.toml").read_text("utf-8"))
+
+
+def array_only(text: str) -> str:
+    """A design's text without the tables of rigs."""
     return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping|bonding)\]\n.*?(?=\n\[|\Z)", "", text)
 
 

@@ -73,7 +73,7 @@ def test_all_designs_are_checked_though_one_is_refused(tmp_path, capsys):
     assert status == 1
     assert "design.name" in out
     first, second = json.loads((folder / "check.json").read_bytes())["designs"]
-    assert not first["passed"] and second["passed"] and second["runs"]["interference"] == 1
+    assert not first["passed"] and second["passed"] and second["runs"]["interference"] == 2  # array, bonding
     suites = ElementTree.parse(folder / "junit.xml").getroot().findall("testsuite")
     assert [s.get("failures") for s in suites] == ["1", "0"]
 

@@ -3,11 +3,10 @@ on a small design."""
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import pytest
-from variants import BARE_TEXT
+from variants import BARE_TEXT, array_only
 
 from tactcad.cli.main import main
 from tactcad.parts.designs import load
@@ -15,7 +14,7 @@ from tactcad.parts.designs import load
 pytestmark = pytest.mark.cad
 
 TEXT = (
-    re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", BARE_TEXT)
+    array_only(BARE_TEXT)
     .replace('name = "macro-array"', 'name = "tiny"')
     .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
 )

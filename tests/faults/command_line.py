@@ -26,7 +26,7 @@ import tactcad
 
 ROOT = Path(__file__).parents[2]
 MODULE = [sys.executable, "-m", "tactcad"]
-RIGS = ("cart", "holder", "sample", "calibration", "grasping")
+RIGS = ("cart", "holder", "sample", "calibration", "grasping", "bonding")
 
 
 def one_by_one(arm: float, revision: str) -> str:

@@ -12,7 +12,7 @@ from math import hypot, pi
 
 import ezdxf
 import pytest
-from variants import BARE_TEXT, variant
+from variants import BARE_TEXT, array_only, variant
 
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.cli.main import main
@@ -29,7 +29,7 @@ from tactcad.scenes import make_scene, scene_names
 pytestmark = pytest.mark.cad
 
 TEXT = (
-    re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", BARE_TEXT)
+    array_only(BARE_TEXT)
     .replace('name = "macro-array"', 'name = "tiny"\norganisation = "Tiny lab"\ncontact = "tiny@lab.example"')
     .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
 )

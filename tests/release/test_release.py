@@ -16,7 +16,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from variants import BARE_TEXT
+from variants import BARE_TEXT, array_only
 
 import tactcad
 from tactcad.cli.main import main
@@ -32,9 +32,7 @@ from tactcad.scenes import make_scene
 pytestmark = pytest.mark.cad
 
 TEXT = (
-    re.sub(  # the paper's array cut down to one element, without rigs
-        r"(?s)\n\[(calibration|sample|cart|holder|grasping)\]\n.*?(?=\n\[|\Z)", "", BARE_TEXT
-    )
+    array_only(BARE_TEXT)
     .replace('name = "macro-array"', 'name = "tiny"')
     .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
 )
