@@ -32,7 +32,7 @@ def reload() -> None:
 
 def camera(name: str, to: str = "") -> str:
     """The camera of a document's views, each set to what is given; "" where no view is open."""
-    import FreeCADGui  # type: ignore[import-not-found]  # there with a window alone
+    import FreeCADGui  # there with a window alone
 
     views = FreeCADGui.getDocument(name).mdiViewsOfType("Gui::View3DInventor") if FreeCAD.GuiUp else []
     for view in views if to else []:
