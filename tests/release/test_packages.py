@@ -189,6 +189,15 @@ def test_one_set_or_all(macro):
     assert [s.name for s in scenes if s.ready] == ["calibration", "grasping"]
 
 
+def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():
+    design = variant()
+    scenes = [make_scene(design, name) for name in ("array", "bonding")]
+    lines = {line.row.part_no: line.qty for line in ordered(scenes, "A", "all")}
+    elements = [n for n in lines if "-element-" in n]
+    assert sum(lines[n] for n in elements) == len(Layout(design).elements) == 10
+    assert lines[f"{design.name}-bonding-nest"] == 1
+
+
 def test_one_element_of_every_ten_of_a_kind_is_spare():
     scene = make_scene(variant({"array.row_arms": [[5] * 21 + [4], [5]]}), "array")
     lines = {line.row.part_no: line for line in ordered([scene], "A", "one")}
