@@ -89,6 +89,34 @@ def test_kicads_netlist_read_by_another_reader(name):
     ]
 
 
+def test_every_board_has_the_header_that_is_bought():
+    """The first board reads three elements, the second eight: KiCad knows one part for both headers."""
+    design = variant({"array.row_arms": [[4, 7, 6], [8, 5, 4, 5, 7, 8, 5, 4]]})
+    whole = expression(circuit_files.kicad_file(design).decode())
+    (header,) = (x for x in part(whole, "libparts")[1:] if part(x, "part")[1] == "HEADER-LEADS")
+    numbers = {part(pin, "num")[1] for pin in part(header, "pins")[1:]}
+    named = {part(pin, "name")[1] for pin in part(header, "pins")[1:]}
+    used = {
+        part(x, "pin")[1]
+        for net in part(whole, "nets")[1:]
+        for x in net
+        if x[0] == "node" and part(x, "ref")[1] == "J22"
+    }
+    assert used == numbers == named == {str(i) for i in range(1, 25)}
+    (line,) = (s for s in make_scene(design, "array").supplies if s.part_no == "HEADER-LEADS")
+    values = {c.value for c in netlist(Layout(design)).components if c.part_no == "HEADER-LEADS"}
+    assert values == {"24 pins"} and "24 pins" in line.designation
+
+
+@pytest.mark.parametrize(
+    ("connection", "colours"), [("three-wire", "RD, WH and BK"), ("two-wire", "RD and BK")]
+)
+def test_the_bill_names_the_leads_colours(connection, colours):
+    design = variant({"readout.connection": connection})
+    (line,) = (s for s in make_scene(design, "array").supplies if s.part_no == "LEAD-WIRE")
+    assert f"as much of {colours} " in line.description
+
+
 def test_table_and_kicads_file_say_the_same():
     design = read("macro-array")
     kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design))

@@ -49,6 +49,17 @@ def test_a_gauge_longer_than_the_leaf_allows(tmp_path, capsys):
     refused(longer, "gauge.carrier_arm_side", "1.9", "at most 1.7 mm", tmp_path, capsys)
 
 
+@pytest.mark.parametrize(("arms", "helps"), [("[[5], [5]]", False), ("[[5, 5, 5, 5, 5, 5]]", True)])
+def test_another_multiplexer_is_offered_where_it_saves_inputs(arms, helps, tmp_path, capsys):
+    design = text("inputs = 1").replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", arms)
+    four = design.replace("[readout]\n", '[readout]\nmultiplexer = "ADG1409"\n')
+    legal = "at least 2" + (", or a readout.multiplexer of 8 channels" if helps else "")
+    refused(four, "readout.inputs", "1", legal, tmp_path, capsys)
+    (tmp_path / "design.toml").write_text(four, encoding="utf-8")
+    main(["export", str(tmp_path / "design.toml"), "--out", str(tmp_path / "out")])
+    assert capsys.readouterr().err.strip().endswith(legal)
+
+
 def refused(design: str, field: str, value: str, legal: str, tmp_path, capsys) -> None:
     file = tmp_path / "design.toml"
     file.write_text(design, encoding="utf-8")

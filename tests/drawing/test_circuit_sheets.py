@@ -16,6 +16,7 @@ from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
 from tactcad.drawing.gate import pdf_runs
 from tactcad.drawing.layout_check import layout_faults
 from tactcad.export.circuit_files import table_file, wiring_file
+from tactcad.parts.bridge_figures import settling_time
 from tactcad.parts.layout import Layout
 
 OTHERS = {
@@ -50,6 +51,14 @@ def everything_stands_there(design) -> None:
     for row in csv.DictReader(io.StringIO(wiring_file(design).decode())):
         cells = (row["lead"], f"E{row['element']}", row["from"], row["to"], row["colour"], row["wire"])
         assert " ".join(cells) in text
+
+
+def test_no_sample_before_the_output_has_settled():
+    design = read("macro-array")  # 12.4 us
+    text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
+    said = float(re.search(r"Sample ([\d.]+) us after ENABLE", text)[1])
+    settled = settling_time(design) * 1e6
+    assert settled <= said < settled + 1
 
 
 @pytest.mark.parametrize("name", names())

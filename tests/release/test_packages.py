@@ -176,17 +176,25 @@ def test_one_set_or_all(macro):
     """Counted by designators: one set is the largest set-up's, all are every rig's own and the array once."""
     scenes = [make_scene(macro, name) for name in scene_names(macro)]
     counts = {s.name: Counter(p.part.part_no for p in s.placements) for s in scenes}
-    rigs = [
-        c - counts["array"] if s.ready else c for s in scenes for c in [counts[s.name]] if s.name != "array"
-    ]
+    holds_the_array = {"calibration", "grasping", "bonding"}  # the last one element of it
+    rigs = [c - counts["array"] if n in holds_the_array else c for n, c in counts.items() if n != "array"]
     for sets, count in (("one", lambda n: max(c[n] for c in counts.values())), ("all", None)):
         lines = {line.row.part_no: line for line in ordered(scenes, "A", sets)}
         for number in set().union(*counts.values()):
             meant = count(number) if count else counts["array"][number] + sum(c[number] for c in rigs)
             assert lines[number].qty == meant, (sets, number)
         assert lines["STRAIN-GAUGE"].qty == len(Layout(macro).elements)
-        assert lines[f"{macro.name}-base"].qty == (1 if sets == "one" else len(rigs))
+        assert lines[f"{macro.name}-base"].qty == (1 if sets == "one" else 3), "none in the bonding fixture"
     assert [s.name for s in scenes if s.ready] == ["calibration", "grasping"]
+
+
+def test_the_element_in_the_bonding_fixture_is_one_of_the_arrays():
+    design = variant()
+    scenes = [make_scene(design, name) for name in ("array", "bonding")]
+    lines = {line.row.part_no: line.qty for line in ordered(scenes, "A", "all")}
+    elements = [n for n in lines if "-element-" in n]
+    assert sum(lines[n] for n in elements) == len(Layout(design).elements) == 10
+    assert lines[f"{design.name}-bonding-nest"] == 1
 
 
 def test_one_element_of_every_ten_of_a_kind_is_spare():

@@ -244,6 +244,16 @@ def test_the_guide_says_every_step_with_its_limits():
     assert by_hand / 2 < free < by_hand < backed
 
 
+@pytest.mark.parametrize(
+    ("connection", "said"),
+    [("three-wire", "Solder three leads to the terminals"), ("two-wire", "Solder one lead to each terminal")],
+)
+def test_the_guide_solders_as_many_leads_as_are_cut(connection, said):
+    scene = make_scene(variant({"readout.connection": connection}), "bonding")
+    (text,) = (s.text for s in scene.steps if s.title == "Solder")
+    assert said in text and ("third" in text) == (connection == "three-wire")
+
+
 def test_the_arrays_guide_sends_to_the_fixture_where_there_is_one():
     gauges = {
         name: make_scene(variant(changes), "array").steps[0].text

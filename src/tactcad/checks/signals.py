@@ -28,6 +28,6 @@ def check_signals(design: Design) -> Iterator[Finding]:
         if wish is not None and told > wish:
             message = (
                 f"tells no less than {told:.3g} mN from none (noise, quantisation, drift); "
-                f"readout.force_resolution asks for {wish:g}"
+                f"readout.force_resolution asks for {wish:g} mN"
             )
             yield Finding("force-resolution", "fail", who, (), told, wish, message)

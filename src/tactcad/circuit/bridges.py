@@ -114,6 +114,8 @@ def _board(layout: Layout, board: ReadBoard) -> Iterator[Component]:
     parts.append(_connector(f"J{10 * b + 1}", TO_CARD, card))
     ends = ("RED", "PLUS", "FOOT") if three else ("PLUS", "FOOT")
     leads = [f"E{p.number}_{end}" for p in board.places for end in ends]
+    spare = MULTIPLEXERS[layout.design.readout.multiplexer].channels - len(board.places)
+    leads += [""] * (spare * len(ends))  # open: all boards have the same header
     parts.append(_connector(f"J{10 * b + 2}", TO_LEADS, leads))
     return (replace(part, board=b) for part in parts)
 
@@ -183,5 +185,5 @@ def _decoder(layout: Layout, board: ReadBoard, enable: str) -> Component:
 
 
 def _connector(designator: str, part_no: str, nets: list[str]) -> Component:
-    pins = tuple(Pin(str(i), f"{i} {net}", net) for i, net in enumerate(nets, start=1))
+    pins = tuple(Pin(str(i), f"{i} {net}".rstrip(), net) for i, net in enumerate(nets, start=1))
     return Component(designator, "connector", f"{len(nets)} pins", part_no, pins)

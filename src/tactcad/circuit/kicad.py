@@ -60,7 +60,9 @@ def _component(netlist: Netlist, c: Component) -> Expression:
 
 def _part(c: Component) -> Expression:
     kind = "passive" if c.kind in PASSIVE else "unspecified"
-    pins = tuple(("pin", ("num", p.number), ("name", p.role.split()[-1]), ("type", kind)) for p in c.pins)
+    # a connector's pins by number: what is on them differs from board to board
+    names = (p.number if c.kind == "connector" else p.role for p in c.pins)
+    pins = tuple(("pin", ("num", p.number), ("name", name), ("type", kind)) for p, name in zip(c.pins, names))
     return ("libpart", ("lib", "tactcad"), ("part", c.part_no), ("description", c.kind), ("pins", *pins))
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import ceil
 
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.wiring_list import wiring
@@ -93,7 +94,7 @@ def _sheets(design: Design, pages: Sequence[Page], draft: bool, sample: bool) ->
 
 def _channel_notes(layout: Layout) -> list[str]:
     r = layout.design.readout
-    settled = settling_time(layout.design) * 1e6
+    settled = ceil(settling_time(layout.design) * 1e6)
     return [
         "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, J connector, Q "
         "transistor, R resistor, U circuit, W lead, X terminal",
@@ -101,7 +102,7 @@ def _channel_notes(layout: Layout) -> list[str]:
         f"{r.supply_negative:g} V, V5 5 V",
         "The address names the channel; ENABLE high opens its switch and leads its bridge to the amplifier, "
         "all others are off",
-        f"Sample {settled:.0f} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
+        f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
         "the output is read between OUT and GND",
         "All other channels are alike: next sheets; inputs of channels that are not used are on GND",
     ]

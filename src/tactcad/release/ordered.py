@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Literal
 
@@ -50,7 +50,8 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     bills = {scene.name: {row.part_no: row for row in bom_rows(scene, revision, {})} for scene in scenes}
     rows = {number: row for bill in bills.values() for number, row in reversed(bill.items())}
-    own = [dict(_own(scene, bills[scene.name])) for scene in scenes]
+    array = {n for n, row in bills.get("array", {}).items() if row.make_buy == "make"}
+    own = [dict(_own(scene, bills[scene.name], array)) for scene in scenes]
     lines = []
     for number in dict.fromkeys(n for bill in bills.values() for n in bill):
         each = [bill[number].qty for bill in bills.values() if number in bill]
@@ -60,8 +61,10 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
     return tuple(lines)
 
 
-def _own(scene: Scene, bill: Mapping[str, BomRow]) -> Iterator[tuple[str, float]]:
-    """Quantities of a scene without those of the scenes that were put together before and stand in it."""
+def _own(scene: Scene, bill: Mapping[str, BomRow], array: Set[str]) -> Iterator[tuple[str, float]]:
+    """Quantities of a scene without those of the scenes that were put together before and stand in it, and
+    without the array's own parts (`array`), one of which is in the bonding fixture."""
     ready = [{row.part_no: row.qty for row in bom_rows(s, "", {})} for s in scene.ready]
     for number, row in bill.items():
-        yield number, row.qty - sum(counts.get(number, 0) for counts in ready)
+        if scene.name == "array" or number not in array:
+            yield number, row.qty - sum(counts.get(number, 0) for counts in ready)

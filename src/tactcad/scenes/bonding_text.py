@@ -7,6 +7,7 @@ from math import floor
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, allowed_places, gauge_checks, volts
+from tactcad.parts.lead_route import leads
 from tactcad.parts.rigs.bonding_layout import AHEAD_OF_LEADS, BondingLayout
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 
@@ -133,10 +134,15 @@ def terminals(rig: BondingLayout) -> str:
 
 
 def solder(rig: BondingLayout) -> str:
+    to_terminals = "one lead to each terminal. "
+    if leads(rig.array) == 3:
+        to_terminals = (
+            "three leads to the terminals, two on one of them: the third takes the leads' own resistance out "
+            "of the bridge. "
+        )
     return (
         "Tin tabs and terminals, then join each tab to its terminal with one bare strand in a loose arc, so "
-        "that no lead pulls on the gauge. Solder three leads to the terminals, two on one of them: the "
-        "third takes the leads' own resistance out of the bridge. Lay them in the recess to the rear end. "
+        f"that no lead pulls on the gauge. Solder {to_terminals}Lay them in the recess to the rear end. "
         "Each joint within 2 s; clean off all flux."
     )
 

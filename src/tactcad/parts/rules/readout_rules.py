@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from math import ceil, inf
 
 from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
 
@@ -66,12 +66,15 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
     needed, channels = len(boards(layout)), MULTIPLEXERS[r.multiplexer].channels
     if r.inputs is not None and r.inputs < needed:
+        most = max(m.channels for m in MULTIPLEXERS.values())
+        fewest = sum(ceil(len(row) / most) for row in layout.design.array.row_arms)
+        other = f", or a readout.multiplexer of {most} channels" if fewest <= r.inputs else ""
         yield wrong(
             "readout.inputs",
             f"{len(layout.elements)} elements need {needed} boards of {channels} channels (a row's own), "
             "each with an input",
             r.inputs,
-            f"at least {needed}, or a readout.multiplexer of more channels",
+            f"at least {needed}{other}",
         )
 
 
