@@ -20,6 +20,8 @@ def drawn(number, folder):
         return None
     tree.pop("tolerance", None)
     tree.get("stop", {}).pop("tolerance", None)
+    if "bonding" in tree:
+        tree["bonding"] = {}  # its limits, too, as they are by default
     for name in ("dowel_hole", "dowel_hole_upper"):
         tree["holes"].pop(name, None)
     tree["holes"]["dowel_hole"] = SLIDE_FIT[tree["clamp"]["dowel"]]

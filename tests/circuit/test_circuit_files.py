@@ -248,3 +248,18 @@ def test_a_gain_resistor_of_the_series():
     resistor = next(c for c in circuit.components if c.part_no == "GAIN-RESISTOR")
     assert resistor.figure("ohm") == pytest.approx(499.0)
     assert circuit.on_board("amplifier", 1).figure("gain") == pytest.approx(1 + 49400 / 499)
+
+
+def test_a_net_or_a_lead_that_is_missing_is_found():
+    design = variant()
+    circuit = netlist(Layout(design))
+    nets = circuit_files.nets_in_table(circuit_files.table_file(design))
+    circuit_files.check_nets("table", nets, circuit)
+    for name in ("EXC", next(iter(sorted(nets)))):
+        with pytest.raises(CheckFailure, match=f"other nets: {name}"):
+            circuit_files.check_nets("table", {k: v for k, v in nets.items() if k != name}, circuit)
+    data = circuit_files.wiring_file(design)
+    head, first, rest = data.decode().split("\n", 2)
+    for text in (f"{head}\n{rest}", f"{head}\n{first}\n{first}\n{rest}"):
+        with pytest.raises(CheckFailure, match="every lead"):
+            circuit_files.check_leads(text.encode(), circuit)

@@ -414,10 +414,13 @@ def test_a_rebuild_under_another_hash_seed_and_path_shows_nothing(tmp_path, seed
 def test_the_summary_is_short_and_holds_no_markup(tmp_path, capsys):
     """More causes than it shows, with hostile texts: code spans alone, which nothing in them ends."""
     hostile = "`<img src=x>` | @everyone [a](http://b)"
+    owner = "".join(f'\n{field} = "me"' for field in ("author", "organisation", "contact"))
     without_notes = edited(SOFT, ("hinge_thickness = 0.15", "hinge_thickness = 0.155")).split("[origin]")[0]
     (tmp_path / "a.toml").write_text(edited(SOFT))
     (tmp_path / "b.toml").write_text(
-        without_notes.replace("Soft tissue array 2 x 4", hostile).replace('"tactcad"', '"me"')
+        without_notes.replace("Soft tissue array 2 x 4", hostile).replace(
+            "\nrevision", owner + "\nrevision", 1
+        )
     )
     out, page = tmp_path / "c.md", tmp_path / "c.html"
     sides = [str(tmp_path / name) for name in ("a.toml", "b.toml")]
@@ -446,7 +449,7 @@ FAIL_ON: dict[str, tuple[tuple[str, str], set[str]]] = {
     ),
     "limit": (("[gauge]", "[tolerance]\nload_arm = 0.04\n[gauge]"), {"changes", "geometry", "revision"}),
     "tip": (("[gauge]", "[tolerance]\ntip = 0.1\n[gauge]"), {"changes", "geometry", "checks", "revision"}),
-    "new letter": (('revision = "F"', 'revision = "G"'), {"changes"}),
+    "new letter": (('revision = "G"', 'revision = "H"'), {"changes"}),
 }
 
 

@@ -25,7 +25,7 @@ def kicad_file(design: Design) -> bytes:
     """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
     circuit, d = netlist(Layout(design)), design.design
     data = kicad_bytes(circuit, d.title, d.date, d.revision)
-    _compare("KiCad's netlist", nets_in_kicad(data), circuit)
+    check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
     return data
 
 
@@ -33,7 +33,7 @@ def table_file(design: Design) -> bytes:
     """The netlist as CSV. Raises CheckFailure where it does not read back as the circuit."""
     circuit = netlist(Layout(design))
     data = netlist_csv(circuit)
-    _compare("the netlist's table", nets_in_table(data), circuit)
+    check_nets("the netlist's table", nets_in_table(data), circuit)
     return data
 
 
@@ -46,9 +46,7 @@ def wiring_file(design: Design) -> bytes:
     """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
     layout = Layout(design)
     data = wiring_csv(layout)
-    rows = list(csv.DictReader(io.StringIO(data.decode(), newline="")))
-    if sorted(row["lead"] for row in rows) != sorted(c.designator for c in netlist(layout).of_kind("lead")):
-        raise CheckFailure("the wiring list does not name every lead of the circuit once")
+    check_leads(data, netlist(layout))
     return data
 
 
@@ -74,10 +72,18 @@ def nets_in_table(data: bytes) -> Nets:
     return {name: frozenset(nodes) for name, nodes in nets.items()}
 
 
-def _compare(what: str, read: Nets, circuit: Netlist) -> None:
+def check_nets(what: str, read: Nets, circuit: Netlist) -> None:
+    """Raises CheckFailure where the nets read back are not the circuit's."""
     meant = {
         name: frozenset((c.designator, p.number) for c, p in nodes) for name, nodes in circuit.nets.items()
     }
     wrong = sorted(name for name in {*read, *meant} if read.get(name) != meant.get(name))
     if wrong:
         raise CheckFailure(f"{what} reads back with other nets: {', '.join(wrong[:3])}")
+
+
+def check_leads(data: bytes, circuit: Netlist) -> None:
+    """Raises CheckFailure where the wiring list does not name every lead of the circuit once."""
+    rows = csv.DictReader(io.StringIO(data.decode(), newline=""))
+    if sorted(row["lead"] for row in rows) != sorted(c.designator for c in circuit.of_kind("lead")):
+        raise CheckFailure("the wiring list does not name every lead of the circuit once")
