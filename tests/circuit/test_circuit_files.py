@@ -114,7 +114,7 @@ def test_every_board_has_the_header_that_is_bought():
 def test_the_bill_names_the_leads_colours(connection, colours):
     design = variant({"readout.connection": connection})
     (line,) = (s for s in make_scene(design, "array").supplies if s.part_no == "LEAD-WIRE")
-    assert f"as much of {colours} " in line.description
+    assert f"as much of {colours} " in line.designation
 
 
 def test_table_and_kicads_file_say_the_same():

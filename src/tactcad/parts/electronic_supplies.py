@@ -41,10 +41,11 @@ def lead_supply(layout: Layout) -> Supply:
     colours = f"{', '.join(first)} and {last}"
     return Supply(
         LEAD,
-        f"lead wire, {leads(layout)} per gauge: as much of {colours} (IEC 60757)",
+        f"lead wire, {leads(layout)} per gauge, in their colours",
         metres,
         "m",
-        f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation",
+        f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation, as much of "
+        f"{colours} (IEC 60757)",
         spares=round(metres * bonded_spares(n) / n, 1),
     )
 
