@@ -108,15 +108,6 @@ def test_every_board_has_the_header_that_is_bought():
     assert values == {"24 pins"} and "24 pins" in line.designation
 
 
-@pytest.mark.parametrize(
-    ("connection", "colours"), [("three-wire", "RD, WH and BK"), ("two-wire", "RD and BK")]
-)
-def test_the_bill_names_the_leads_colours(connection, colours):
-    design = variant({"readout.connection": connection})
-    (line,) = (s for s in make_scene(design, "array").supplies if s.part_no == "LEAD-WIRE")
-    assert f"as much of {colours} " in line.description
-
-
 def test_table_and_kicads_file_say_the_same():
     design = read("macro-array")
     kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design))

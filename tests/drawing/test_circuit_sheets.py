@@ -61,6 +61,12 @@ def test_no_sample_before_the_output_has_settled():
     assert settled <= said < settled + 1
 
 
+def test_the_plan_names_short_arms_of_two_digits_too():
+    design = variant({"array.row_arms": [[4] * 12, [4] * 12]})
+    plan = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[2]
+    assert "Wiring plan" in plan and {f"E{n}" for n in range(1, 25)} <= set(plan)
+
+
 @pytest.mark.parametrize("name", names())
 def test_the_shipped_designs(name):
     everything_stands_there(read(name))

@@ -7,10 +7,13 @@ import io
 from dataclasses import dataclass, fields
 
 from tactcad.parts.layout import Layout
-from tactcad.parts.lead_route import COLOURS, leads
 
 from .bridges import netlist
 from .netlist import Component, Netlist
+
+# Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
+# strain gauge practice; of two wires there is no white one.
+COLOURS = {3: ("RD", "WH", "BK"), 2: ("RD", "BK")}
 
 
 @dataclass(frozen=True)
@@ -37,13 +40,14 @@ def wiring(layout: Layout) -> tuple[Lead, ...]:
 
 
 def _lead(layout: Layout, circuit: Netlist, c: Component) -> Lead:
+    count = 3 if layout.design.readout.connection == "three-wire" else 2
     at_gauge, at_board = c.net("1"), c.net("2")
     return Lead(
         c.designator,
         c.element,
         _place(circuit, at_gauge, "terminal"),
         _place(circuit, at_board, "connector"),
-        COLOURS[leads(layout)][int(c.designator[1:]) % 10 - 1],
+        COLOURS[count][int(c.designator[1:]) % 10 - 1],
         layout.design.wiring.wire,
         c.figure("mm"),
         c.board,

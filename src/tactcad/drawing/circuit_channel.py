@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
 from tactcad.circuit.netlist import GROUND, Component, Netlist
-from tactcad.parts.lead_route import COLOURS
+from tactcad.circuit.wiring_list import COLOURS
 
 from . import circuit_symbols as symbols
 from .circuit_symbols import SMALL, label, line

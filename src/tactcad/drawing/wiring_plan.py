@@ -77,7 +77,7 @@ def _element(layout: Layout, place: ElementPlace, on: Place, named: bool) -> lis
     ]
     name = f"E{place.number}"
     room = abs(hinge - a[0])
-    if named and room > width(name, LETTERS) + 1.5 and b[1] - a[1] > LETTERS + 1.0:
+    if named and room > width(name, LETTERS) + 1.0 and b[1] - a[1] > LETTERS + 1.0:
         items.append(Text(((hinge + a[0]) / 2, (a[1] + b[1]) / 2 - LETTERS / 2), name, LETTERS, "middle"))
     return items
 

@@ -19,7 +19,7 @@ from .electronic_parts import (
     gain_resistance,
 )
 from .layout import Layout
-from .lead_route import COLOURS, lead_routes, leads
+from .lead_route import lead_routes, leads
 from .spares import board_spares, bonded_spares
 from .supply import Supply
 
@@ -37,11 +37,9 @@ def wire_metres(layout: Layout) -> float:
 def lead_supply(layout: Layout) -> Supply:
     """Lead wire, each lead as cut."""
     n, wire, metres = len(layout.elements), WIRES[layout.design.wiring.wire], wire_metres(layout)
-    *first, last = COLOURS[leads(layout)]
-    colours = f"{', '.join(first)} and {last}"
     return Supply(
         LEAD,
-        f"lead wire, {leads(layout)} per gauge: as much of {colours} (IEC 60757)",
+        f"lead wire, {leads(layout)} per gauge, in their colours",
         metres,
         "m",
         f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation",

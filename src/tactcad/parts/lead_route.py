@@ -18,9 +18,6 @@ from .boards import ReadBoard, boards
 from .description import Vector
 from .layout import ElementPlace, Layout
 
-# Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
-# strain gauge practice; of two wires there is no white one.
-COLOURS = {3: ("RD", "WH", "BK"), 2: ("RD", "BK")}
 WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
 
 
