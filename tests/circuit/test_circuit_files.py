@@ -170,11 +170,8 @@ def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
         end = max(x for x, _ in corners)
         wall = [s for s in p.part.extrusion.outer if s.name == "recess_wall"]
         start = wall[0].start[0]
-        arm = rows[row][index]
-        tip = min(x for x, _ in corners)
-        terminal = tip + arm + design.gauge.carrier_body_side
         middle = (own[0] + own[-1]) / 2
-        along = (start - terminal) + design.element.recess_depth + (end - start)
+        along = end - (start + 0.5)  # a tool's breadth behind the wall
         along += math.hypot(design.wiring.gather, _middle(p) - middle) + design.wiring.to_board
         assert route.length == pytest.approx(along, abs=1e-6)
         assert route.cut % 5 == 0 and 0 <= route.cut - 1.1 * along < 5

@@ -104,8 +104,8 @@ def test_gauge_is_a_composite_beam_whatever_its_layers(change, size):
     ids=str,
 )
 def test_switched_gauge_warms_by_its_settled_cycle(change, on, period):
-    """The settled cycle by letting it settle, against the code's closed form. The leaf has no heat of its own:
-    it is as warm as with power on all the time."""
+    """The settled cycle by letting it settle, against the code's closed form. The leaf has no heat of its
+    own: it is as warm as with power on all the time."""
     gauge, power = replace(GAUGE, **change), replace(POWER, on_time=on, period=period)
     found, steady = self_heating.switched(2.7, gauge, power), self_heating.continuous(2.7, gauge, power)
     assert all(isfinite(v) for v in (found.power, found.power_density, found.rise, found.drift))

@@ -114,7 +114,8 @@ def _plan_notes(layout: Layout) -> list[str]:
         "Seen on the gauges' side",
         f"{count} leads an element, {w.wire}, {wire_metres(layout):g} m in all; cut lengths in the wiring "
         f"list, slack of {w.slack:.0%} in them",
-        "Leads lie on the face to the recess (a), and in it to the rear end (c); bonded from b to c, "
+        "Terminals lie in the recess, behind its wall (a), leads from there to the rear end (c); "
+        "bonded from b to c, "
         f"{w.bonded:g} mm: strain relief",
         f"Tied {w.gather:g} mm behind (d), a bundle a board; from there {w.to_board:g} mm to the board",
         "Number both ends of every lead; colours after IEC 60757",

@@ -1,10 +1,10 @@
-"""The way of each element's leads: from the terminal behind its gauge through the wire recess, to the tie
-around the leads of its board, to the board.
+"""The way of each element's leads: from the terminal on the floor of its wire recess to the rear end, to the
+tie around the leads of its board, to the board.
 
-    gauge  terminal        recess                 rear end      tie           connector
-    =====    o______      ________________________                .-----------[]
-                    |_____|///bonded: strain relief ____________.'
-    hinge                                           gather          to board
+    gauge           recess                          rear end      tie           connector
+    =====----.                                                    .-----------[]
+             |  o_________///bonded: strain relief ____________.'
+    hinge       terminal                            gather          to board
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from .boards import ReadBoard, boards
 from .description import Vector
 from .layout import ElementPlace, Layout
 
+AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
 WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
 
 
@@ -43,14 +44,11 @@ def lead_routes(layout: Layout) -> tuple[LeadRoute, ...]:
 
 def _route(layout: Layout, board: ReadBoard, place: ElementPlace) -> LeadRoute:
     d, side = layout.design, 1.0 if place.row == 1 else -1.0
-    face, recess = layout.body_bottom(place.hinge), d.element.recess_depth
-    terminal = min(place.hinge_x + d.gauge.carrier_body_side, layout.recess_start)
+    terminal, recess = layout.recess_start + AHEAD_OF_LEADS, d.element.recess_depth
     middle = (board.places[0].y + board.places[-1].y) / 2
     tie = layout.rear_end + d.wiring.gather
     points = (
-        (side * terminal, place.y, face),
-        (side * layout.recess_start, place.y, face),
-        (side * layout.recess_start, place.y, recess),
+        (side * terminal, place.y, recess),
         (side * layout.rear_end, place.y, recess),
         (side * tie, middle, recess),
         (side * (tie + d.wiring.to_board), middle, recess),

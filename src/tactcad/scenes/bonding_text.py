@@ -7,8 +7,8 @@ from math import floor
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, allowed_places, gauge_checks, volts
-from tactcad.parts.lead_route import leads
-from tactcad.parts.rigs.bonding_layout import AHEAD_OF_LEADS, BondingLayout
+from tactcad.parts.lead_route import AHEAD_OF_LEADS, leads
+from tactcad.parts.rigs.bonding_layout import BondingLayout
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
 
 LOUPE = "stereo microscope or loupe, 20x"
@@ -141,7 +141,8 @@ def solder(rig: BondingLayout) -> str:
             "of the bridge. "
         )
     return (
-        "Tin tabs and terminals, then join each tab to its terminal with one bare strand in a loose arc, so "
+        "Tin tabs and terminals, then join each tab to its terminal with one insulated strand, bare at "
+        "its ends, in a loose arc, so "
         f"that no lead pulls on the gauge. Solder {to_terminals}Lay them in the recess to the rear end. "
         "Each joint within 2 s; clean off all flux."
     )

@@ -51,7 +51,6 @@ EDGE = 2.0  # material around the pins' holes, mm; chosen: half a diameter of th
 BESIDE = 0.05  # air between element and pins at all limits, mm; chosen: it slides in by its own weight
 BACK = 2.0  # nest beyond arms and rear ends, mm; chosen: for fingers
 PIN_DEPTH = 2.0  # least depth of a pressed pin in its hole, in its diameters
-AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
 PAD = 1.0  # rubber under the clamp, mm; chosen: silicone sheet as sold
 OVER = 1.0  # clamp over the element's contact pad, mm; chosen
 GUIDED = 6.0  # least height of the clamp bar, and as much of it runs on the pins, mm; chosen: two diameters

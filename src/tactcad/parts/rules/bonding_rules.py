@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from ..finding import SAME, Finding
 from ..layout import LEAST_GAP, Layout
+from ..lead_route import AHEAD_OF_LEADS
 from ..library.dowels import LEAST_PLAY
-from ..rigs.bonding_layout import AHEAD_OF_LEADS, EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
+from ..rigs.bonding_layout import EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
 from .rule import at_least, at_most, fits, wrong
 
 TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
