@@ -18,6 +18,7 @@ from tactcad.paper import gain, published
 from tactcad.paper.array_model import from_design
 from tactcad.parts.hinge_section import design_readout
 from tactcad.parts.layout import Layout
+from tactcad.parts.lead_route import lead_routes
 
 SWITCHES = {"IRLML6244": 0.021, "BSS138": 3.5, "2N7002": 7.5}
 FULL_SCALE = 0.035  # V at a bridge: the converter's 3.5 V over a gain of 100
@@ -82,7 +83,7 @@ def test_three_wires_are_the_better_connection(tmp_path):
         circuit = netlist(Layout(variant({"readout.connection": connection})))
         still, loaded = (read_all(strained(circuit, {1: x}), tmp_path)["output1"] for x in (0.0, 1e-3))
         found[connection] = (still, loaded - still)
-    lead = 0.210 * 1.361
+    lead = lead_routes(Layout(variant()))[0].cut * 1.361e-3  # AWG 36: ohm/m
     assert abs(found["three-wire"][0]) < 1e-6
     assert found["two-wire"][0] == pytest.approx(67.5 * 2 * lead / 120, rel=0.01)
     lost = {c: 1 - signal / (67.5e-3 / (1 + 0.5e-3)) for c, (_, signal) in found.items()}

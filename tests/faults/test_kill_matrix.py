@@ -31,7 +31,7 @@ COMMANDS = {  # N is A or B
     "validate": "validate --table1 N-table1.csv --out there/report",
     "calibrate": "calibrate N-readings.csv --out there/table.csv",
 }
-FEW = {"release": ("SIGKILL",), "validate": ("SIGTERM",)}  # slow ones; by night all four
+BY_DAY = ("export", "golden", "calibrate")  # the quick ones, every signal once; by night all of them
 OTHERS = ("home", "cache")  # where libraries and the cache keep theirs
 
 
@@ -169,11 +169,11 @@ def run_after(case: Case, wanted: str, about: str) -> None:
     assert not list((case.work / "cache").rglob(".new-*")), about
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", BY_DAY)
 def test_one_moment_of_each_signal(bench, tmp_path, command):
     """With a warm cache, one after the other; then one run to the end."""
     case, standing = prepared(bench, tmp_path, COMMANDS[command]), "A"
-    for sent in FEW.get(command, STATUS):
+    for sent in STATUS:
         standing, _ = end_at(case, standing, sent, 1, every=False)
 
 

@@ -236,6 +236,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_any_work(
     assert said in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
+@pytest.mark.nightly
 def test_material_told_apart_by_meshes_is_labelled(running, files, scenes, cache, tmp_path, monkeypatch):
     import tactcad.solids.changed as module
 

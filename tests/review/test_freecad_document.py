@@ -164,6 +164,7 @@ os._exit(0)
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.cad
 @freecad_is_here
 def test_the_macro_makes_the_document_again_and_keeps_the_eye(tmp_path, monkeypatch):

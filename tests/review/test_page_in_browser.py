@@ -192,6 +192,7 @@ def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
     assert np.abs(fresh.picture() - first).max() <= 1
 
 
+@pytest.mark.nightly
 def test_each_element_is_brought_under_the_sensor(fresh):
     fresh.page.click("[data-scene=calibration]")
     at_rest = fresh.picture()

@@ -159,6 +159,7 @@ def _with_a_viewer(act, design) -> None:
         act(design)
 
 
+@pytest.mark.nightly
 @pytest.mark.cad
 def test_the_page_draws_in_its_frame_and_reaches_nothing_outside(one, running, tmp_path):
     """A notebook's page around it, from a file, with the network off."""
