@@ -32,6 +32,14 @@ def array_only(text: str) -> str:
     return re.sub(r"(?s)\n\[(calibration|sample|cart|holder|grasping|bonding)\]\n.*?(?=\n\[|\Z)", "", text)
 
 
+# The shipped array's file with one element, no rig and the name tiny.
+TINY_TEXT = (
+    array_only(BARE_TEXT)
+    .replace('name = "macro-array"', 'name = "tiny"')
+    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
+)
+
+
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:
     """The design file of that name as TOML gives it, with values by dotted path set, or dropped (DROP)."""
     tree = copy.deepcopy(_TABLES.setdefault(base, tomllib.loads((HARDWARE / f"{base}.toml").read_text())))

@@ -6,18 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from variants import BARE_TEXT, array_only
+from variants import TINY_TEXT
 
 from tactcad.cli.main import main
 from tactcad.parts.designs import load
 
 pytestmark = pytest.mark.cad
-
-TEXT = (
-    array_only(BARE_TEXT)
-    .replace('name = "macro-array"', 'name = "tiny"')
-    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
-)
 
 
 TITLE = 'title = "Macro tactile array 2 x 5"'
@@ -26,8 +20,8 @@ TITLE = 'title = "Macro tactile array 2 x 5"'
 @pytest.fixture
 def place(tmp_path) -> Path:
     """A folder with a design whose title is its own, so that no drawing of it is in the cache."""
-    assert TITLE in TEXT
-    (tmp_path / "tiny.toml").write_text(TEXT.replace(TITLE, f'title = "{tmp_path.name}"'))
+    assert TITLE in TINY_TEXT
+    (tmp_path / "tiny.toml").write_text(TINY_TEXT.replace(TITLE, f'title = "{tmp_path.name}"'))
     return tmp_path
 
 
@@ -57,7 +51,7 @@ def test_a_missing_font(command, place, capsys, monkeypatch):
 
 
 def test_a_letter_that_the_font_lacks(place, capsys):
-    (place / "tiny.toml").write_text(TEXT.replace(TITLE, 'title = "触覚 array"'))
+    (place / "tiny.toml").write_text(TINY_TEXT.replace(TITLE, 'title = "触覚 array"'))
     status, said = refused(place, capsys, "export", "--drawings")
     assert status == 2 and "design.title" in said and "触 (U+89E6)" in said
 
@@ -79,7 +73,7 @@ def test_an_unknown_shop_file(command, place, capsys):
 def test_plates_of_two_metres_are_drawn_whole(place):
     """A row of 40 elements 50 mm apart has a stack of 40 x 50 + 30 mm, a stop plate inside its end plates and
     a carrier over both: their sheets are broken, and say the whole length."""
-    text = TEXT.replace("[[5]]", f"[{[5] * 40}]").replace("thickness = 3.0", "thickness = 20.0", 1)
+    text = TINY_TEXT.replace("[[5]]", f"[{[5] * 40}]").replace("thickness = 3.0", "thickness = 20.0", 1)
     text = text.replace("\npitch = 4.0", "\npitch = 50.0").replace("spacer = 1.0", "spacer = 30.0")
     (place / "tiny.toml").write_text(text)
     assert main(["export", "--drawings", str(place / "tiny.toml"), "--out", str(place / "out")]) == 0

@@ -12,7 +12,7 @@ from math import hypot, pi
 
 import ezdxf
 import pytest
-from variants import BARE_TEXT, array_only, variant
+from variants import TINY_TEXT, variant
 
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.cli.main import main
@@ -28,10 +28,8 @@ from tactcad.scenes import make_scene, scene_names
 
 pytestmark = pytest.mark.cad
 
-TEXT = (
-    array_only(BARE_TEXT)
-    .replace('name = "macro-array"', 'name = "tiny"\norganisation = "Tiny lab"\ncontact = "tiny@lab.example"')
-    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
+TEXT = TINY_TEXT.replace(
+    'name = "tiny"', 'name = "tiny"\norganisation = "Tiny lab"\ncontact = "tiny@lab.example"'
 )
 REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
 STEM = f"tiny-{REVISION}"

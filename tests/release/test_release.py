@@ -16,7 +16,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from variants import BARE_TEXT, array_only
+from variants import TINY_TEXT
 
 import tactcad
 from tactcad.cli.main import main
@@ -31,12 +31,7 @@ from tactcad.scenes import make_scene
 
 pytestmark = pytest.mark.cad
 
-TEXT = (
-    array_only(BARE_TEXT)
-    .replace('name = "macro-array"', 'name = "tiny"')
-    .replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", "[[5]]")
-)
-REVISION = re.search(r'revision = "(\w+)"', TEXT).group(1)
+REVISION = re.search(r'revision = "(\w+)"', TINY_TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"
 OWNER, CONTACT = "Tiny lab", "workshop@tiny.example"
 OWNED = ("--owner", OWNER, "--contact", CONTACT)
@@ -52,7 +47,7 @@ def project(tmp_path_factory):
     """A folder with hardware/tiny.toml and its golden file."""
     folder = tmp_path_factory.mktemp("project")
     (folder / "hardware").mkdir()
-    (folder / "hardware" / "tiny.toml").write_text(TEXT)
+    (folder / "hardware" / "tiny.toml").write_text(TINY_TEXT)
     assert main(["golden", str(folder / "hardware" / "tiny.toml")]) == 0
     return folder
 
@@ -279,7 +274,9 @@ def test_damage_is_found_anywhere(released, contents, tmp_path):
 # when nothing is released
 
 
-def release(project: Path, capsys, *arguments: str, design: str = TEXT) -> tuple[int, str, str, set[str]]:
+def release(
+    project: Path, capsys, *arguments: str, design: str = TINY_TEXT
+) -> tuple[int, str, str, set[str]]:
     """Status, standard output and error, and what then lies in the folder of releases."""
     (project / "hardware" / "tiny.toml").write_text(design)
     status = main(
@@ -303,11 +300,11 @@ def copy(project, tmp_path):
     return tmp_path / "p"
 
 
-WIDER = TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
+WIDER = TINY_TEXT.replace("hinge_length = 0.88", "hinge_length = 0.90")
 BY_GOLDEN = {
     "other geometry under the same revision": (WIDER, "other geometry than its golden file"),
     "a revision not taken up": (
-        TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'),
+        TINY_TEXT.replace(f'revision = "{REVISION}"', 'revision = "ZZ"'),
         "`make golden` takes it up",
     ),
 }
@@ -366,7 +363,7 @@ def test_a_failed_check_is_refused_and_a_draft_says_so(copy, coarse_shop, capsys
 def test_two_processes_write_equal_bytes_and_what_is_replaced_is_named(released, tmp_path, capsys):
     """This process and the fresh one; here the design stands outside hardware/, where it can have no golden
     file."""
-    (tmp_path / "tiny.toml").write_text(TEXT)
+    (tmp_path / "tiny.toml").write_text(TINY_TEXT)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / NAME).write_bytes(archive_bytes({"bom.csv": b""}, "2026-11-21"))
     assert (
@@ -404,7 +401,7 @@ def test_bad_input_is_refused_before_any_work(copy, tmp_path, capsys):
         assert status == 2 and named in err and err.count("\n") == 1 and out == "" and there == set()
     assert main(["release", str(tmp_path / "none.toml"), "--out", str(copy / "out")]) == 2
     status, _, err, there = release(
-        copy, capsys, design=TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5")
+        copy, capsys, design=TINY_TEXT.replace("hinge_length = 0.88", "hinge_length = 0.5")
     )
     assert status == 2 and there == set()
 
@@ -428,7 +425,7 @@ def test_without_owner_or_contact_it_is_refused_in_one_line(copy, capsys):
 
 def test_the_design_s_own_owner_and_contact_stand_in_zip_and_title_blocks(tmp_path, capsys):
     said = f'title = "A tiny one"\norganisation = "{OWNER}"\ncontact = "{CONTACT}"\n'
-    (tmp_path / "tiny.toml").write_text(re.sub(r"title = .*\n", said, TEXT, count=1))
+    (tmp_path / "tiny.toml").write_text(re.sub(r"title = .*\n", said, TINY_TEXT, count=1))
     assert main(["release", str(tmp_path / "tiny.toml"), "--out", str(tmp_path / "out")]) == 0
     for path in (tmp_path / "out").iterdir():
         with zipfile.ZipFile(path) as archive:

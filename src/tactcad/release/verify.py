@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 import zipfile
 import zlib
@@ -26,6 +24,7 @@ from tactcad.scenes import bom
 from tactcad.scenes.scene import Scene
 
 from .archive import MANIFEST, MODE
+from .packages import table_rows
 from .readme import DRAFT, MARK, SAMPLE
 from .release_contents import ReleaseContents
 
@@ -242,7 +241,7 @@ def bill_of(scene: Scene) -> str:
 def _table_faults(files: Mapping[str, bytes], contents: ReleaseContents) -> Iterator[str]:
     identity = contents.design.design
     for name in (inspection.NAME, strength.NAME):
-        rows = list(csv.DictReader(io.StringIO(files.get(name, b"").decode(), newline="")))
+        rows = table_rows(files.get(name, b""))
         if {(row["design"], row["revision"]) for row in rows} != {(identity.name, identity.revision)}:
             yield f"{name}: not of {identity.name} revision {identity.revision} alone"
     if (
