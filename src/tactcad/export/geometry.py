@@ -6,6 +6,7 @@ mm, rounded to a picometre so that equal designs give equal text on every machin
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -30,12 +31,13 @@ DIGITS = 9  # decimals; tolerances of the comparison start at the sixth
 NOT_COMPARED = ("item", "part_no", "rev", "file", "sha256")
 
 
-def geometry(design: Design) -> Record:
-    """What a design that keeps its rules means.
+def geometry(design: Design, scenes: Sequence[Scene] | None = None) -> Record:
+    """What a design that keeps its rules means; `scenes` are all of its scenes, where they are made already.
 
     {parts: {part_no: ...}, scenes: {name: {placed, bom}}, elements: {E1: ...}}
     """
-    scenes = [make_scene(design, name) for name in scene_names(design)]
+    if scenes is None:
+        scenes = [make_scene(design, name) for name in scene_names(design)]
     parts = {part.part_no: part for scene in scenes for part in scene.parts}
     return {
         "parts": {

@@ -38,13 +38,13 @@ def reading(s: HingeSection, grid_length: Array | float, shift: Array | float) -
     """
     grid, middle = np.asarray(grid_length, dtype=float), np.asarray(shift, dtype=float)
     L = s.load_arm
-
-    def turned(x: Array) -> Array:
-        return (1 - x / L) * _profile_integral(s, x)
-
     points, weights = np.polynomial.legendre.leggauss(GAUSS)
-    inside = sum(w * _profile_integral(s, middle + grid / 2 * x) for x, w in zip(points, weights))
-    mean = (turned(middle + grid / 2) - turned(middle - grid / 2)) / grid + inside / (2 * L)
+    along = np.concatenate([[-1.0, 1.0], points])  # the grid's ends, and what its integral takes
+    flat = (1,) * max(len(s.shape), grid.ndim, middle.ndim)
+    x = middle + grid / 2 * along.reshape(-1, *flat)
+    P = _profile_integral(s, x)
+    low, high = (1 - x[:2] / L) * P[:2]
+    mean = (high - low) / grid + np.tensordot(weights, P[2:], axes=1) / (2 * L)
     return mean / strain.grid_factor(s, grid)
 
 
@@ -56,8 +56,8 @@ def _profile_integral(s: HingeSection, x: Array) -> Array:
 def error(s: HingeSection, grid_length: Array | float, shift: Array | float) -> Array:
     """Largest relative error of the reading of a grid that lies `shift` mm off the hinge's middle, either
     way."""
-    off = np.asarray(shift, dtype=float)
-    return np.maximum(np.abs(reading(s, grid_length, off) - 1), np.abs(reading(s, grid_length, -off) - 1))
+    off = np.broadcast_to(shift, np.broadcast_shapes(s.shape, np.shape(grid_length), np.shape(shift)))
+    return np.abs(reading(s, grid_length, np.stack([off, -off])) - 1).max(axis=0)
 
 
 def allowed(s: HingeSection, grid_length: float, share: float) -> Array:

@@ -125,7 +125,7 @@ class Reviewed:
     @cached_property
     def record(self) -> Record:
         """Of geometry."""
-        return geometry(self.design) if self.told is None else self.told
+        return geometry(self.design, self.scenes) if self.told is None else self.told
 
     @cached_property
     def state(self) -> SensorState:
