@@ -39,7 +39,10 @@ assert abs(back.volume - 42) < 1e-12, back.volume
 
 
 @pytest.mark.cad
-@pytest.mark.parametrize("first, second", [("build123d", "cadquery"), ("cadquery", "build123d")])
+@pytest.mark.parametrize(
+    "first, second",
+    [("build123d", "cadquery"), pytest.param("cadquery", "build123d", marks=pytest.mark.nightly)],
+)
 def test_both_share_one_kernel_in_either_order(first, second):
     script = ONE_KERNEL.format(first=first, second=second)
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)

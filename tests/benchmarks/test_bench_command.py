@@ -49,8 +49,9 @@ def follows_schema(result: dict) -> None:
                 assert set(row) & {c["key"] for c in data["columns"]}
 
 
-# Whole exports in processes of their own. `detail` is one too, and test_exits.py starts it.
-LONG = ("detail", "export", "scaling", "sheets", "step")
+# Whole exports in processes of their own, or elements solved often. `detail` is one too, and test_exits.py
+# starts it.
+LONG = ("detail", "element", "export", "rungs", "scaling", "sheets", "step")
 
 
 @pytest.mark.cad

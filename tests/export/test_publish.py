@@ -350,8 +350,15 @@ def settle(out: Path, noted: bool) -> None:
         assert not noted or list(out.parent.glob("macro-kept-*/meanwhile.txt"))
 
 
-@pytest.mark.parametrize("how", ["exchange", "two-renames"])
-@pytest.mark.parametrize("meddled", [False, True], ids=["", "meddled"])
+@pytest.mark.parametrize(
+    "how, meddled",
+    [
+        ("exchange", True),
+        ("two-renames", False),
+        pytest.param("exchange", False, marks=pytest.mark.nightly),
+        pytest.param("two-renames", True, marks=pytest.mark.nightly),
+    ],
+)
 def test_killed_before_every_single_file_operation(tmp_path, how, meddled):
     earlier, new = killed_everywhere(tmp_path, how, meddled=meddled)
     assert earlier > 15  # died before the exchange

@@ -163,7 +163,7 @@ def interrupted_imports(work: Path, moments: int) -> None:
 
 
 def test_interrupted_while_modules_are_loaded(work):
-    interrupted_imports(work, 3)
+    interrupted_imports(work, 1)
 
 
 @pytest.mark.nightly

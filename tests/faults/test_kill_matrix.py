@@ -31,7 +31,7 @@ COMMANDS = {  # N is A or B
     "validate": "validate --table1 N-table1.csv --out there/report",
     "calibrate": "calibrate N-readings.csv --out there/table.csv",
 }
-BY_DAY = ("export", "golden", "calibrate")  # the quick ones, every signal once; by night all of them
+BY_DAY = ("export", "calibrate")  # the quick ones, every signal once; by night all of them
 OTHERS = ("home", "cache")  # where libraries and the cache keep theirs
 
 

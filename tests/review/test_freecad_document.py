@@ -112,6 +112,7 @@ freecad_is_here = pytest.mark.skipif(
 
 @pytest.mark.cad
 @freecad_is_here
+@pytest.mark.nightly
 def test_freecad_opens_its_document_and_takes_it_apart(tmp_path):
     """Texts of the design are shown as they stand: none is a formula or markup. `make review` holds every
     shipped design's document against its export."""

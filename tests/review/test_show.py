@@ -58,6 +58,7 @@ def test_the_notebook_is_committed_as_it_was_written():
 
 
 @pytest.mark.cad
+@pytest.mark.nightly
 def test_the_notebook_runs_and_shows_what_it_tells(tmp_path):
     """Whole, where nothing lies: both designs, what 5 um do to K, what changed, and a refusal."""
     notebook = nbformat.read(NOTEBOOK, 4)
