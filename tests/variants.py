@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import re
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -40,9 +41,14 @@ TINY_TEXT = (
 )
 
 
+@cache
+def _table(base: str) -> dict[str, Any]:
+    return tomllib.loads((HARDWARE / f"{base}.toml").read_text())
+
+
 def table(changes: dict[str, Any] | None = None, base: str = "macro-array") -> dict[str, Any]:
     """The design file of that name as TOML gives it, with values by dotted path set, or dropped (DROP)."""
-    tree = copy.deepcopy(_TABLES.setdefault(base, tomllib.loads((HARDWARE / f"{base}.toml").read_text())))
+    tree = copy.deepcopy(_table(base))
     for path, value in (changes or {}).items():
         *sections, name = path.split(".")
         node = tree
@@ -61,6 +67,3 @@ def variant(changes: dict[str, Any] | None = None, base: str = "macro-array") ->
     tree = table(changes, base)
     origin = tree.pop("origin", {})
     return from_table(tree | {"origin": {k: v for k, v in ORIGIN.items() if k in origin}})
-
-
-_TABLES: dict[str, dict[str, Any]] = {}

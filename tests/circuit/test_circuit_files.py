@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import os
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -22,31 +23,21 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.lead_route import lead_routes
 from tactcad.scenes import make_scene
 
+WORD = re.compile(r'[()]|"(?:\\.|[^"\\])*"|[^\s()"]+')
+
 
 def expression(text: str) -> list:
     """A KiCad file's S-expression as nested lists, by a reader that knows nothing but brackets and quotes."""
+    assert not WORD.sub("", text).strip()
     stack: list[list] = [[]]
-    i = 0
-    while i < len(text):
-        c = text[i]
-        if c == "(":
+    for word in WORD.findall(text):
+        if word == "(":
             stack.append([])
-        elif c == ")":
+        elif word == ")":
             done = stack.pop()
             stack[-1].append(done)
-        elif c == '"':
-            word = ""
-            i += 1
-            while text[i] != '"':
-                i += text[i] == "\\"
-                word += text[i]
-                i += 1
-            stack[-1].append(word)
-        elif not c.isspace():
-            end = min(j for j in range(i, len(text)) if text[j] in ' ()"\n')
-            stack[-1].append(text[i:end])
-            i = end - 1
-        i += 1
+        else:
+            stack[-1].append(re.sub(r"\\(.)", r"\1", word[1:-1]) if word[0] == '"' else word)
     (only,) = stack
     (whole,) = only
     return whole
