@@ -57,10 +57,10 @@ def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauge
 
 
 def test_the_resolution_by_hand():
-    """Two standard deviations of ten averaged samples, drift of three arms, amplifier and leads, in volts."""
+    """Two standard deviations of ten averaged samples; drift of gauge, three arms, amplifier and leads, V."""
     d = read("macro-array")
     noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
-    drifts = (67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
+    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
     volts = (4 * noise**2 + sum(v**2 for v in drifts)) ** 0.5
     from tactcad.circuit.element_signals import element_signals
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
 from tactcad.circuit.netlist import GROUND, Component, Netlist
-from tactcad.circuit.wiring_list import COLOURS
+from tactcad.parts.lead_route import COLOURS
 
 from . import circuit_symbols as symbols
 from .circuit_symbols import SMALL, label, line
@@ -42,7 +42,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
     leads = [c for c in circuit.of_kind("lead") if c.element == n]
     three = len(leads) == 3
     rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
-    colours = COLOURS[len(leads)]
+    colours = COLOURS["three-wire" if three else "two-wire"]
     connector = _connector_of(circuit, leads[0].net("2"))
     x, terminal, pin = 42.0, 56.0, 90.0
     items: list[Item] = [

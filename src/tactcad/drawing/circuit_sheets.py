@@ -66,12 +66,12 @@ def circuit_written(order: CircuitOrder) -> Written:
 def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
     """Every sheet, its layout clean; raises CheckFailure where it is not."""
     layout = Layout(design)
-    circuit, cut = netlist(layout), wiring(layout)
+    circuit = netlist(layout)
     pages = [
         channel_page(circuit, _channel_notes(layout)),
         *channel_pages(circuit),
         plan_page(layout, _plan_notes(layout)),
-        *lead_pages(cut),
+        *lead_pages(wiring(layout, circuit)),
     ]
     sheets = _sheets(design, pages, draft, sample)
     for sheet in sheets:
@@ -112,8 +112,8 @@ def _plan_notes(layout: Layout) -> list[str]:
     w, count = layout.design.wiring, leads(layout)
     return [
         "Seen on the gauges' side",
-        f"{count} leads an element, {w.wire}, {wire_metres(layout):g} m in all; cut lengths in the wiring "
-        f"list, slack of {w.slack:.0%} in them",
+        f"{count} leads an element, {w.wire}, {wire_metres(layout):g} m of each colour; cut lengths in the "
+        f"wiring list, slack of {w.slack:.0%} in them",
         "Terminals lie in the recess, behind its wall (a), leads from there to the rear end (c); "
         "bonded from b to c, "
         f"{w.bonded:g} mm: strain relief",

@@ -127,9 +127,10 @@ def circuit_products(design: Design, shapes: Shapes) -> list[Output]:
     from . import circuit_files as files
 
     stem = f"circuit/{design.name}-circuit_{design.design.revision}"
-    key = digest(("circuit", shapes.made_by, netlist(Layout(design)), design.design))
+    circuit = netlist(Layout(design))
+    key = digest(("circuit", shapes.made_by, circuit, design.design))
     return [
-        Output(path, kind, "", f"{key} {path}", partial(make, design))
+        Output(path, kind, "", f"{key} {path}", partial(make, design, circuit))
         for path, kind, make in (
             (f"{stem}.net", "netlist", files.kicad_file),
             (f"{stem}.csv", "netlist", files.table_file),

@@ -26,7 +26,7 @@ def completion_tolerance(design: Design) -> float:
 
 
 def completion_drift(design: Design) -> float:
-    """By which a completing resistance changes otherwise than the gauge's, 1/K."""
+    """Temperature coefficient of a completing resistance, 1/K."""
     own = design.readout.completion_drift
     return COMPLETIONS[design.readout.completion].drift if own is None else own
 
@@ -127,8 +127,9 @@ def power_of(design: Design) -> Power:
 def drift(layout: Layout) -> float:
     """By how much the amplifier's output drifts between zero and reading, V, as the half-width of a band.
 
-    Root of the sum of squares of: the completion's three arms, the amplifier's offset, the leads' warmth
-    (tolerance.zero_drift; of two wires also their whole resistance in the gauge's arm). Self-heating is alike
+    Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
+    offset, the leads' warmth (tolerance.zero_drift; of two wires also their whole resistance in the gauge's
+    arm). Self-heating is alike
     in all readings of a settled cycle, and so in the zero.
     """
     d = layout.design
@@ -138,6 +139,7 @@ def drift(layout: Layout) -> float:
     if r.connection == "two-wire":
         leads += 2 * longest_lead_resistance(layout) / d.gauge.resistance * COPPER * span
     shares = (
+        per_x * d.gauge.factor * d.gauge.thermal_output * span,
         per_x * 3**0.5 * completion_drift(d) * span,
         r.gain * AMPLIFIERS[r.amplifier].drift * span,
         per_x * leads,

@@ -7,13 +7,19 @@ from math import floor, log10
 from tactcad.design.electronics import AMPLIFIERS
 from tactcad.design.tree import Design
 
-GAUGE, COMPLETION, TERMINAL, LEAD = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL", "LEAD-WIRE"
+GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
 GAIN_RESISTOR = "GAIN-RESISTOR"
+BOARD, CARD_CABLE, STANDOFFS = "CIRCUIT-BOARD", "CABLE-CARD", "STANDOFFS"
 # At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
 ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the multiplexer, one at the decoder
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
+
+
+def lead_part(colour: str) -> str:
+    """Lead wire of a colour (code of IEC 60757)."""
+    return f"LEAD-WIRE-{colour}"
 
 
 def completion_resistance(design: Design) -> float:
