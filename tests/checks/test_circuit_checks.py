@@ -9,7 +9,7 @@ from bad_parts import BAD
 from variants import variant
 
 from tactcad.checks.signals import check_signals
-from tactcad.checks.wired import check_bridges, check_circuit
+from tactcad.checks.wired import check_bridges, check_circuit, check_inputs
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
@@ -54,6 +54,16 @@ def test_each_check_finds_its_bad_design(name):
 )
 def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauges):
     assert {f.part for f in check_bridges(moved(designator, role, net))} == gauges
+
+
+@pytest.mark.parametrize(
+    ("designator", "role", "net", "when"),
+    [("U22", "enable", "ENABLE2", "ENABLE2 is low"), ("U12", "S7A", "SPARE", "S7A is addressed")],
+)
+def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
+    assert list(check_inputs(SHIPPED)) == []
+    (found,) = check_inputs(moved(designator, role, net))
+    assert found.part == designator and when in found.message
 
 
 def test_the_resolution_by_hand():

@@ -103,6 +103,21 @@ def test_the_papers_gain(tmp_path):
         assert found[f"output{n}"] / strain < 141.75
 
 
+@pytest.mark.parametrize("element", [1, 7])
+def test_inputs_rest_at_the_bridges_supply_while_no_switch_is_closed(element, tmp_path):
+    """The multiplexer alone is on: both inputs at 2.7 V within a millionth: the amplifier reads nothing."""
+    circuit = netlist(Layout(read("macro-array")))
+    board = circuit.of_element("gauge", element).board
+    commands = [line for line in closed(circuit, element) if not line.startswith("alter RQ")]
+    said = [f"let rest{s} = v(in{board}_{s})" for s in ("plus", "minus")]
+    found = solved(
+        deck(circuit, [*commands, "op", *said, f"let out = v(out{board})", "print restplus restminus out"]),
+        tmp_path,
+    )
+    assert found["restplus"] == pytest.approx(2.7, rel=1e-6) == found["restminus"]
+    assert abs(found["out"]) < 1e-6
+
+
 def test_a_switch_of_some_ohm_explains_what_the_papers_table_lacks(tmp_path):
     """134 V per strain, the fit of Table 1, is 142 less 5.5 %: a 2N7002 of 7.5 ohm takes 5.9 % of 120 ohm."""
     table1 = gain.fit(published.load(), from_design(read("macro-array")))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
@@ -212,7 +212,7 @@ def drawing_products(
 
     wanted = []
     for part in parts:
-        if part.process not in ("bought", "reference"):
+        if part.process not in NOT_MADE:
             files = _made_from(part, sources)
             key = digest(("drawing", shapes.made_by, part, [f.key for f in files], *common))
             wanted.append(

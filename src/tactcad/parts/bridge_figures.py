@@ -6,29 +6,17 @@ from __future__ import annotations
 
 from math import log, pi
 
-from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
 from tactcad.design.tree import Design
 from tactcad.mechanics import self_heating
 from tactcad.mechanics.self_heating import Heating, Power
 
-from .electronic_parts import completion_resistance
+from .electronic_parts import completion_drift, completion_resistance
 from .hinge_section import design_gauge
 from .layout import Layout
 from .lead_route import longest_lead_resistance
 
 COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
-
-
-def completion_tolerance(design: Design) -> float:
-    """Of each completing resistance, relative."""
-    own = design.readout.completion_tolerance
-    return COMPLETIONS[design.readout.completion].tolerance if own is None else own
-
-
-def completion_drift(design: Design) -> float:
-    """Temperature coefficient of a completing resistance, 1/K."""
-    own = design.readout.completion_drift
-    return COMPLETIONS[design.readout.completion].drift if own is None else own
 
 
 def bridge_signal(
@@ -61,18 +49,16 @@ def bridge_signal(
     return foot + over * active / (active + beside), foot + over * lower / (upper + lower)
 
 
-def imbalance(layout: Layout, tolerance: float | None = None) -> tuple[float, float]:
+def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
     """Least and largest output of the amplifier with no load on any element, V.
 
     Parameters
     ----------
-    layout
-        The array.
-    tolerance
-        Of the completing resistances; by default the design's.
+    design, lead
+        As for `bridge_signal`.
+    arm
+        Tolerance of the completing resistances.
     """
-    design, lead = layout.design, longest_lead_resistance(layout)
-    arm = completion_tolerance(design) if tolerance is None else tolerance
     ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
     return min(ends), max(ends)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import floor, log10
 
-from tactcad.design.electronics import AMPLIFIERS
+from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS
 from tactcad.design.tree import Design
 
 GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
@@ -26,6 +26,18 @@ def completion_resistance(design: Design) -> float:
     """Of each of a bridge's three other arms, ohm."""
     own = design.readout.completion_resistance
     return design.gauge.resistance if own is None else own
+
+
+def completion_tolerance(design: Design) -> float:
+    """Of each completing resistance, relative."""
+    own = design.readout.completion_tolerance
+    return COMPLETIONS[design.readout.completion].tolerance if own is None else own
+
+
+def completion_drift(design: Design) -> float:
+    """Temperature coefficient of a completing resistance, 1/K."""
+    own = design.readout.completion_drift
+    return COMPLETIONS[design.readout.completion].drift if own is None else own
 
 
 def gain_resistance(design: Design) -> float | None:

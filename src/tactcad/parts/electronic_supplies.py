@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES, Bought
 
 from .boards import boards
-from .bridge_figures import completion_drift, completion_tolerance
 from .circuit_board import board_size, header_pins
 from .electronic_parts import (
     BOARD,
@@ -23,7 +22,9 @@ from .electronic_parts import (
     STANDOFFS,
     TO_CARD,
     TO_LEADS,
+    completion_drift,
     completion_resistance,
+    completion_tolerance,
     gain_resistance,
     lead_part,
 )
