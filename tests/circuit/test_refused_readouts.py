@@ -14,7 +14,7 @@ from tactcad.parts.rules import broken_rules
 REFUSED = {
     "an unknown amplifier": ('amplifier = "AD622"', "readout.amplifier", "AD622", "'AD621'"),
     "a gain that it lacks": ("gain = 50", "readout.gain", "50", "10 or 100"),
-    "more power than the backing bears": ("excitation = 6.0", "readout.excitation", "6", "at most 5.68 V"),
+    "more power than the backing bears": ("excitation = 6.0", "readout.excitation", "6", "at most 5.63 V"),
     "more channels than inputs": ("inputs = 1", "readout.inputs", "1", "at least 2"),
     "resistors out of the bridge's range": (
         "completion_tolerance = 0.05",

@@ -38,7 +38,7 @@ class StrainGauge:
         Number("kW/m2", 0.01, 1000, "of the grid, that its backing bears on this metal, mean over a period"),
         7.8,
     )
-    rise: float = given(Number("K", 0.1, 200, "of the grid over the leaf, that its backing bears"), 20.0)
+    rise: float = given(Number("K", 0.1, 200, "of the grid over the body, that its backing bears"), 20.0)
 
 
 @dataclass(frozen=True)

@@ -104,7 +104,7 @@ def _channel_notes(layout: Layout) -> list[str]:
         f"The bridges' supply, EXC, is {r.excitation:g} V over GND; VPOS {r.supply_positive:g} V, VNEG "
         f"{r.supply_negative:g} V, V5 5 V",
         "The address names the channel whose bridge is led to the amplifier; ENABLE high turns its switch "
-        "on, all others are off. While ENABLE is low no gauge is warm, and the amplifier's inputs rest at EXC",
+        "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
         f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
         "the output is read between OUT and GND",
         "All other channels are alike: next sheets; inputs of channels that are not used are on GND",

@@ -7,9 +7,10 @@ from __future__ import annotations
 from math import log, pi
 
 from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.materials import leaf_conductivity
 from tactcad.design.tree import Design
 from tactcad.mechanics import self_heating
-from tactcad.mechanics.self_heating import Heating, Power
+from tactcad.mechanics.self_heating import Heating, Power, leaf_resistance
 
 from .electronic_parts import completion_drift, completion_resistance
 from .hinge_section import design_gauge
@@ -91,15 +92,16 @@ def settling_time(design: Design) -> float:
     return multiplexer.settling + max(log(2.0 ** (r.adc_bits + 1)) * tau, amplifier.settling)
 
 
-def heating(design: Design) -> Heating:
+def heating(layout: Layout) -> Heating:
     """Of a gauge, at the end of a reading in the settled cycle."""
-    r = design.readout
-    return self_heating.switched(r.excitation, design_gauge(design), power_of(design))
+    d = layout.design
+    return self_heating.switched(d.readout.excitation, design_gauge(d), power_of(layout))
 
 
-def power_of(design: Design) -> Power:
-    """What heats the design's gauges."""
-    gauge, r = design.gauge, design.readout
+def power_of(layout: Layout) -> Power:
+    """What heats the design's gauges, on the leaf that carries heat away worst."""
+    d = layout.design
+    gauge, r, conducts = d.gauge, d.readout, leaf_conductivity(d.material.conductivity)
     return Power(
         gauge.resistance,
         gauge.carrier_conductivity,
@@ -107,6 +109,7 @@ def power_of(design: Design) -> Power:
         r.reference_mismatch,
         r.on_time,
         r.period,
+        max(leaf_resistance(p.hinge.l, p.hinge.t, d.sheet.thickness, conducts) for p in layout.elements),
     )
 
 

@@ -81,16 +81,16 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule(after="reading_within_period")
+@rule(after="override_names_element")
 def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    hot, volts = heating(d), d.readout.excitation
+    hot, volts = heating(layout), d.readout.excitation
     mean, rise = hot.power_density / d.gauge.power_density, hot.rise / d.gauge.rise
     most = volts / max(mean, rise) ** 0.5
     yield from at_most(
         "readout.excitation",
         f"more than the gauge's backing bears: {hot.power_density:.3g} kW/m2 of grid on average "
-        f"(gauge.power_density = {d.gauge.power_density:g}), {hot.rise:.3g} K over the leaf "
+        f"(gauge.power_density = {d.gauge.power_density:g}), {hot.rise:.3g} K over the body "
         f"(gauge.rise = {d.gauge.rise:g})",
         volts,
         most,
