@@ -73,6 +73,14 @@ def signals(**changes) -> list[Finding]:
     return list(check_signals(variant({path.replace("__", "."): v for path, v in changes.items()})))
 
 
+def cut_off() -> list[Finding]:
+    from test_circuit_checks import moved
+
+    from tactcad.checks.wired import check_inputs
+
+    return list(check_inputs(moved("U12", "enable", "ENABLE1")))
+
+
 def missoldered() -> list[Finding]:
     from test_circuit_checks import moved
 
@@ -337,6 +345,7 @@ BAD: dict[str, Bad] = {
         "tests/assembly/test_virtual_build.py",
     ),
     "one-bridge": Bad("circuit", "a lead of E3 soldered to E2's pin", missoldered, CIRCUIT),
+    "floating-input": Bad("circuit", "a multiplexer that ENABLE1 switches off", cut_off, CIRCUIT),
     "channels": Bad("circuit", "one input for ten elements", lambda: circuit(readout__inputs=1), CIRCUIT),
     "bridge-balance": Bad(
         "circuit", "resistors within 2 %", lambda: circuit(readout__completion_tolerance=0.02), CIRCUIT
@@ -351,7 +360,7 @@ BAD: dict[str, Bad] = {
     "settling": Bad("circuit", "10 us for a reading", lambda: circuit(readout__on_time=1e-5), CIRCUIT),
     "lead-room": Bad("circuit", "a recess 0.2 mm deep", lambda: circuit(element__recess_depth=0.2), CIRCUIT),
     "strain-relief": Bad("circuit", "leads not bonded", lambda: circuit(wiring__bonded=0.0), CIRCUIT),
-    "signal-range": Bad("signals", "a converter of 1.4 V", lambda: signals(readout__adc_range=1.4), CIRCUIT),
+    "signal-range": Bad("signals", "a converter of 0.9 V", lambda: signals(readout__adc_range=0.9), CIRCUIT),
     "force-resolution": Bad(
         "signals", "3 mN wished for", lambda: signals(readout__force_resolution=3.0), CIRCUIT
     ),

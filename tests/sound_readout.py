@@ -31,7 +31,7 @@ def draw_readout(d: Draw) -> None:
     if d.once_in(2):
         arm = d.number("readout.completion_tolerance", high=0.02)
         d.number("readout.completion_drift")
-    d.put("readout.completion", d.choice("reference-gauge", "foil-0.01", "film-0.1", "film-1"))
+    d.put("readout.completion", d.choice("foil-0.01", "film-0.1", "film-1"))
     if d.once_in(4):
         d.put("readout.completion_resistance", d.table["gauge.resistance"])
     x = offset + tolerance + 3 * arm + _leads(d)

@@ -9,7 +9,7 @@ from bad_parts import BAD
 from variants import variant
 
 from tactcad.checks.signals import check_signals
-from tactcad.checks.wired import check_bridges, check_circuit
+from tactcad.checks.wired import check_bridges, check_circuit, check_inputs
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.netlist import Netlist
 from tactcad.design.load import names, read
@@ -56,11 +56,21 @@ def test_a_gauge_must_be_in_one_bridge_that_is_read(designator, role, net, gauge
     assert {f.part for f in check_bridges(moved(designator, role, net))} == gauges
 
 
+@pytest.mark.parametrize(
+    ("designator", "role", "net", "when"),
+    [("U22", "enable", "ENABLE2", "ENABLE2 is low"), ("U12", "S7A", "SPARE", "S7A is addressed")],
+)
+def test_an_amplifier_whose_inputs_float_is_found(designator, role, net, when):
+    assert list(check_inputs(SHIPPED)) == []
+    (found,) = check_inputs(moved(designator, role, net))
+    assert found.part == designator and when in found.message
+
+
 def test_the_resolution_by_hand():
-    """Two standard deviations of ten averaged samples, drift of three arms, amplifier and leads, in volts."""
+    """Two standard deviations of ten averaged samples; drift of gauge, three arms, amplifier and leads, V."""
     d = read("macro-array")
     noise = (0.000513149**2 + (10 / 65536) ** 2 / 12) ** 0.5 / 10**0.5
-    drifts = (67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
+    drifts = (67.5 * 2.1 * 1e-6, 67.5 * 3**0.5 * 1e-6, 100 * 1e-6, 67.5 * 1.1e-5)
     volts = (4 * noise**2 + sum(v**2 for v in drifts)) ** 0.5
     from tactcad.circuit.element_signals import element_signals
 

@@ -50,7 +50,7 @@ def part(node: list, name: str) -> list:
 @pytest.mark.parametrize("name", names())
 def test_kicads_netlist_read_by_another_reader(name):
     design = read(name)
-    whole = expression(circuit_files.kicad_file(design).decode())
+    whole = expression(circuit_files.kicad_file(design, netlist(Layout(design))).decode())
     assert whole[0] == "export" and part(whole, "version") == ["version", "E"]
     components = part(whole, "components")[1:]
     refs = [part(c, "ref")[1] for c in components]
@@ -83,7 +83,7 @@ def test_kicads_netlist_read_by_another_reader(name):
 def test_every_board_has_the_header_that_is_bought():
     """The first board reads three elements, the second eight: KiCad knows one part for both headers."""
     design = variant({"array.row_arms": [[4, 7, 6], [8, 5, 4, 5, 7, 8, 5, 4]]})
-    whole = expression(circuit_files.kicad_file(design).decode())
+    whole = expression(circuit_files.kicad_file(design, netlist(Layout(design))).decode())
     (header,) = (x for x in part(whole, "libparts")[1:] if part(x, "part")[1] == "HEADER-LEADS")
     numbers = {part(pin, "num")[1] for pin in part(header, "pins")[1:]}
     named = {part(pin, "name")[1] for pin in part(header, "pins")[1:]}
@@ -101,8 +101,9 @@ def test_every_board_has_the_header_that_is_bought():
 
 def test_table_and_kicads_file_say_the_same():
     design = read("macro-array")
-    kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design))
-    assert kicad == circuit_files.nets_in_table(circuit_files.table_file(design))
+    circuit = netlist(Layout(design))
+    kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design, circuit))
+    assert kicad == circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
 
 
 def test_a_damaged_netlist_is_refused(monkeypatch):
@@ -113,15 +114,17 @@ def test_a_damaged_netlist_is_refused(monkeypatch):
         lambda *args: kept(*args).replace(b'(node (ref "B1") (pin "1")', b'(node (ref "B1") (pin "2")'),
     )
     with pytest.raises(CheckFailure, match="E1_TOP"):
-        circuit_files.kicad_file(read("macro-array"))
+        design = read("macro-array")
+        circuit_files.kicad_file(design, netlist(Layout(design)))
 
 
 def test_equal_bytes_under_any_hash_seed():
     script = (
         "import hashlib\nfrom tactcad.design.load import read\n"
         "from tactcad.export import circuit_files as f\n"
+        "from tactcad.circuit.bridges import netlist\nfrom tactcad.parts.layout import Layout\n"
         "d = read('macro-array')\nfor make in (f.kicad_file, f.table_file, f.deck_file, f.wiring_file):\n"
-        "    print(hashlib.sha256(make(d)).hexdigest())"
+        "    print(hashlib.sha256(make(d, netlist(Layout(d)))).hexdigest())"
     )
     said = {
         subprocess.run(
@@ -168,7 +171,9 @@ def test_leads_are_as_long_as_their_way_on_the_scene(name, connection):
         assert route.cut % 5 == 0 and 0 <= route.cut - 1.1 * along < 5
         # the bundle leaves the array on its row's side
         assert math.copysign(1, route.points[-1][0]) == math.copysign(1, p.rotation[0][0])
-    rows_listed = list(csv.DictReader(io.StringIO(circuit_files.wiring_file(design).decode())))
+    rows_listed = list(
+        csv.DictReader(io.StringIO(circuit_files.wiring_file(design, netlist(Layout(design))).decode()))
+    )
     count = 3 if connection == "three-wire" else 2
     assert len(rows_listed) == count * len(placed)
     for row_listed in rows_listed:
@@ -182,7 +187,8 @@ def _middle(placement) -> float:
 
 
 def test_every_lead_joins_a_terminal_and_a_pin_of_its_own():
-    leads = wiring(Layout(read("macro-array")))
+    layout = Layout(read("macro-array"))
+    leads = wiring(layout, netlist(layout))
     assert len({lead.end for lead in leads}) == len(leads) == 30
     assert {lead.colour for lead in leads if lead.start.endswith(".1")} == {"RD", "WH"}
     assert {lead.colour for lead in leads if lead.start.endswith(".2")} == {"BK"}
@@ -200,15 +206,25 @@ def test_every_lead_joins_a_terminal_and_a_pin_of_its_own():
     ],
 )
 def test_the_bill_counts_the_netlist(changes):
-    """Every component but a lead is a piece of its line of the bill, and no line has more."""
+    """Every component but a lead is a piece of its line of the bill, and no line has more; a board has a
+    bare board, standoffs and a cable; each colour's wire is as long as its leads."""
     design = variant(changes)
     layout = Layout(design)
-    counted = Counter(c.part_no for c in netlist(layout).components if c.kind != "lead")
+    circuit = netlist(layout)
+    counted = Counter(c.part_no for c in circuit.components if c.kind != "lead")
     bill = {s.part_no: s for s in make_scene(design, "array").supplies}
-    billed = {n: s.qty for n, s in bill.items() if n not in ("ADHESIVE", "COATING", "LEAD-WIRE")}
+    boards = counted["HEADER-CARD"]
+    counted |= {name: boards for name in ("CIRCUIT-BOARD", "STANDOFFS", "CABLE-CARD")}
+    billed = {n: s.qty for n, s in bill.items() if n not in ("ADHESIVE", "COATING") and "LEAD-WIRE" not in n}
     assert counted == billed
-    metres = sum(float(lead.length) for lead in wiring(layout)) / 1000
-    assert bill["LEAD-WIRE"].qty == pytest.approx(metres)
+    metres: Counter[str] = Counter()
+    for lead in wiring(layout, circuit):
+        metres[f"LEAD-WIRE-{lead.colour}"] += lead.length / 1000
+    wire = {n: s.qty for n, s in bill.items() if "LEAD-WIRE" in n}
+    assert wire == pytest.approx(dict(metres))
+    for name, length in wire.items():  # one in five, as gauges
+        fifth = max(1, math.ceil(len(layout.elements) / 5)) / len(layout.elements)
+        assert bill[name].spares == pytest.approx(fifth * length, abs=0.005)
     assert all(s.spares >= 1 for n, s in bill.items() if n in billed)
     assert bill["STRAIN-GAUGE"].spares == max(1, math.ceil(bill["STRAIN-GAUGE"].qty / 5))
 
@@ -232,13 +248,57 @@ def test_a_gain_resistor_of_the_series():
 def test_a_net_or_a_lead_that_is_missing_is_found():
     design = variant()
     circuit = netlist(Layout(design))
-    nets = circuit_files.nets_in_table(circuit_files.table_file(design))
+    nets = circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
     circuit_files.check_nets("table", nets, circuit)
     for name in ("EXC", next(iter(sorted(nets)))):
         with pytest.raises(CheckFailure, match=f"other nets: {name}"):
             circuit_files.check_nets("table", {k: v for k, v in nets.items() if k != name}, circuit)
-    data = circuit_files.wiring_file(design)
+    data = circuit_files.wiring_file(design, circuit)
     head, first, rest = data.decode().split("\n", 2)
     for text in (f"{head}\n{rest}", f"{head}\n{first}\n{first}\n{rest}"):
         with pytest.raises(CheckFailure, match="every lead"):
             circuit_files.check_leads(text.encode(), circuit)
+
+
+def test_what_is_verified_of_a_part_stands_in_the_bill(monkeypatch):
+    """Of every part by its own row: an amplifier whose figures were read says so, and no other line."""
+    from dataclasses import replace
+
+    from tactcad.design import electronics
+
+    kinds = (
+        (electronics.AMPLIFIERS, "AD621"),
+        (electronics.SWITCHES, "IRLML6244"),
+        (electronics.MULTIPLEXERS, "ADG1407"),
+        (electronics.COMPLETIONS, "foil-0.01"),
+    )
+    lines = ("AD621ARZ", "IRLML6244TRPBF", "ADG1407BRUZ", "BRIDGE-RESISTOR")
+    for (table, name), line in zip(kinds, lines, strict=True):
+        for verified in (True, False):
+            monkeypatch.setitem(table, name, replace(table[name], verified=verified))
+            bill = {s.part_no: s for s in make_scene(variant(), "array").supplies}
+            assert bill[line].verified is verified and bill[line].mpn == table[name].mpn
+
+
+def test_another_tolerance_than_the_named_resistors_is_ordered_by_its_figures():
+    """A design's own tolerance stands in the designation, and no maker's number that has another."""
+    bill = {
+        s.part_no: s for s in make_scene(variant({"readout.completion_tolerance": 0.005}), "array").supplies
+    }
+    line = bill["BRIDGE-RESISTOR"]
+    assert "0.5 %" in line.designation and line.mpn == "" and not line.verified
+
+
+@pytest.mark.parametrize(("multiplexer", "pins"), [("ADG1407", 24), ("ADG1409", 12)])
+def test_a_board_takes_its_parts(multiplexer, pins):
+    """Twice the room of its parts, by hand, and its longest header with 5 mm at both ends."""
+    bill = {s.part_no: s for s in make_scene(variant({"readout.multiplexer": multiplexer}), "array").supplies}
+    length, width = map(
+        float, re.search(r"least (\d+) x (\d+) mm", bill["CIRCUIT-BOARD"].designation).groups()
+    )
+    channels = pins // 3
+    card = 8 + {8: 3, 4: 2}[channels]
+    parts = channels * (3 * 40 + 16) + 42 + 88 + 77 + 6 * 15 + 18 + (pins + card) * 3 * 2.54
+    assert length >= max(pins, card) * 2.54 + 10 and length * width >= 2 * parts
+    assert (length - 5) * (width - 5) < 2 * parts, "no larger than needed"
+    assert length % 5 == width % 5 == 0

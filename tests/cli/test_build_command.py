@@ -36,6 +36,26 @@ def test_what_has_no_stiffness_says_null(tmp_path, capsys):
         assert element["stop_gap"][0] > 0
 
 
+def test_what_has_no_stiffness_says_why(tmp_path, capsys):
+    """In words: no nan, and for every element the field that keeps the estimator from it."""
+    text = find("macro-array").read_text().replace("hinge_thickness = 0.25", "hinge_thickness = 0.05")
+    (tmp_path / "thin.toml").write_text(text)
+    main(["build", str(tmp_path / "thin.toml"), "--count", "5"])
+    said = capsys.readouterr().out
+    assert "nan" not in said
+    for n in range(1, 11):
+        (why,) = (line for line in said.splitlines() if f"E{n} has no stiffness" in line)
+        assert "element.hinge_thickness" in why or "element.hinge_length" in why
+
+
+def test_a_place_on_the_hinge_that_is_missed_names_its_fields(tmp_path, capsys):
+    text = find("macro-array").read_text().replace("hinge_thickness = 0.25", "hinge_thickness = 0.1")
+    (tmp_path / "thin.toml").write_text(text)
+    assert main(["build", str(tmp_path / "thin.toml")]) == 1
+    said = capsys.readouterr().err
+    assert "look at bonding.sight = 0.03 and bonding.signal_share = 0.03" in said
+
+
 def test_the_same_seed_says_the_same(capsys):
     said = []
     for _ in range(2):

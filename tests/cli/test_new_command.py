@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tactcad.cli.main import main
-from tactcad.design.load import names
+from tactcad.design.load import names, parse
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene
 
@@ -24,16 +24,31 @@ def folder(tmp_path, monkeypatch) -> Path:
 
 @pytest.mark.parametrize("source", names())
 def test_only_identity_changes(source, folder):
+    """And the title is left out: it follows the array."""
     assert main(["new", "my-sensor.toml", "--from", source]) == 0
     old = tomllib.loads((HARDWARE / f"{source}.toml").read_text("utf-8"))
     new = tomllib.loads((folder / "my-sensor.toml").read_text("utf-8"))
+    assert "title" not in new["design"]
     assert new["design"].pop("name") == "my-sensor" and new["design"].pop("revision") == "A"
     for table in (old["design"], new["design"]):
-        for key in ("name", "revision", "date"):
+        for key in ("name", "revision", "date", "title"):
             table.pop(key, None)
-    identity = {"design.name", "design.revision", "design.date"}
+    identity = {"design.name", "design.revision", "design.date", "design.title"}
     origins = [{k: v for k, v in t.pop("origin", {}).items() if k not in identity} for t in (old, new)]
     assert old == new and origins[0] == origins[1]
+
+
+@pytest.mark.parametrize(
+    ("rows", "title"), [("[[4], [5]]", "2 x 1"), ("[[4, 7, 6]]", "1 x 3"), ("[[4, 7, 6], [8, 5]]", "3 + 2")]
+)
+def test_the_title_follows_the_array_unless_it_is_set(rows, title, folder):
+    main(["new", "my-sensor.toml", "--from", "macro-array"])
+    text = (folder / "my-sensor.toml").read_text("utf-8")
+    other = text.replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", rows)
+    assert parse(text, "").design.title == "Tactile array 2 x 5"
+    assert parse(other, "").design.title == f"Tactile array {title}"
+    named = other.replace('name = "my-sensor"', 'name = "my-sensor"\ntitle = "Mine"')
+    assert parse(named, "").design.title == "Mine"
 
 
 def test_comments_stay(folder):

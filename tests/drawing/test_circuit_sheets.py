@@ -9,6 +9,7 @@ import re
 import pytest
 from variants import variant
 
+from tactcad.circuit.bridges import netlist
 from tactcad.design.load import names, read
 from tactcad.design.messages import CheckFailure
 from tactcad.drawing import circuit_sheets as sheets
@@ -31,10 +32,10 @@ OTHERS = {
 def everything_stands_there(design) -> None:
     pages = pdf_runs(circuit_written(CircuitOrder(design)).pdf)
     first, said = pages[0], [run for page in pages for run in page]
-    revision = design.design.revision
+    revision, circuit = design.design.revision, netlist(Layout(design))
     for n, page in enumerate(pages, start=1):
         assert revision in page and f"{n}/{len(pages)}" in page
-    nets = list(csv.DictReader(io.StringIO(table_file(design).decode())))
+    nets = list(csv.DictReader(io.StringIO(table_file(design, circuit).decode())))
     # of board 1 and element 1 every component is drawn
     drawn = {row["designator"] for row in nets if row["board"] == "1" and row["element"] in ("", "1")}
     words = set(re.findall(r"\w+", " ".join(first)))
@@ -48,9 +49,29 @@ def everything_stands_there(design) -> None:
         assert f"{mux[0]['designator']}.{mux[0]['pin']} +, .{minus[0]['pin']} −" in said
     # every lead of the wiring list, in its order of columns
     text = " ".join(said)
-    for row in csv.DictReader(io.StringIO(wiring_file(design).decode())):
+    for row in csv.DictReader(io.StringIO(wiring_file(design, circuit).decode())):
         cells = (row["lead"], f"E{row['element']}", row["from"], row["to"], row["colour"], row["wire"])
         assert " ".join(cells) in text
+
+
+def test_each_pin_of_the_decoder_and_what_sets_the_gain_as_in_the_netlist():
+    """Beside every stub of the decoder stands its own net; the gain's pins are drawn, and its resistor."""
+    for changes in ({}, {"readout.amplifier": "AD8221"}):
+        design = variant(changes)
+        first = pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0]
+        circuit = netlist(Layout(design))
+        decoder, amplifier = circuit.on_board("decoder", 1), circuit.on_board("amplifier", 1)
+        assert decoder.net("E3") == "ENABLE1" in first
+        assert [run for run in first if run.endswith("ENABLE1")] == ["ENABLE1", "9  ENABLE1"]
+        assert any(run.startswith(f"{decoder.net('A0')}, also U12.") for run in first)
+        numbers = {pin.number for pin in amplifier.pins if pin.role in ("rg1", "rg2")}
+        assert numbers <= set(first)
+        assert ("R10" in first and "499 ohm" in first) == bool(changes)
+
+
+def test_no_general_tolerance_on_a_sheet_without_dimensions():
+    pages = pdf_runs(circuit_written(CircuitOrder(read("macro-array"))).pdf)
+    assert not any("2768" in run or "8015" in run for page in pages for run in page)
 
 
 def test_no_sample_before_the_output_has_settled():

@@ -83,8 +83,9 @@ def test_each_has_its_parts_files_and_no_other(whole, zips):
     assert stems(zips["milling-and-turning"], "pdf") == machined
     assert stems(zips["milling-and-turning"], "step") == machined
     assert stems(zips["sheet"], "dxf") == stems(whole, "dxf") - wire
-    for way in ("sheet", *BOUGHT):
+    for way in ("sheet", "purchase-mechanical"):
         assert not stems(zips[way], "pdf") and not stems(zips[way], "step")
+    assert stems(zips["purchase-electronic"], "pdf") == {"tiny-circuit"}
     for way, files in zips.items():
         own = {README, ORDER, MANIFEST, "inspection-parts.csv"}
         for name, data in files.items():
@@ -109,6 +110,27 @@ def test_every_line_of_the_bill_is_ordered_once_with_its_spares(whole, zips):
     electronic = {row["part_no"] for row in rows(zips["purchase-electronic"][ORDER])}
     assert electronic == {n for n, row in bill.items() if row["process"] == "electronic"}
     assert "STRAIN-GAUGE" in electronic
+
+
+def test_who_makes_the_boards_has_netlist_and_diagrams(zips):
+    """Read from the package alone: the board's line names them, and every pin of its parts is there."""
+    files = zips["purchase-electronic"]
+    (board,) = (row for row in rows(files[ORDER]) if row["part_no"] == "CIRCUIT-BOARD")
+    for kind, end in (("netlist", ".net"), ("netlist_table", ".csv"), ("sheets", ".pdf")):
+        assert board[kind].endswith(f"tiny-circuit_{REVISION}{end}")
+        assert hashlib.sha256(files[board[kind]]).hexdigest() == board[f"{kind}_sha256"]
+    assert f"tiny-circuit_{REVISION}.net" in board["designation"]
+    assert {row["designator"] for row in rows(files[board["netlist_table"]])} >= {"U11", "U12", "U13", "J11"}
+    assert "CIRCUIT BOARD" in files[README].decode()
+
+
+def test_what_comes_with_another_part_is_no_line_of_an_order(macro):
+    """A stage is bought whole: its moving half stands in the bill and the scene, and is not ordered."""
+    scenes = [make_scene(macro, name) for name in scene_names(macro)]
+    halves = {p.part.part_no for s in scenes for p in s.placements if p.part.part_no.startswith("STAGE-")}
+    assert {n.rsplit("-", 1)[1] for n in halves} == {"FIXED", "MOVING"}
+    lines = {line.row.part_no for line in ordered(scenes, "A", "all")}
+    assert {n for n in halves if n in lines} == {n for n in halves if n.endswith("-FIXED")}
 
 
 def test_material_standard_and_files_stand_in_every_line(zips):
@@ -176,6 +198,7 @@ def test_one_set_or_all(macro):
     counts = {s.name: Counter(p.part.part_no for p in s.placements) for s in scenes}
     holds_the_array = {"calibration", "grasping", "bonding"}  # the last one element of it
     rigs = [c - counts["array"] if n in holds_the_array else c for n, c in counts.items() if n != "array"]
+    counts = {n: Counter({p: k for p, k in c.items() if "-MOVING" not in p}) for n, c in counts.items()}
     for sets, count in (("one", lambda n: max(c[n] for c in counts.values())), ("all", None)):
         lines = {line.row.part_no: line for line in ordered(scenes, "A", sets)}
         for number in set().union(*counts.values()):

@@ -449,7 +449,7 @@ FAIL_ON: dict[str, tuple[tuple[str, str], set[str]]] = {
     ),
     "limit": (("[gauge]", "[tolerance]\nload_arm = 0.04\n[gauge]"), {"changes", "geometry", "revision"}),
     "tip": (("[gauge]", "[tolerance]\ntip = 0.1\n[gauge]"), {"changes", "geometry", "checks", "revision"}),
-    "new letter": (('revision = "G"', 'revision = "H"'), {"changes"}),
+    "new letter": (('revision = "H"', 'revision = "J"'), {"changes"}),
 }
 
 

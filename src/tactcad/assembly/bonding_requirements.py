@@ -63,7 +63,7 @@ def _on_hinge(
         loose = play + a.made["element: slot length"] - a.made[TONGUE_][:, kind]
         return allowed - np.abs(a.made[SHARE] * loose / 2 + a.made[EYE])
 
-    return Requirement(PLACE_ON_HINGE, "mm", 0.0, inf, room)
+    return Requirement(PLACE_ON_HINGE, "mm", 0.0, inf, room, fields=("bonding.sight", "bonding.signal_share"))
 
 
 def _on_backing(rig: BondingLayout, known: dict[str, DimensionLimits]) -> Requirement:

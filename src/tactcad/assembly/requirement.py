@@ -26,6 +26,7 @@ class Requirement:
     value         (arrays, instances) of arrays that were put together
     linear        where the value is a sum of deviations: the nominal value, and each variable's coefficient;
                   such a value does not depend on the array's contacts
+    fields        of the design, to look at where it is missed
     """
 
     name: str
@@ -34,6 +35,7 @@ class Requirement:
     upper: float
     value: Value
     linear: tuple[float, tuple[tuple[str, float], ...]] | None = None
+    fields: tuple[str, ...] = ()
 
     def margin(self, value: Array) -> Array:
         """How far inside its limits a value is, in its unit; negative outside."""

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from tactcad.design.load import paths
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene, scene_names
@@ -138,12 +139,15 @@ class Sensor:
         worst = max(failed, key=lambda name: failed[name])
         (line,) = self.stack(worst)
         most = line.contributors[0] if line.contributors else None
+        values = paths(self.layout.design)
+        looked_at = " and ".join(f"{path} = {values[path]:g}" for path in line.requirement.fields)
         missed = f"{line.shortfall:.3g} {line.requirement.unit}".rstrip()
         return (
             f"{100 * builds.share:.1f} % of {builds.count} virtual arrays ({builds.worse} parts, seed "
             f"{builds.seed}) meet all requirements; needed: {100 * LEAST_YIELD:g} %. Most often missed: "
             f"{worst} ({failed[worst]} arrays; the worst case misses its limit by {missed})"
             + (f"; largest contributor: {most.name}, {100 * most.share:.0f} %" if most else "")
+            + (f"; look at {looked_at}" if looked_at else "")
         )
 
 

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from tactcad.circuit.bridges import EXCITATION, netlist
-from tactcad.circuit.netlist import Component, Netlist
+from tactcad.circuit.netlist import GROUND, Component, Kind, Netlist
 from tactcad.design.tree import Design
 from tactcad.parts.finding import Finding
 from tactcad.parts.layout import Layout
@@ -28,7 +28,9 @@ from tactcad.parts.rules.readout_rules import (
 def check_circuit(design: Design) -> Iterator[Finding]:
     """Findings on the array's netlist, and on its bridges, inputs, power, times and leads."""
     layout = Layout(design)
-    yield from check_bridges(netlist(layout))
+    circuit = netlist(layout)
+    yield from check_bridges(circuit)
+    yield from check_inputs(circuit)
     for check, rule in (
         ("channels", boards_have_inputs),
         ("bridge-balance", bridge_stays_in_range),
@@ -55,6 +57,37 @@ def check_bridges(circuit: Netlist) -> Iterator[Finding]:
         if count != 1:
             message = f"gauge {gauge.designator} of E{gauge.element} is in {count} bridges that are read"
             yield Finding("one-bridge", "fail", gauge.designator, (), count, 1, message)
+
+
+def check_inputs(circuit: Netlist) -> Iterator[Finding]:
+    """A failure for every multiplexer that leaves its amplifier's inputs without a way for their bias
+    currents at some address, or while it is not enabled; all switches open."""
+    fed = _fed(circuit)
+    supplies = {net for net, _ in circuit.supplies}
+    for part in circuit.of_kind("multiplexer"):
+        floating = [p.role for p in part.pins if p.role.startswith("S") and p.net not in fed]
+        cut_off = part.net("enable") not in supplies
+        if cut_off or floating:
+            when = f"{part.net('enable')} is low" if cut_off else f"{floating[0]} is addressed"
+            amplifier = circuit.on_board("amplifier", part.board).designator
+            message = f"the inputs of {amplifier} float while {when}"
+            yield Finding("floating-input", "fail", part.designator, (), len(floating), 0, message)
+
+
+def _fed(circuit: Netlist) -> set[str]:
+    """Nets that resistors, gauges and leads join to the bridges' supply or to ground."""
+    beside: dict[str, set[str]] = {}
+    kinds: tuple[Kind, ...] = ("resistor", "gauge", "lead")
+    for kind in kinds:
+        for component in circuit.of_kind(kind):
+            a, b = component.net("1"), component.net("2")
+            beside.setdefault(a, set()).add(b)
+            beside.setdefault(b, set()).add(a)
+    reached, new = set[str](), {EXCITATION, GROUND}
+    while new:
+        reached |= new
+        new = {net for at in new for net in beside.get(at, ())} - reached
+    return reached
 
 
 def _joined_by_leads(circuit: Netlist) -> dict[str, str]:

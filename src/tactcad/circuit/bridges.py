@@ -1,9 +1,9 @@
 """The array's circuit: a quarter bridge an element, a switch in its return, and boards that read them.
 
-EXC ---+-----------+           One board: the decoder opens the switch of the channel that the address
-    R.1|        R.2|           names, and the multiplexer leads that bridge, + and -, to the amplifier,
-       +--W.1      +--- -      whose output is a differential input of the card. So one gauge of a board
-          |                    is warm at a time, and a switch carries one bridge's current.
+EXC ---+-----------+           One board: the multiplexer leads the bridge that the address names, + and -,
+    R.1|        R.2|           to the amplifier, whose output is a differential input of the card; with
+       +--W.1      +--- -      ENABLE the decoder closes that bridge's switch. So one gauge of a board is
+          |                    warm at a time, and a switch carries one bridge's current.
     B  .--+--W.2------- +
     (gauge)                    Three wires: W.1 lies in one arm and W.3 in the next, so that their
        '--+--W.3--+  R.3       resistance cancels; W.2 carries no current. Two wires: W.1 and W.2 both
@@ -24,17 +24,17 @@ from tactcad.parts.electronic_parts import (
     DECOUPLING,
     GAIN_RESISTOR,
     GAUGE,
-    LEAD,
     RESERVOIR,
     TERMINAL,
     TO_CARD,
     TO_LEADS,
     completion_resistance,
     gain_resistance,
+    lead_part,
     set_gain,
 )
 from tactcad.parts.layout import Layout
-from tactcad.parts.lead_route import LeadRoute, lead_ohm, lead_routes
+from tactcad.parts.lead_route import LeadRoute, colours, lead_ohm, lead_routes, leads
 
 from .netlist import GROUND, Component, Kind, Netlist, Pin
 
@@ -70,10 +70,10 @@ def gate(board: ReadBoard, channel: int) -> str:
 
 def _bridge(layout: Layout, board: ReadBoard, channel: int, route: LeadRoute) -> Iterator[Component]:
     d, n = layout.design, route.place.number
-    r, switch = d.readout, SWITCHES[d.readout.switch]
+    switch = SWITCHES[d.readout.switch]
     top, bottom, foot = f"E{n}_TOP", f"E{n}_BOTTOM", f"E{n}_FOOT"
     plus, minus, red = f"E{n}_PLUS", f"E{n}_MINUS", f"E{n}_RED"
-    three = r.connection == "three-wire"
+    three = leads(layout) == 3
     if not three:
         red = plus
     arm, lead = completion_resistance(d), route.cut * lead_ohm(layout)
@@ -85,11 +85,9 @@ def _bridge(layout: Layout, board: ReadBoard, channel: int, route: LeadRoute) ->
     ohm = d.gauge.resistance
     yield own(_two(f"B{n}", "gauge", f"{ohm:g} ohm", GAUGE, (top, bottom), ohm=ohm))
     yield own(_two(f"X{n}", "terminal", "solder terminals", TERMINAL, (top, bottom)))
-    for k, nets in enumerate(wires, start=1):
-        wire = WIRES[d.wiring.wire].name
-        yield own(
-            _two(f"W{10 * n + k}", "lead", f"{wire}, {route.cut:g} mm", LEAD, nets, ohm=lead, mm=route.cut)
-        )
+    for k, (nets, colour) in enumerate(zip(wires, colours(layout), strict=True), start=1):
+        value = f"{WIRES[d.wiring.wire].name}, {route.cut:g} mm"
+        yield own(_two(f"W{10 * n + k}", "lead", value, lead_part(colour), nets, ohm=lead, mm=route.cut))
     for k, nets in enumerate(((EXCITATION, red), (EXCITATION, minus), (minus, foot)), start=1):
         yield own(_two(f"R{10 * n + k}", "resistor", f"{arm:g} ohm", COMPLETION, nets, ohm=arm))
     on = {"gate": gate(board, channel), "source": GROUND, "drain": foot}
@@ -99,11 +97,10 @@ def _bridge(layout: Layout, board: ReadBoard, channel: int, route: LeadRoute) ->
 
 def _board(layout: Layout, board: ReadBoard) -> Iterator[Component]:
     """What a board carries once, and its connectors."""
-    three = layout.design.readout.connection == "three-wire"
     bridges = [(f"E{p.number}_PLUS", f"E{p.number}_MINUS") for p in board.places]
     b = board.number
     out, enable = f"OUT{b}", f"ENABLE{b}"
-    parts = [*_amplifier(layout, b, out), _multiplexer(layout, b, bridges, enable)]
+    parts = [*_amplifier(layout, b, out), _multiplexer(layout, b, bridges)]
     parts.append(_decoder(layout, board, enable))
     rails = (POSITIVE, NEGATIVE, POSITIVE, NEGATIVE, LOGIC, EXCITATION)
     for k, rail in enumerate(rails, start=1):
@@ -112,11 +109,11 @@ def _board(layout: Layout, board: ReadBoard) -> Iterator[Component]:
     address = [f"A{i}" for i in range(len(MULTIPLEXERS[layout.design.readout.multiplexer].address))]
     card = [EXCITATION, GROUND, POSITIVE, NEGATIVE, LOGIC, *address, enable, out, GROUND]
     parts.append(_connector(f"J{10 * b + 1}", TO_CARD, card))
-    ends = ("RED", "PLUS", "FOOT") if three else ("PLUS", "FOOT")
-    leads = [f"E{p.number}_{end}" for p in board.places for end in ends]
+    ends = ("RED", "PLUS", "FOOT") if leads(layout) == 3 else ("PLUS", "FOOT")
+    pins = [f"E{p.number}_{end}" for p in board.places for end in ends]
     spare = MULTIPLEXERS[layout.design.readout.multiplexer].channels - len(board.places)
-    leads += [""] * (spare * len(ends))  # open: all boards have the same header
-    parts.append(_connector(f"J{10 * b + 2}", TO_LEADS, leads))
+    pins += [""] * (spare * len(ends))  # open: all boards have the same header
+    parts.append(_connector(f"J{10 * b + 2}", TO_LEADS, pins))
     return (replace(part, board=b) for part in parts)
 
 
@@ -151,12 +148,14 @@ def _amplifier(layout: Layout, b: int, out: str) -> Iterator[Component]:
         )
 
 
-def _multiplexer(layout: Layout, b: int, bridges: list[tuple[str, str]], enable: str) -> Component:
+def _multiplexer(layout: Layout, b: int, bridges: list[tuple[str, str]]) -> Component:
+    """Enabled always: so the amplifier's inputs hang on the addressed bridge, which no open switch cuts off
+    its supply, and never float."""
     part = MULTIPLEXERS[layout.design.readout.multiplexer]
     nets = {
         "out_a": f"IN{b}_PLUS",
         "out_b": f"IN{b}_MINUS",
-        "enable": enable,
+        "enable": LOGIC,
         "positive": POSITIVE,
         "negative": NEGATIVE,
         "ground": GROUND,

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.mechanics import gauge_signal, readout
-from tactcad.parts.bridge_figures import amplified, completion_tolerance, drift
+from tactcad.parts.bridge_figures import amplified, drift
+from tactcad.parts.electronic_parts import completion_tolerance
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import ElementPlace, Layout
 from tactcad.parts.lead_route import longest_lead_resistance

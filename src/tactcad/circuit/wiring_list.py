@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from tactcad.parts.layout import Layout
+from tactcad.parts.lead_route import colours
 
-from .bridges import netlist
 from .netlist import Component, Netlist
-
-# Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
-# strain gauge practice; of two wires there is no white one.
-COLOURS = {3: ("RD", "WH", "BK"), 2: ("RD", "BK")}
 
 
 @dataclass(frozen=True)
@@ -33,21 +30,19 @@ class Lead:
 COLUMNS = {"designator": "lead", "start": "from", "end": "to", "length": "cut_length_mm"}
 
 
-def wiring(layout: Layout) -> tuple[Lead, ...]:
-    """Every lead of the array, by board and channel."""
-    circuit = netlist(layout)
+def wiring(layout: Layout, circuit: Netlist) -> tuple[Lead, ...]:
+    """Every lead of the array and its circuit, by board and channel."""
     return tuple(_lead(layout, circuit, c) for c in circuit.of_kind("lead"))
 
 
 def _lead(layout: Layout, circuit: Netlist, c: Component) -> Lead:
-    count = 3 if layout.design.readout.connection == "three-wire" else 2
     at_gauge, at_board = c.net("1"), c.net("2")
     return Lead(
         c.designator,
         c.element,
         _place(circuit, at_gauge, "terminal"),
         _place(circuit, at_board, "connector"),
-        COLOURS[count][int(c.designator[1:]) % 10 - 1],
+        colours(layout)[int(c.designator[1:]) % 10 - 1],
         layout.design.wiring.wire,
         c.figure("mm"),
         c.board,
@@ -60,13 +55,13 @@ def _place(circuit: Netlist, net: str, kind: str) -> str:
     return f"{component.designator}.{pin.number}"
 
 
-def wiring_csv(layout: Layout) -> bytes:
+def wiring_csv(leads: Sequence[Lead]) -> bytes:
     """The list (RFC 4180, UTF-8)."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     names = [f.name for f in fields(Lead)]
     writer.writerow([COLUMNS.get(name, name) for name in names])
-    for lead in wiring(layout):
+    for lead in leads:
         values = (getattr(lead, name) for name in names)
         writer.writerow([f"{v:g}" if isinstance(v, float) else v for v in values])
     return text.getvalue().encode()

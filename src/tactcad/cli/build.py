@@ -6,7 +6,9 @@ import argparse
 import json
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import asdict
+from math import isfinite
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import InputError
@@ -16,6 +18,7 @@ from .parser import add_design, add_json
 if TYPE_CHECKING:
     from tactcad.assembly.stack import StackLine
     from tactcad.assembly.virtual_build import Builds
+    from tactcad.parts.layout import Layout
 
 EXAMPLES = """\
   tactcad build                            1000 arrays of hardware/macro-array.toml, seed as published
@@ -56,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(_record(builds, lines, seconds, refusal), indent=1, allow_nan=False))
     else:
-        _print(made.layout.design.name, builds, lines)
+        _print(made.layout, builds, lines)
     if refusal:
         print(f"tactcad: {made.layout.design.name}: {refusal}", file=sys.stderr)
     return 1 if refusal else 0
@@ -93,8 +96,8 @@ def _record(builds: Builds, lines: list[StackLine], seconds: float, refusal: str
     }
 
 
-def _print(name: str, builds: Builds, lines: list[StackLine]) -> None:
-    print(f"{name}: {builds.count} arrays of each distribution, seed {builds.seed}")
+def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
+    print(f"{layout.design.name}: {builds.count} arrays of each distribution, seed {builds.seed}")
     for which, share in builds.kept.items():
         failed = builds.failures[which]
         why = "; ".join(f"{n} miss: {requirement}" for requirement, n in sorted(failed.items(), key=_most))
@@ -110,10 +113,27 @@ def _print(name: str, builds: Builds, lines: list[StackLine]) -> None:
         print(f"  {r:{wide}} {line.nominal:9.4g} {worst:>21} {line.sigma:8.2g}  {who}")
     print("  element  K, N/mm         load arm, mm    stop gap, mm    closes at least at, N")
     for e in builds.elements:
+        known = isfinite(e.stiffness[0])
+        K = f"{e.stiffness[0]:6.2f} +-{e.stiffness[1]:5.2f}" if known else f"{'none':15}"
+        closes = f"{e.stop_closes_at_least:.3g}" if known else "not known"
         print(
-            f"  E{e.number:<6}  {e.stiffness[0]:6.2f} +-{e.stiffness[1]:5.2f}  {e.load_arm[0]:6.3f} "
-            f"+-{e.load_arm[1]:.3f}  {e.stop_gap[0]:6.3f} +-{e.stop_gap[1]:.3f}  {e.stop_closes_at_least:.3g}"
+            f"  E{e.number:<6}  {K}  {e.load_arm[0]:6.3f} +-{e.load_arm[1]:.3f}  {e.stop_gap[0]:6.3f} "
+            f"+-{e.stop_gap[1]:.3f}  {closes}"
         )
+    for reason in _reasons(layout, builds):
+        print(f"  {reason}")
+
+
+def _reasons(layout: Layout, builds: Builds) -> Iterator[str]:
+    """Why elements have no stiffness: as drawn, or in one of the arrays built."""
+    from tactcad.mechanics import ladder
+    from tactcad.parts.hinge_section import hinge_section, not_reached
+
+    for place, e in zip(layout.elements, builds.elements, strict=True):
+        if not isfinite(e.stiffness[0]):
+            drawn = not_reached(layout, (place,), hinge_section(layout, (place,)), ladder.DEFAULT_RUNG)
+            near = f"rung {ladder.DEFAULT_RUNG} does not reach element {place.number} with its tolerances"
+            yield f"E{place.number} has no stiffness: {drawn or near}"
 
 
 def _with_unit(line: StackLine) -> str:

@@ -5,10 +5,11 @@ Rows of data/*.csv, which say where each figure is from; SI units but where a co
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from .data_table import data_rows
 
 
 @dataclass(frozen=True)
@@ -93,11 +94,13 @@ class Multiplexer(Bought):
 
 @dataclass(frozen=True)
 class Completion(Bought):
-    """What the three other arms of a bridge are; tolerance relative, drift 1/K against the gauge."""
+    """A resistor for the three other arms of a bridge; tolerance relative, drift 1/K, watts at 70 C."""
 
     description: str
     tolerance: float
     drift: float
+    package: str
+    watts: float
 
 
 @dataclass(frozen=True)
@@ -111,8 +114,7 @@ class Wire:
 
 
 def _rows(name: str) -> list[dict[str, str]]:
-    text = (Path(__file__).parent / "data" / f"{name}.csv").read_text("utf-8")
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    return data_rows(Path(__file__).parent / "data" / f"{name}.csv")
 
 
 def _bought(row: dict[str, str]) -> dict[str, Any]:
@@ -172,7 +174,10 @@ SWITCHES = {
 MULTIPLEXERS = {row["name"]: _multiplexer(row) for row in _rows("multiplexers")}
 COMPLETIONS = {
     row["name"]: Completion(
-        **_bought(row), description=row["description"], **_numbers(row, "tolerance", "drift")
+        **_bought(row),
+        description=row["description"],
+        package=row["package"],
+        **_numbers(row, "tolerance", "drift", "watts"),
     )
     for row in _rows("completions")
 }

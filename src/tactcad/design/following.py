@@ -1,6 +1,6 @@
-"""Sizes of the rigs that follow the array where the design leaves them out.
+"""What follows the array where the design leaves it out: its title, sizes of its rigs.
 
-Each is the published set-up's as long as the array is no longer than the published one.
+Each size is the published set-up's as long as the array is no longer than the published one.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ LARGEST_VACUUM = 64.0
 
 
 def followed(values: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a design with what its rigs left out filled in."""
+    """The tables of a design with what it left out filled in."""
     array, sheet, element = values["array"], values["sheet"], values["element"]
     sample, grasping = values.get("sample"), values.get("grasping")
     done = dict(values)
+    done["design"] = _filled(done["design"], title=_title(array))
     if sample is not None:
         sample = done["sample"] = _filled(sample, side=_side(array, sheet, element))
         more = max(sample.side - SIDE, 0.0)
@@ -44,8 +45,15 @@ def followed(values: dict[str, Any]) -> dict[str, Any]:
     return done
 
 
-def _filled(table: Any, **sizes: float) -> Any:
-    return replace(table, **{name: v for name, v in sizes.items() if getattr(table, name) is None})
+def _filled(table: Any, **left_out: float | str) -> Any:
+    return replace(table, **{name: v for name, v in left_out.items() if getattr(table, name) is None})
+
+
+def _title(array: Array) -> str:
+    """Rows by elements a row, such as 2 x 5, or 5 + 4 where they differ."""
+    counts = [len(row) for row in array.row_arms]
+    size = f"{len(counts)} x {counts[0]}" if len({*counts}) == 1 else " + ".join(map(str, counts))
+    return f"Tactile array {size}"
 
 
 def _side(array: Array, sheet: Sheet, element: Element) -> float:

@@ -13,7 +13,7 @@ from .fields import Number, shown_text
 from .files import read_text
 from .following import followed
 from .materials import ALLOYS, LOT_SPREAD, completed
-from .messages import InputError, near, one_of
+from .messages import InputError, nearest, one_of
 from .plain_numbers import as_number
 from .stock import sheet_tolerance
 from .toml_text import parse_toml
@@ -216,5 +216,18 @@ def paths(design: Design) -> dict[str, Any]:
 
 
 def unknown_field(path: str, known: list[str]) -> InputError:
-    """The refusal of a name that is no field of the file."""
-    return InputError(path, "unknown field", legal=near(path, known) or "see `tactcad schema`")
+    """The refusal of a name that is no field of the file; `known` are those of its table."""
+    table, _, name = path.rpartition(".")
+    own = {k.removeprefix(f"{table}."): k for k in known}  # a common table's name makes no two names alike
+    begins = next((k for word, k in own.items() if word.startswith(f"{name}_")), "") or _elsewhere(name)
+    likely = begins or own.get(nearest(name, own), "")
+    return InputError(
+        path, "unknown field", legal=f"did you mean {likely}?" if likely else "see `tactcad schema`"
+    )
+
+
+def _elsewhere(name: str) -> str:
+    """The first field of another table that is called so, or begins so; "" where none does."""
+    kinds = ((table, kind) for table, kind in SECTION_TYPES.items() if table != "origin")
+    every = ((table, f.name) for table, kind in kinds for f in dataclasses.fields(kind))
+    return next((f"{t}.{n}" for t, n in every if f"{n}_".startswith(f"{name}_")), "")

@@ -4,7 +4,6 @@ from it.
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from math import isclose
 from pathlib import Path
 from typing import Any
 
+from .data_table import data_rows
 from .messages import InputError, in_brackets, near, one_of
 from .present import present
 
@@ -87,8 +87,7 @@ class Difference:
 
 def _table() -> dict[str, Alloy]:
     """The rows of data/materials.csv."""
-    text = (Path(__file__).parent / "data" / "materials.csv").read_text("utf-8")
-    rows = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
+    rows = data_rows(Path(__file__).parent / "data" / "materials.csv")
     return {row["name"]: _alloy(row) for row in rows}
 
 

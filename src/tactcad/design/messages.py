@@ -27,10 +27,15 @@ class InputError(ValueError):
 
 def near(word: str, known: Iterable[str]) -> str:
     """ "did you mean X?" for the known word that `word` looks like; "" where none does."""
+    likely = nearest(word, known)
+    return f"did you mean {likely}?" if likely else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known word that `word` looks like; "" where none does."""
     import difflib  # rarely needed
 
-    likely = difflib.get_close_matches(word[:200], list(known), n=1)
-    return f"did you mean {likely[0]}?" if likely else ""
+    return next(iter(difflib.get_close_matches(word[:200], list(known), n=1)), "")
 
 
 def one_of(word: object, known: Iterable[str]) -> str:

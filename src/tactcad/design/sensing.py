@@ -28,6 +28,9 @@ class StrainGauge:
     foil_modulus: float = given(Number("MPa", 0, 5e5, "Young's modulus of the foil"), 162000.0)
     foil_coverage: float = given(Number("", 0, 1, "share of the grid's area that is metal"), 0.5)
     resistance_per_kelvin: float = given(Number("1/K", -0.01, 0.01, "on a free gauge"), -17e-6)
+    thermal_output: float = given(
+        Number("1/K", 0, 1e-3, "apparent strain of the gauge bonded on this metal, plus and minus"), 1e-6
+    )
     resistance_tolerance: float = given(
         Number("", 0, 0.1, "of the resistance once it is bonded, relative, plus and minus"), 0.003
     )
@@ -35,7 +38,7 @@ class StrainGauge:
         Number("kW/m2", 0.01, 1000, "of the grid, that its backing bears on this metal, mean over a period"),
         7.8,
     )
-    rise: float = given(Number("K", 0.1, 200, "of the grid over the leaf, that its backing bears"), 20.0)
+    rise: float = given(Number("K", 0.1, 200, "of the grid over the body, that its backing bears"), 20.0)
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ class Readout:
     on_time: float = given(Number("s", 1e-6, 100, "bridge powered for one reading"), 0.005)
     period: float = given(Number("s", 1e-5, 1e5, "time between readings"), 1.0)
     reference_mismatch: float = given(
-        Number("", 0, 1, "share of self-heating that the reference gauges do not cancel"), 0.2
+        Number("", 0, 1, "share of self-heating that the bridge's other arms do not cancel"), 1.0
     )
     amplifier: str = given(OneOf(tuple(AMPLIFIERS), "instrumentation amplifier of a board"), "AD621")
     switch: str = given(OneOf(tuple(SWITCHES), "MOSFET in the return of each bridge"), "IRLML6244")
@@ -67,7 +70,7 @@ class Readout:
         OneOf(tuple(MULTIPLEXERS), "that leads the bridges of a board to its amplifier"), "ADG1407"
     )
     completion: str = given(
-        OneOf(tuple(COMPLETIONS), "the three arms that complete each bridge"), "reference-gauge"
+        OneOf(tuple(COMPLETIONS), "resistors of the three arms that complete each bridge"), "foil-0.01"
     )
     completion_resistance: float | None = given(
         Number("ohm", 10, 10000, "of each of these three"), None, "the gauge's"
@@ -76,9 +79,7 @@ class Readout:
         Number("", 0, 0.1, "of this resistance, relative, plus and minus"), None, "the completion's"
     )
     completion_drift: float | None = given(
-        Number("1/K", 0, 0.01, "by which this resistance changes otherwise than the gauge's"),
-        None,
-        "the completion's",
+        Number("1/K", 0, 0.01, "temperature coefficient of this resistance"), None, "the completion's"
     )
     connection: str = given(OneOf(("three-wire", "two-wire"), "leads of each gauge"), "three-wire")
     temperature_span: float = given(

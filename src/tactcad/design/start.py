@@ -36,7 +36,8 @@ def name_of(path: Path) -> str:
 
 
 def started(source: str, name: str, today: date) -> str:
-    """The text of a design under another name, its comments and origins kept.
+    """The text of a design under another name, its comments and origins kept; its title is left out, so that
+    it follows the array, which is about to be another.
 
     Parameters
     ----------
@@ -57,17 +58,29 @@ def started(source: str, name: str, today: date) -> str:
     values = {"name": name, "revision": "A", "date": today.isoformat()}
     origins = {key: f"chosen: tactcad new, from {source} revision {revision}" for key in values}
     origins = {f"design.{k}": v for k, v in origins.items() if f"design.{k}" in old.get("origin", {})}
-    new = _with_values(text, "design", values)
-    new = _with_values(new, "origin", origins)
+    new = _with_values(_without(text, "design", "title"), "design", values)
+    new = _with_values(_without(new, "origin", "design.title"), "origin", origins)
     new = f"# {name}: started from {source}, revision {revision}, by `tactcad new`.\n{new}"
-    wanted = old | {"design": old["design"] | values}
-    if origins:
-        wanted |= {"origin": old["origin"] | origins}
+    wanted = old | {"design": {k: v for k, v in old["design"].items() if k != "title"} | values}
+    if "origin" in old:
+        wanted["origin"] = {k: v for k, v in old["origin"].items() if k != "design.title"} | origins
     if parse_toml(new, source) != wanted:  # inline tables, dotted keys: legal, but nothing to edit by lines
         raise InputError(
             source, "[design] cannot be renamed", legal='lines like `name = "..."` below [design]'
         )
     return new
+
+
+def _without(text: str, table: str, name: str) -> str:
+    """TOML text without a key that stands on a line of its own below [table]."""
+    here, lines = "", []
+    for line in text.split("\n"):
+        if header := re.match(r"\s*\[\s*([^\[\]]+?)\s*\]", line):
+            here = header[1]
+        key = re.match(r'\s*"?([\w.-]+)"?\s*=', line)
+        if not (here == table and key and key[1] == name):
+            lines.append(line)
+    return "\n".join(lines)
 
 
 def _with_values(text: str, table: str, values: dict[str, str]) -> str:

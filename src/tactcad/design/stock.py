@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from functools import cache
 from pathlib import Path
 
+from .data_table import data_rows
 from .materials import family
 
 # mm, plus and minus, of sheet that EN 485-4 does not hold for; chosen: measure it.
@@ -21,6 +21,5 @@ def sheet_tolerance(thickness: float, density: float) -> float:
 
 @cache
 def _rows() -> tuple[tuple[float, float], ...]:
-    text = (Path(__file__).parent / "data" / "sheet_thickness.csv").read_text(encoding="utf-8")
-    lines = (line for line in text.splitlines() if not line.startswith("#"))
-    return tuple((float(row["to"]), float(row["tolerance"])) for row in csv.DictReader(lines))
+    rows = data_rows(Path(__file__).parent / "data" / "sheet_thickness.csv")
+    return tuple((float(row["to"]), float(row["tolerance"])) for row in rows)

@@ -40,9 +40,9 @@ class Identity:
             "short name: folder, part numbers and file names start with it",
         )
     )
-    title: str = given(_line("title on drawings"))
     revision: str = given(TextLine(r"[A-Z]{1,2}", "one or two capital letters", "revision index"))
     date: str = given(Day("date of issue; the only date in any output"))
+    title: str = given(_line("title on drawings"), None, "tactile array, and its elements by row")
     author: str | None = given(_line("creator, for the title block"), None, "not stated")
     organisation: str | None = given(
         _line("legal owner, for the title block; a release needs one"), None, "not stated"

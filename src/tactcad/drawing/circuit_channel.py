@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
 from tactcad.circuit.netlist import GROUND, Component, Netlist
-from tactcad.circuit.wiring_list import COLOURS
+from tactcad.parts.lead_route import COLOURS
 
 from . import circuit_symbols as symbols
 from .circuit_symbols import SMALL, label, line
-from .ink import Item
+from .ink import Item, Point
 from .page import Page
 from .paper import A3
 from .title import notes
@@ -42,7 +42,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
     leads = [c for c in circuit.of_kind("lead") if c.element == n]
     three = len(leads) == 3
     rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
-    colours = COLOURS[len(leads)]
+    colours = COLOURS["three-wire" if three else "two-wire"]
     connector = _connector_of(circuit, leads[0].net("2"))
     x, terminal, pin = 42.0, 56.0, 90.0
     items: list[Item] = [
@@ -123,7 +123,8 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
     for i, role in enumerate((*address, "enable")):
         y, own = 154.0 - 6.0 * i, "E3" if role == "enable" else role
         items.append(label((224.0, y - 0.9), f"{own} {_pin(decoder, own)}", SMALL, "end"))
-        named = f"{multiplexer.net(role)}, also {multiplexer.designator}.{_pin(multiplexer, role)}"
+        also = "" if role == "enable" else f", also {multiplexer.designator}.{_pin(multiplexer, role)}"
+        named = f"{decoder.net(own)}{also}"
         items += symbols.stub((226.0, y), 0.0, named)
     return items
 
@@ -154,14 +155,29 @@ def _amplifier(circuit: Netlist, b: int) -> list[Item]:
         *symbols.stub(out, 0.0, part.net("out")),
         label((out[0] + 1.0, middle + 1.5), _pin(part, "out"), SMALL),
     ]
-    gain = next((c for c in circuit.of_kind("resistor") if c.board == b and not c.element), None)
-    joined = f"{gain.designator} {gain.value} between" if gain else "joined:" if part.net("rg1") else "open:"
+    items += _gain(circuit, part, (x, middle))
     lines = [
-        f"{joined} pins {_pin(part, 'rg1')} and {_pin(part, 'rg2')} (gain)",
         f"pin {_pin(part, 'ref')} (REF) on {GROUND}",
         f"pins {_pin(part, 'positive')}, {_pin(part, 'negative')} on VPOS, VNEG",
     ]
-    return [*items, *(label((x + 4.0, middle - 15.0 - 4.0 * i), t, SMALL) for i, t in enumerate(lines))]
+    return [*items, *(label((x + 4.0, middle - 32.0 - 4.0 * i), t, SMALL) for i, t in enumerate(lines))]
+
+
+def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
+    """What sets the gain between two pins on the triangle's lower edge: a resistor, a joint, or nothing."""
+    (x, y), slope = at, 0.5
+    left, right = ((x + dx, y - 12.0 + slope * dx) for dx in (3.0, 19.0))
+    resistor = next((c for c in circuit.of_kind("resistor") if c.board == part.board and not c.element), None)
+    low = y - 18.0
+    items: list[Item] = [
+        label((left[0] - 1.0, low + 0.6), _pin(part, "rg1"), SMALL, "end"),
+        label((right[0] + 1.0, low + 0.6), _pin(part, "rg2"), SMALL),
+    ]
+    if resistor:
+        return items + symbols.resistor_below(left, right, low, resistor.designator, resistor.value)
+    if part.net("rg1"):
+        return [*items, line(left, (left[0], low), (right[0], low), right)]
+    return [*items, *(line(p, (p[0], low)) for p in (left, right))]
 
 
 def _card(circuit: Netlist, b: int) -> list[Item]:

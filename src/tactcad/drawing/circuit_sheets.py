@@ -66,12 +66,12 @@ def circuit_written(order: CircuitOrder) -> Written:
 def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
     """Every sheet, its layout clean; raises CheckFailure where it is not."""
     layout = Layout(design)
-    circuit, cut = netlist(layout), wiring(layout)
+    circuit = netlist(layout)
     pages = [
         channel_page(circuit, _channel_notes(layout)),
         *channel_pages(circuit),
         plan_page(layout, _plan_notes(layout)),
-        *lead_pages(cut),
+        *lead_pages(wiring(layout, circuit)),
     ]
     sheets = _sheets(design, pages, draft, sample)
     for sheet in sheets:
@@ -82,7 +82,10 @@ def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) ->
 
 
 def _sheets(design: Design, pages: Sequence[Page], draft: bool, sample: bool) -> list[DrawnSheet]:
-    block = block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample)
+    block = replace(
+        block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample),
+        dimensioned=False,
+    )
     sheets = []
     for n, page in enumerate(pages, start=1):
         own = replace(block, scale=page.scale, sheet=n, sheets=len(pages), document_type=page.document_type)
@@ -100,8 +103,8 @@ def _channel_notes(layout: Layout) -> list[str]:
         "transistor, R resistor, U circuit, W lead, X terminal",
         f"The bridges' supply, EXC, is {r.excitation:g} V over GND; VPOS {r.supply_positive:g} V, VNEG "
         f"{r.supply_negative:g} V, V5 5 V",
-        "The address names the channel; ENABLE high opens its switch and leads its bridge to the amplifier, "
-        "all others are off",
+        "The address names the channel whose bridge is led to the amplifier; ENABLE high turns its switch "
+        "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
         f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
         "the output is read between OUT and GND",
         "All other channels are alike: next sheets; inputs of channels that are not used are on GND",
@@ -112,8 +115,8 @@ def _plan_notes(layout: Layout) -> list[str]:
     w, count = layout.design.wiring, leads(layout)
     return [
         "Seen on the gauges' side",
-        f"{count} leads an element, {w.wire}, {wire_metres(layout):g} m in all; cut lengths in the wiring "
-        f"list, slack of {w.slack:.0%} in them",
+        f"{count} leads an element, {w.wire}, {wire_metres(layout):g} m of each colour; cut lengths in the "
+        f"wiring list, slack of {w.slack:.0%} in them",
         "Terminals lie in the recess, behind its wall (a), leads from there to the rear end (c); "
         "bonded from b to c, "
         f"{w.bonded:g} mm: strain relief",

@@ -6,7 +6,7 @@ substrate's arrow.
 
 from __future__ import annotations
 
-from .ink import THIN, VISIBLE, DrawnArc, Item, LineType, Point, Stroke, Text, arrow, polar, rectangle
+from .ink import THIN, VISIBLE, DrawnArc, Fill, Item, LineType, Point, Stroke, Text, polar, rectangle
 
 LINE = LineType("circuit", 0.35)
 SMALL, USUAL = 1.8, 2.5  # heights of letters, ISO 3098
@@ -42,6 +42,18 @@ def resistor(top: Point, bottom: Point, name: str, value: str) -> list[Item]:
         line((x, middle - 5.0), bottom),
         label((x + 3.5, middle + 0.8), name),
         label((x + 3.5, middle - 3.0), value, SMALL),
+    ]
+
+
+def resistor_below(left: Point, right: Point, y: float, name: str, value: str) -> list[Item]:
+    """Level at height y, hung on two connections from above; name and value below it."""
+    middle = (left[0] + right[0]) / 2
+    return [
+        line(left, (left[0], y), (middle - 5.0, y)),
+        rectangle(middle - 5.0, y - 2.0, 10.0, 4.0, LINE, "symbol"),
+        line((middle + 5.0, y), (right[0], y), right),
+        label((middle, y - 6.2), name, anchor="middle"),
+        label((middle, y - 9.6), value, SMALL, "middle"),
     ]
 
 
@@ -91,7 +103,7 @@ def mosfet(drain: Point, gate: Point, name: str, value: str) -> list[Item]:
         line(drain, (x, middle + 4.0), (channel, middle + 4.0)),
         *pieces,
         line((channel, middle), (x, middle)),
-        arrow((channel, middle), (x, middle), 2.0, "symbol"),
+        Fill(((channel, middle), (x + 1.2, middle + 1.1), (x + 1.2, middle - 1.1)), "symbol"),
         line((channel, middle - 4.0), (x, middle - 4.0)),
         line((x, middle), (x, middle - 10.0)),
         *ground((x, middle - 10.0)),

@@ -38,6 +38,7 @@ class TitleBlock:
     material: str = ""
     mass: float | None = None
     finish: str = ""
+    dimensioned: bool = True  # no general tolerance and no projection stands on a sheet without a dimension
 
 
 SAMPLE = "sample, not for order"  # document status of what has no owner
@@ -68,7 +69,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
             (
                 (58, "Material and temper", t.material),
                 (24, "Mass", mass),
-                (60, "General tolerances", GENERAL_TOLERANCES),
+                (60, "General tolerances", GENERAL_TOLERANCES if t.dimensioned else ""),
                 (18, "Scale", t.scale),
                 (20, "Projection", ""),
             ),
@@ -77,7 +78,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
             12,
             (
                 (96, "Surface finish", t.finish),
-                (54, "Dimensions", ("mm, angles in degrees", TOLERANCING)),
+                (54, "Dimensions", ("mm, angles in degrees", TOLERANCING) if t.dimensioned else "mm"),
                 (15, "Paper", paper.name),
                 (15, "Language", "en"),
             ),
@@ -115,7 +116,7 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
         for w, heading, value in cells:
             items += _cell(x, y, w, height, heading, value)
             x += w
-    return items + _first_angle((x0 + 170.0, y0 + HEIGHT - 7.6))
+    return items + (_first_angle((x0 + 170.0, y0 + HEIGHT - 7.6)) if t.dimensioned else [])
 
 
 def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tuple[str, ...]) -> list[Item]:

@@ -8,12 +8,11 @@ import csv
 import io
 import re
 
-from tactcad.circuit.bridges import netlist
 from tactcad.circuit.kicad import kicad_bytes
 from tactcad.circuit.netlist import Netlist
 from tactcad.circuit.netlist_table import netlist_csv
 from tactcad.circuit.spice_deck import deck_bytes
-from tactcad.circuit.wiring_list import wiring_csv
+from tactcad.circuit.wiring_list import wiring, wiring_csv
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.layout import Layout
@@ -21,32 +20,30 @@ from tactcad.parts.layout import Layout
 Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 
 
-def kicad_file(design: Design) -> bytes:
+def kicad_file(design: Design, circuit: Netlist) -> bytes:
     """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
-    circuit, d = netlist(Layout(design)), design.design
+    d = design.design
     data = kicad_bytes(circuit, d.title, d.date, d.revision)
     check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
     return data
 
 
-def table_file(design: Design) -> bytes:
+def table_file(design: Design, circuit: Netlist) -> bytes:
     """The netlist as CSV. Raises CheckFailure where it does not read back as the circuit."""
-    circuit = netlist(Layout(design))
     data = netlist_csv(circuit)
     check_nets("the netlist's table", nets_in_table(data), circuit)
     return data
 
 
-def deck_file(design: Design) -> bytes:
+def deck_file(design: Design, circuit: Netlist) -> bytes:
     """The SPICE deck."""
-    return deck_bytes(netlist(Layout(design)))
+    return deck_bytes(circuit)
 
 
-def wiring_file(design: Design) -> bytes:
+def wiring_file(design: Design, circuit: Netlist) -> bytes:
     """The leads to cut. Raises CheckFailure where they are not the circuit's, each once."""
-    layout = Layout(design)
-    data = wiring_csv(layout)
-    check_leads(data, netlist(layout))
+    data = wiring_csv(wiring(Layout(design), circuit))
+    check_leads(data, circuit)
     return data
 
 

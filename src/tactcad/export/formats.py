@@ -10,11 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from tactcad.parts.description import NOT_MADE, Part
+
 from .shapes import Shapes, picture_bytes
 
 if TYPE_CHECKING:
-    from tactcad.parts.description import Part
-
     from .step_text import Header
 
 
@@ -37,7 +37,7 @@ def _step(part: Part, shapes: Shapes, head: Header) -> bytes:
 
 def has_limits(part: Part) -> bool:
     """Whether it is made here and states any limit."""
-    made = part.process not in ("bought", "reference")
+    made = part.process not in NOT_MADE
     return made and any((part.characteristics, part.geometric, part.datums))
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.parts.description import Extrusion, ModelFile, Part, Revolution
+from tactcad.parts.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
 
@@ -127,9 +127,10 @@ def circuit_products(design: Design, shapes: Shapes) -> list[Output]:
     from . import circuit_files as files
 
     stem = f"circuit/{design.name}-circuit_{design.design.revision}"
-    key = digest(("circuit", shapes.made_by, netlist(Layout(design)), design.design))
+    circuit = netlist(Layout(design))
+    key = digest(("circuit", shapes.made_by, circuit, design.design))
     return [
-        Output(path, kind, "", f"{key} {path}", partial(make, design))
+        Output(path, kind, "", f"{key} {path}", partial(make, design, circuit))
         for path, kind, make in (
             (f"{stem}.net", "netlist", files.kicad_file),
             (f"{stem}.csv", "netlist", files.table_file),
@@ -211,7 +212,7 @@ def drawing_products(
 
     wanted = []
     for part in parts:
-        if part.process not in ("bought", "reference"):
+        if part.process not in NOT_MADE:
             files = _made_from(part, sources)
             key = digest(("drawing", shapes.made_by, part, [f.key for f in files], *common))
             wanted.append(

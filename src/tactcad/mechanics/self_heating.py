@@ -24,7 +24,7 @@ class Power:
     """What heats a gauge. resistance ohm; conductivity of the backing W/(m K); on_time and period s.
 
     resistance_per_kelvin: dR/R of a grid warmer than its leaf, 1/K. reference_mismatch: share of it that
-    the three reference gauges do not cancel. leaf_resistance: from under the grid to the body, K/W
+    the bridge's three other arms do not cancel. leaf_resistance: from under the grid to the body, K/W
     (`leaf_resistance`); 0 for a leaf that conducts perfectly.
     """
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tactcad.design.materials import leaf_conductivity, modulus_per_kelvin
+from tactcad.design.materials import modulus_per_kelvin
 from tactcad.design.messages import InputError
 from tactcad.design.tree import Design, Tolerance
 from tactcad.fem.layered_leaf import Layer
@@ -14,8 +14,9 @@ from tactcad.lab import pads
 from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
-from tactcad.mechanics.self_heating import Power, leaf_resistance
+from tactcad.mechanics.self_heating import Power
 from tactcad.paper.gauge_layers import gauge_layers
+from tactcad.parts.bridge_figures import power_of
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
 
@@ -76,8 +77,6 @@ def from_design(design: Design) -> ArrayModel:
         raise InputError(f"design {design.name}", f"has no [{lacking}] table, which a validation needs")
     layout = Layout(design)
     places = layout.elements
-    gauge, readout = design.gauge, design.readout
-    conducts = leaf_conductivity(design.material.conductivity)
     return ArrayModel(
         design.name,
         np.array([p.number for p in places]),
@@ -88,17 +87,9 @@ def from_design(design: Design) -> ArrayModel:
         design.element.pad_height,
         *pads.places(layout),
         design_gauge(design),
-        design_readout(design),
-        Power(
-            gauge.resistance,
-            gauge.carrier_conductivity,
-            gauge.resistance_per_kelvin,
-            readout.reference_mismatch,
-            readout.on_time,
-            readout.period,
-            # of the element whose leaf carries heat away worst
-            max(leaf_resistance(p.hinge.l, p.hinge.t, design.sheet.thickness, conducts) for p in places),
-        ),
+        # leads and switch of the published array are not known
+        replace(design_readout(design), transmission=1.0),
+        power_of(layout),
         design.tolerance,
         design.stiffness_factor or 1.0,
         modulus_per_kelvin(design.material.alloy),

@@ -6,29 +6,18 @@ from __future__ import annotations
 
 from math import log, pi
 
-from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.materials import leaf_conductivity
 from tactcad.design.tree import Design
 from tactcad.mechanics import self_heating
-from tactcad.mechanics.self_heating import Heating, Power
+from tactcad.mechanics.self_heating import Heating, Power, leaf_resistance
 
-from .electronic_parts import completion_resistance
+from .electronic_parts import completion_drift, completion_resistance
 from .hinge_section import design_gauge
 from .layout import Layout
 from .lead_route import longest_lead_resistance
 
 COPPER = 0.0039  # 1/K, annealed copper at 20 C, IEC 60028
-
-
-def completion_tolerance(design: Design) -> float:
-    """Of each completing resistance, relative."""
-    own = design.readout.completion_tolerance
-    return COMPLETIONS[design.readout.completion].tolerance if own is None else own
-
-
-def completion_drift(design: Design) -> float:
-    """By which a completing resistance changes otherwise than the gauge's, 1/K."""
-    own = design.readout.completion_drift
-    return COMPLETIONS[design.readout.completion].drift if own is None else own
 
 
 def bridge_signal(
@@ -61,18 +50,16 @@ def bridge_signal(
     return foot + over * active / (active + beside), foot + over * lower / (upper + lower)
 
 
-def imbalance(layout: Layout, tolerance: float | None = None) -> tuple[float, float]:
+def imbalance(design: Design, lead: float, arm: float) -> tuple[float, float]:
     """Least and largest output of the amplifier with no load on any element, V.
 
     Parameters
     ----------
-    layout
-        The array.
-    tolerance
-        Of the completing resistances; by default the design's.
+    design, lead
+        As for `bridge_signal`.
+    arm
+        Tolerance of the completing resistances.
     """
-    design, lead = layout.design, longest_lead_resistance(layout)
-    arm = completion_tolerance(design) if tolerance is None else tolerance
     ends = [amplified(design, lead, 0.0, sign, arm) for sign in (-1.0, 1.0)]
     return min(ends), max(ends)
 
@@ -105,15 +92,16 @@ def settling_time(design: Design) -> float:
     return multiplexer.settling + max(log(2.0 ** (r.adc_bits + 1)) * tau, amplifier.settling)
 
 
-def heating(design: Design) -> Heating:
+def heating(layout: Layout) -> Heating:
     """Of a gauge, at the end of a reading in the settled cycle."""
-    r = design.readout
-    return self_heating.switched(r.excitation, design_gauge(design), power_of(design))
+    d = layout.design
+    return self_heating.switched(d.readout.excitation, design_gauge(d), power_of(layout))
 
 
-def power_of(design: Design) -> Power:
-    """What heats the design's gauges."""
-    gauge, r = design.gauge, design.readout
+def power_of(layout: Layout) -> Power:
+    """What heats the design's gauges, on the leaf that carries heat away worst."""
+    d = layout.design
+    gauge, r, conducts = d.gauge, d.readout, leaf_conductivity(d.material.conductivity)
     return Power(
         gauge.resistance,
         gauge.carrier_conductivity,
@@ -121,14 +109,16 @@ def power_of(design: Design) -> Power:
         r.reference_mismatch,
         r.on_time,
         r.period,
+        max(leaf_resistance(p.hinge.l, p.hinge.t, d.sheet.thickness, conducts) for p in layout.elements),
     )
 
 
 def drift(layout: Layout) -> float:
     """By how much the amplifier's output drifts between zero and reading, V, as the half-width of a band.
 
-    Root of the sum of squares of: the completion's three arms, the amplifier's offset, the leads' warmth
-    (tolerance.zero_drift; of two wires also their whole resistance in the gauge's arm). Self-heating is alike
+    Root of the sum of squares of: the gauge's thermal output, the completion's three arms, the amplifier's
+    offset, the leads' warmth (tolerance.zero_drift; of two wires also their whole resistance in the gauge's
+    arm). Self-heating is alike
     in all readings of a settled cycle, and so in the zero.
     """
     d = layout.design
@@ -138,6 +128,7 @@ def drift(layout: Layout) -> float:
     if r.connection == "two-wire":
         leads += 2 * longest_lead_resistance(layout) / d.gauge.resistance * COPPER * span
     shares = (
+        per_x * d.gauge.factor * d.gauge.thermal_output * span,
         per_x * 3**0.5 * completion_drift(d) * span,
         r.gain * AMPLIFIERS[r.amplifier].drift * span,
         per_x * leads,

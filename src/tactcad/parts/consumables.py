@@ -16,17 +16,19 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
     """Gauge and bonding supplies of the array, none of them verified in a maker's own data."""
     g, material = layout.design.gauge, layout.design.material
     n = len(layout.elements)
+    bonding = layout.design.bonding
+    longest = f", at most {bonding.terminal_length:g} mm long" if bonding else ""
     spare_gauges = bonded_spares(n)
-    ohm = f"{g.resistance:g} ohm"
+    ohm, metal = f"{g.resistance:g} ohm", family(material.density) or material.alloy
     return (
         Supply(
             GAUGE,
-            f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, "
-            f"for {family(material.density) or material.alloy}",
+            f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for {metal}",
             n,
             "pcs",
-            f"strain gauge {ohm}, grid {g.grid_length:g} mm, carrier trimmed to "
-            f"{g.carrier_arm_side + g.carrier_body_side:g} x {g.carrier_width:g} mm",
+            f"foil strain gauge {ohm}, gauge factor {g.factor:g}, grid {g.grid_length:g} x "
+            f"{g.grid_width:g} mm, self-compensated for {metal}, tabs at one end; carrier trimmed to "
+            f"{g.carrier_arm_side + g.carrier_body_side:g} x {g.carrier_width:g} mm; any maker's",
             alternates="any foil gauge of that grid and resistance",
             spares=spare_gauges,
             consumable=False,
@@ -36,7 +38,7 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             "solder terminal pair, self-adhesive",
             n,
             "pcs",
-            "strain gauge terminal strip",
+            f"solder terminal for strain gauges, two pads{longest}; any maker's",
             spares=spare_gauges,
         ),
         Supply("ADHESIVE", "strain gauge adhesive, cold curing", 1, "pack", "cyanoacrylate gauge adhesive"),

@@ -18,7 +18,9 @@ from tactcad.design.messages import CheckFailure
 from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictions
 
 Vector = tuple[float, float, float]
-Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought"]
+Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought", "included"]
+NOT_MADE = ("bought", "included", "reference")
+NOT_ORDERED = ("included", "reference")
 
 
 def vector(values: Iterable[float]) -> Vector:
@@ -228,7 +230,7 @@ class Part:
     part_no, name
         Equal parts share a number.
     process
-        How it is made, or "bought".
+        How it is made; "bought"; "included" with another that is bought; "reference" for what is at hand.
     material
         With its density.
     body
@@ -317,4 +319,4 @@ class Part:
 
     @property
     def bought(self) -> bool:
-        return self.process == "bought"
+        return self.process in ("bought", "included")

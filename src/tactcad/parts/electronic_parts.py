@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from math import floor, log10
 
-from tactcad.design.electronics import AMPLIFIERS
+from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS
 from tactcad.design.tree import Design
 
-GAUGE, COMPLETION, TERMINAL, LEAD = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL", "LEAD-WIRE"
+GAUGE, COMPLETION, TERMINAL = "STRAIN-GAUGE", "BRIDGE-RESISTOR", "TERMINAL"
 GAIN_RESISTOR = "GAIN-RESISTOR"
+BOARD, CARD_CABLE, STANDOFFS = "CIRCUIT-BOARD", "CABLE-CARD", "STANDOFFS"
 # At every supply pin of every circuit, and at the bridges' supply of every board; chosen: usual practice.
 DECOUPLING, RESERVOIR = "CAPACITOR-100N", "CAPACITOR-10U"
 TO_LEADS, TO_CARD = "HEADER-LEADS", "HEADER-CARD"
@@ -16,10 +17,27 @@ ON_SUPPLIES = 5  # of decoupling capacitors: two at the amplifier, two at the mu
 CARD_SIGNALS = 8  # of the connector to the card beside the address: supplies, ground twice, enable, output
 
 
+def lead_part(colour: str) -> str:
+    """Lead wire of a colour (code of IEC 60757)."""
+    return f"LEAD-WIRE-{colour}"
+
+
 def completion_resistance(design: Design) -> float:
     """Of each of a bridge's three other arms, ohm."""
     own = design.readout.completion_resistance
     return design.gauge.resistance if own is None else own
+
+
+def completion_tolerance(design: Design) -> float:
+    """Of each completing resistance, relative."""
+    own = design.readout.completion_tolerance
+    return COMPLETIONS[design.readout.completion].tolerance if own is None else own
+
+
+def completion_drift(design: Design) -> float:
+    """Temperature coefficient of a completing resistance, 1/K."""
+    own = design.readout.completion_drift
+    return COMPLETIONS[design.readout.completion].drift if own is None else own
 
 
 def gain_resistance(design: Design) -> float | None:

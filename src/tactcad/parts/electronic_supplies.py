@@ -1,92 +1,150 @@
-"""Lines of the bill for what the array is read with: bridge completion, leads, and the boards' parts."""
+"""Lines of the bill for what the array is read with: bridge completion, leads, and the boards' parts.
+
+A designation says all that a part is ordered by; where it names a maker's number, an equal part will do.
+"""
 
 from __future__ import annotations
 
-from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES
+from dataclasses import dataclass
+
+from tactcad.design.electronics import AMPLIFIERS, COMPLETIONS, MULTIPLEXERS, SWITCHES, WIRES, Bought
 
 from .boards import boards
+from .circuit_board import board_size, header_pins
 from .electronic_parts import (
-    CARD_SIGNALS,
+    BOARD,
+    CARD_CABLE,
     COMPLETION,
     DECOUPLING,
     GAIN_RESISTOR,
-    LEAD,
     ON_SUPPLIES,
     RESERVOIR,
+    STANDOFFS,
     TO_CARD,
     TO_LEADS,
+    completion_drift,
     completion_resistance,
+    completion_tolerance,
     gain_resistance,
+    lead_part,
 )
 from .layout import Layout
-from .lead_route import lead_routes, leads
+from .lead_route import colours, lead_routes, leads
 from .spares import board_spares, bonded_spares
 from .supply import Supply
+
+COLOUR_NAMES = {"RD": "red", "WH": "white", "BK": "black"}
+
+
+@dataclass(frozen=True)
+class _Order:
+    """Who makes a part under which number; `verified`: read in the maker's own sheet."""
+
+    maker: str = ""
+    mpn: str = ""
+    verified: bool = False
 
 
 def electronic_supplies(layout: Layout) -> tuple[Supply, ...]:
     """All of them."""
-    return (completion_supply(layout), lead_supply(layout), *board_supplies(layout))
+    return (completion_supply(layout), *lead_supplies(layout), *board_supplies(layout))
 
 
 def wire_metres(layout: Layout) -> float:
-    """Lead wire in all, m, each lead as cut."""
-    return round(sum(route.cut for route in lead_routes(layout)) * leads(layout) * 1e-3, 6)
+    """Lead wire of one colour, m, each lead as cut."""
+    return round(sum(route.cut for route in lead_routes(layout)) * 1e-3, 6)
 
 
-def lead_supply(layout: Layout) -> Supply:
-    """Lead wire, each lead as cut."""
+def lead_supplies(layout: Layout) -> tuple[Supply, ...]:
+    """Lead wire, a line a colour, each lead as cut; spares by the rule for the gauges that they are for."""
     n, wire, metres = len(layout.elements), WIRES[layout.design.wiring.wire], wire_metres(layout)
-    return Supply(
-        LEAD,
-        f"lead wire, {leads(layout)} per gauge, in their colours",
-        metres,
-        "m",
-        f"{wire.name} stranded, polyimide or PTFE insulated, {wire.outer:g} mm over insulation",
-        spares=round(metres * bonded_spares(n) / n, 1),
+    return tuple(
+        Supply(
+            lead_part(colour),
+            f"lead wire, {COLOUR_NAMES[colour]}, one lead a gauge",
+            metres,
+            "m",
+            f"{wire.name} stranded, {COLOUR_NAMES[colour]}, polyimide or PTFE insulated, "
+            f"{wire.outer:g} mm over insulation",
+            spares=round(metres * bonded_spares(n) / n, 2),
+        )
+        for colour in colours(layout)
     )
 
 
 def board_supplies(layout: Layout) -> tuple[Supply, ...]:
-    """What stands on the boards, bought."""
+    """The boards, and what stands on them."""
     d, r = layout.design, layout.design.readout
-    n, made = len(layout.elements), boards(layout)
+    n, count = len(layout.elements), len(boards(layout))
     amplifier, switch, multiplexer = AMPLIFIERS[r.amplifier], SWITCHES[r.switch], MULTIPLEXERS[r.multiplexer]
-    per_gauge, ohm = leads(layout), gain_resistance(d)
+    to_leads, to_card = header_pins(d)
+    length, width = board_size(d)
+    name, ohm = f"{d.name}-circuit_{d.design.revision}.net", gain_resistance(d)
     lines = [
-        _part(switch.mpn, "MOSFET in a bridge's return", n, switch.maker, switch.mpn),
-        _part(amplifier.mpn, "instrumentation amplifier", len(made), amplifier.maker, amplifier.mpn),
+        _part(
+            switch.mpn,
+            "MOSFET in a bridge's return",
+            n,
+            f"N-channel MOSFET {switch.mpn}, SOT-23, at most {switch.on_ohm:g} ohm at a gate of 4.5 V, "
+            f"{switch.most_volts:g} V",
+            _by(switch),
+        ),
+        _part(
+            amplifier.mpn,
+            "instrumentation amplifier",
+            count,
+            f"instrumentation amplifier {amplifier.mpn}, SOIC-8",
+            _by(amplifier),
+        ),
         _part(
             multiplexer.mpn,
             f"differential multiplexer, {multiplexer.channels} channels",
-            len(made),
-            multiplexer.maker,
-            multiplexer.mpn,
+            count,
+            f"differential analogue multiplexer {multiplexer.mpn}",
+            _by(multiplexer),
         ),
-        _part(multiplexer.decoder, "decoder, 3 to 8 lines, 5 V", len(made), designation=multiplexer.decoder),
+        _part(
+            multiplexer.decoder,
+            "decoder, 3 to 8 lines, 5 V",
+            count,
+            "74HC238 decoder, outputs active high, SO16 (74HC238D); any maker's 74HC238",
+            _Order("Nexperia", "74HC238D", True),
+        ),
         _part(
             DECOUPLING,
             "decoupling capacitor",
-            (ON_SUPPLIES + 1) * len(made),
-            designation="ceramic capacitor 100 nF X7R 50 V, 0805",
+            (ON_SUPPLIES + 1) * count,
+            "ceramic capacitor 100 nF, 10 %, X7R, 50 V, 0805; or equal",
+            _Order("KEMET", "C0805C104K5RAC", True),
         ),
         _part(
             RESERVOIR,
             "capacitor at the bridges' supply",
-            len(made),
-            designation="ceramic capacitor 10 uF X7R 25 V, 1206",
+            count,
+            "ceramic capacitor 10 uF, 10 %, X7R, 25 V, 1206; any maker's",
+        ),
+        _part(TO_LEADS, f"pin header for leads, {leads(layout)} pins a gauge", count, _header(to_leads)),
+        _part(TO_CARD, "pin header to the converter's card", count, _header(to_card)),
+        _part(
+            CARD_CABLE,
+            "cable from a board to the converter's card",
+            count,
+            f"cable, {to_card} wires AWG 26, 0.5 m: crimp socket 2.54 mm, {to_card} pins in one row, at one "
+            "end, the other end free for the card's terminals",
         ),
         _part(
-            TO_LEADS,
-            f"pin header for leads, {per_gauge} pins a gauge",
-            len(made),
-            designation=f"pin header, {per_gauge * multiplexer.channels} pins, 2.54 mm",
+            BOARD,
+            "circuit board, bare; laid out by who makes it",
+            count,
+            f"circuit board to {name}, all boards alike, with every channel of the multiplexer: FR-4 1.6 mm, "
+            f"2 layers, copper 35 um, tin or gold on pads, at least {length:g} x {width:g} mm, a hole of "
+            "3.2 mm in each corner",
         ),
         _part(
-            TO_CARD,
-            "pin header to the converter's card",
-            len(made),
-            designation=f"pin header, {CARD_SIGNALS + len(multiplexer.address)} pins, 2.54 mm",
+            STANDOFFS,
+            "standoffs under a board",
+            count,
+            "set of 4 standoffs M3 x 10, threaded at both ends, with 8 screws M3 x 6",
         ),
     ]
     if ohm is not None:
@@ -94,16 +152,22 @@ def board_supplies(layout: Layout) -> tuple[Supply, ...]:
             _part(
                 GAIN_RESISTOR,
                 "resistor that sets the gain",
-                len(made),
-                designation=f"thin film resistor {ohm:g} ohm (E192), 0.1 %, 10 ppm/K",
+                count,
+                f"thin film resistor {ohm:g} ohm (E192), 0.1 %, 10 ppm/K, 0.1 W, 0805; any maker's",
             )
         )
     return tuple(lines)
 
 
-def _part(
-    number: str, what: str, qty: int, maker: str = "", mpn: str = "", designation: str = "", ok: bool = False
-) -> Supply:
+def _by(part: Bought) -> _Order:
+    return _Order(part.maker, part.mpn, part.verified)
+
+
+def _header(pins: int) -> str:
+    return f"pin header 2.54 mm, {pins} pins in one row, straight, through hole; any maker's"
+
+
+def _part(number: str, what: str, qty: int, designation: str, order: _Order = _Order()) -> Supply:
     return Supply(
         number,
         what,
@@ -112,27 +176,23 @@ def _part(
         designation,
         spares=board_spares(qty),
         consumable=False,
-        manufacturer=maker,
-        mpn=mpn,
-        verified=ok,
+        manufacturer=order.maker,
+        mpn=order.mpn,
+        verified=order.verified,
     )
 
 
 def completion_supply(layout: Layout) -> Supply:
     """The three other arms of every bridge."""
-    d, n = layout.design, len(layout.elements)
+    d, n = layout.design, 3 * len(layout.elements)
     row, ohm = COMPLETIONS[d.readout.completion], completion_resistance(d)
-    gauges = d.readout.completion == "reference-gauge"
-    return Supply(
+    tolerance, drift = completion_tolerance(d), completion_drift(d)
+    own = tolerance == row.tolerance and drift == row.drift
+    return _part(
         COMPLETION,
-        f"bridge completion, {ohm:g} ohm, {row.description}",
-        3 * n,
-        "pcs",
-        f"strain gauge {ohm:g} ohm, as STRAIN-GAUGE" if gauges else f"{row.description}, {ohm:g} ohm",
-        alternates="" if gauges else "reference gauge on the same alloy",
-        spares=3 * bonded_spares(n),
-        consumable=False,
-        manufacturer=row.maker,
-        mpn=row.mpn,
-        verified=row.verified,
+        "resistor that completes a bridge, three a gauge",
+        n,
+        f"{row.description} {ohm:g} ohm, {100 * tolerance:g} %, {1e6 * drift:g} ppm/K, {row.watts:g} W, "
+        f"{row.package}" + (f" ({row.mpn}); or equal" if row.mpn and own else "; any maker's"),
+        _by(row) if own else _Order(),
     )

@@ -5,21 +5,21 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TypeVar
 
-from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
 from tactcad.design.materials import ALLOYS, OPTIONAL, PROPERTIES, Alloy
 from tactcad.design.tree import Design
 from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.derivative import elasticity
 from tactcad.mechanics.gauge_signal import Gauge
-from tactcad.mechanics.readout import ReadOut
+from tactcad.mechanics.readout import ReadOut, transmission
 from tactcad.mechanics.readout_noise import sample_noise
 from tactcad.mechanics.section import HingeSection
 
 from .electronic_parts import completion_resistance
 from .layout import ElementPlace, HingeShape, Layout
+from .lead_route import longest_lead_resistance
 
 T = TypeVar("T")
 
@@ -93,10 +93,20 @@ def design_gauge(design: Design) -> Gauge:
 
 
 def design_readout(design: Design) -> ReadOut:
-    """The design's bridge, amplifier and converter."""
-    given = design.readout
+    """The design's bridge, amplifier and converter, with the longest of its leads."""
+    given, lead = design.readout, longest_lead_resistance(Layout(design))
+    left = transmission(
+        design.gauge.resistance,
+        completion_resistance(design),
+        lead,
+        SWITCHES[given.switch].on_ohm,
+        given.connection == "three-wire",
+    )
     noise = derived_noise(design) if given.noise is None else given.noise
-    return _filled(ReadOut, replace(given, noise=noise))
+    own = {
+        name: getattr(given, name) for name in inspect.signature(ReadOut).parameters if hasattr(given, name)
+    }
+    return ReadOut(**own | {"noise": noise, "transmission": left})
 
 
 def derived_noise(design: Design) -> float:

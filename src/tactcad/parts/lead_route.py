@@ -18,6 +18,9 @@ from .boards import ReadBoard, boards
 from .description import Vector
 from .layout import ElementPlace, Layout
 
+# Codes of IEC 60757. Red and white are both soldered to the gauge's first tab, black to its second, as in
+# strain gauge practice; of two wires there is no white one.
+COLOURS = {"three-wire": ("RD", "WH", "BK"), "two-wire": ("RD", "BK")}
 AHEAD_OF_LEADS = 0.5  # terminals behind the recess's wall, mm; chosen: a tool to press them down
 WHOLE = 5.0  # leads are cut to whole steps of so many mm; chosen: what a rule is read to
 
@@ -62,9 +65,14 @@ def recess_length(layout: Layout) -> float:
     return layout.rear_end - layout.recess_start
 
 
+def colours(layout: Layout) -> tuple[str, ...]:
+    """Of each gauge's leads, in their order."""
+    return COLOURS[layout.design.readout.connection]
+
+
 def leads(layout: Layout) -> int:
     """How many each gauge has."""
-    return 3 if layout.design.readout.connection == "three-wire" else 2
+    return len(colours(layout))
 
 
 def longest_lead_resistance(layout: Layout) -> float:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from typing import Literal
 
-from tactcad.parts.description import Part
+from tactcad.parts.description import NOT_ORDERED, Part
 from tactcad.scenes.bom import BomRow, bom_rows
 from tactcad.scenes.scene import Scene
 
@@ -17,9 +17,9 @@ SETS: Mapping[Sets, str] = {
 }
 SPARES = (
     "Spares come on top. Of elements: one of every ten of a kind, and one of every kind (of the ten "
-    "published ones no. 5 did not work). Of gauges and terminals: one of every five, and at least one; of "
-    "what is soldered on boards: one of every ten, and at least one. Of screws and pins: one or two of "
-    "every size. Of plates and spacers: none."
+    "published ones no. 5 did not work). Of gauges, terminals and wire: one of every five, and at least one; "
+    "of boards and what stands on them: one of every ten, and at least one. Of screws and pins: one or two "
+    "of every size. Of plates and spacers: none."
 )
 
 
@@ -38,7 +38,8 @@ class OrderLine:
 
 
 def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLine, ...]:
-    """The lines that the scenes need, in order of first placement; reference parts need no order.
+    """The lines that the scenes need, in order of first placement; what comes with another part, and
+    reference parts, need no order.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def ordered(scenes: Sequence[Scene], revision: str, sets: Sets) -> tuple[OrderLi
     for number in dict.fromkeys(n for bill in bills.values() for n in bill):
         each = [bill[number].qty for bill in bills.values() if number in bill]
         qty = max(each) if sets == "one" else round(sum(counts.get(number, 0) for counts in own), 6)
-        if rows[number].process != "reference":
+        if rows[number].process not in NOT_ORDERED:
             lines.append(OrderLine(rows[number], qty, parts.get(number)))
     return tuple(lines)
 

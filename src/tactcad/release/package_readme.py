@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from tactcad.checks.shop import Shop
 from tactcad.parts.description import Part
+from tactcad.parts.electronic_parts import BOARD
 
 from .archive import MANIFEST
 from .ordered import SETS, SPARES
@@ -17,12 +18,22 @@ from .release_contents import ReleaseContents
 FILES = {
     ORDER: "what is ordered, a line each, with the files that it is made from and their SHA-256",
     "dxf/": "cut files, exact nominal contours, millimetres, one part a file; tool compensation is yours",
-    "pdf/": "a drawing sheet of every part",
+    "pdf/": "drawing sheets",
+    "circuit/": "netlist of the boards (KiCad, and the same as a table, a row a pin)",
     "step/": "solids (AP214, millimetres); NAME-ap242.step with limits and datums on the faces (AP242)",
     "inspection.csv": "what to measure on every numbered element: fill in `measured` and send it back",
     PART_INSPECTION: "what to measure on the other parts",
     MANIFEST: f"SHA-256 of every file; `sha256sum -c {MANIFEST}` checks them",
 }
+
+
+BOARDS = (
+    "No layout comes with this order: who makes the boards lays them out by the netlist, which names no "
+    "footprints, and by the circuit sheets. The netlist holds the circuits of all boards: U, J and C of a "
+    "board begin with its number, Q and R with that of the element that it reads. All boards are alike, with "
+    "room for every channel of the multiplexer; leads W, gauges B and terminals X are not on them. Keep the "
+    "lines between lead header, resistors and multiplexer short, and those of + and - alike."
+)
 
 
 def package_readme(contents: ReleaseContents, one: Packed, whole: str, shop: Shop) -> bytes:
@@ -72,6 +83,8 @@ def _ordered(contents: ReleaseContents, one: Packed) -> list[str]:
 
 def _sections(contents: ReleaseContents, one: Packed, shop: Shop) -> Sequence[tuple[str, list[str]]]:
     parts = _parts(one)
+    if any(line.row.part_no == BOARD for line in one.lines):
+        return (("CIRCUIT BOARD", paragraph(BOARDS)),)
     if one.package is WIRE:
         return (
             ("TIME ON THE MACHINE", _wire_time(one, shop)),

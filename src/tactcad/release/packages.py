@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from tactcad.checks.shop import Shop
+from tactcad.design.tree import Design
 from tactcad.drawing.extent import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
 from tactcad.parts.cut_section import cut_section
 from tactcad.parts.description import Part
+from tactcad.parts.electronic_parts import BOARD
 from tactcad.parts.limits import FACES
 from tactcad.parts.supply import ELECTRONIC, MECHANICAL
 
@@ -57,7 +59,7 @@ def _packed(package: Package, contents: ReleaseContents, files: Mapping[str, byt
     own: dict[str, bytes] = {}
     rows = []
     for line in lines:
-        taken = _files_of(package, line, contents.design.design.revision, files)
+        taken = _files_of(package, line, contents.design, files)
         own |= {path: files[path] for path in taken.values()}
         rows.append(_common(line) | package.row(line, taken, shop) | _digests(taken, files))
     if package is WIRE:
@@ -73,8 +75,18 @@ def _belongs(package: Package, line: OrderLine) -> bool:
     return line.row.process in package.processes
 
 
-def _files_of(package: Package, line: OrderLine, revision: str, files: Mapping[str, bytes]) -> dict[str, str]:
-    """The part's files that the package takes, by kind."""
+def _files_of(
+    package: Package, line: OrderLine, design: Design, files: Mapping[str, bytes]
+) -> dict[str, str]:
+    """The part's files that the package takes, by kind; of the board what it is laid out by."""
+    revision = design.design.revision
+    if line.row.part_no == BOARD:
+        circuit = f"{design.name}-circuit_{revision}"
+        return {
+            "netlist": f"circuit/{circuit}.net",
+            "netlist_table": f"circuit/{circuit}.csv",
+            "sheets": f"pdf/{circuit}.pdf",
+        }
     stem = f"{line.row.part_no}_{revision}"
     paths = {
         "dxf": f"dxf/{stem}.dxf",

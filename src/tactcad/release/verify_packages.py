@@ -10,6 +10,7 @@ from pathlib import Path
 
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
+from tactcad.parts.description import NOT_ORDERED
 from tactcad.scenes import bom
 
 from .archive import MANIFEST
@@ -106,7 +107,7 @@ def _order_faults(
     spares: dict[str, float] = {}
     for scene in contents.scenes:
         for row in bom.rows_from_csv(every[bill_of(scene)]):
-            if row.process != "reference":
+            if row.process not in NOT_ORDERED:
                 needed[row.part_no] = max(needed.get(row.part_no, 0.0), row.qty)
                 spares[row.part_no] = row.spares
     counts = Counter(row["part_no"] for row in orders)

@@ -25,7 +25,7 @@ from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.geometry import Record, geometry
 from tactcad.mechanics import signal
-from tactcad.parts.description import Part
+from tactcad.parts.description import NOT_MADE, Part
 from tactcad.parts.finding import Finding
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
@@ -69,7 +69,6 @@ class SensorState:
     scenes: Mapping[str, Record]
 
 
-NO_SHEET = ("bought", "reference")
 # Of a line of a bill, what belongs to the scene and not to the part; of a part's record too.
 OF_USE = ("qty", "spares", "designators")
 SHAPE = ("contours", "holes", "pockets", "volume_mm3", "box_mm")
@@ -93,7 +92,7 @@ def recorded_state(record: Record, design: Design | None) -> SensorState:
         {name: figures(element) for name, element in record.get("elements", {}).items()},
         sum(row["qty"] * (row["mass_g"] or 0.0) for row in rows.values()),
         sum(row["qty"] * (parts[n]["cut_length_mm"] or 0.0) for n, row in rows.items() if n in parts),
-        {n: _made(part, lines.get(n, {})) for n, part in parts.items() if part["process"] not in NO_SHEET},
+        {n: _made(part, lines.get(n, {})) for n, part in parts.items() if part["process"] not in NOT_MADE},
         scenes,
     )
 
@@ -130,7 +129,7 @@ class Reviewed:
     @cached_property
     def state(self) -> SensorState:
         told = recorded_state(self.record, self.design)
-        made = {n: p for n, p in self.parts.items() if p.process not in NO_SHEET}
+        made = {n: p for n, p in self.parts.items() if p.process not in NOT_MADE}
         return replace(
             told,
             elements={

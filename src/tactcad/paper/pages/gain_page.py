@@ -94,7 +94,7 @@ def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
         ("reads as, least", "mN", lambda row: row[2].min() * 1e3),
         ("largest", "mN", lambda row: row[2].max() * 1e3),
         note="Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
-        "moment. The drift is what the reference gauges leave.",
+        "moment. The drift is what the bridge's other arms leave.",
     )
 
 

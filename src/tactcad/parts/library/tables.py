@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
+
+from tactcad.design.data_table import data_rows
 
 
 def rows(name: str) -> list[dict[str, str]]:
     """The rows of data/NAME.csv, in its order."""
-    text = (Path(__file__).parent / "data" / f"{name}.csv").read_text(encoding="utf-8")
-    return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    return data_rows(Path(__file__).parent / "data" / f"{name}.csv")
 
 
 def number(text: str) -> float:

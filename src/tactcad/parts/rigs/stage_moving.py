@@ -24,7 +24,7 @@ def stage_moving(stage: Stage) -> Part:
     return Part(
         part_no=f"STAGE-{stage.size:g}-{2 * stage.travel:g}-MOVING",
         name=f"Micro-stage {stage.size:g} x {stage.size:g}, moving half",
-        process="bought",
+        process="included",
         material=ALUMINIUM,
         body=Extrusion(rectangle(-half, -half, half, half), t),
         features=threads,

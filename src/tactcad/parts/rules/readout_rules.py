@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import ceil, inf
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import ceil, floor, log10
 
 from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
+from tactcad.design.sensing import Readout, StrainGauge
+from tactcad.design.tree import Design
 
 from ..boards import boards
-from ..bridge_figures import bridge_signal, completion_tolerance, heating, imbalance, settling_time
-from ..electronic_parts import completion_resistance
-from ..finding import Finding
+from ..bridge_figures import bridge_signal, heating, imbalance, settling_time
+from ..electronic_parts import completion_resistance, completion_tolerance
+from ..finding import SAME, Finding
 from ..hinge_section import design_readout
 from ..layout import Layout
-from ..lead_route import longest_lead_resistance, recess_length
+from ..lead_route import AHEAD_OF_LEADS, WHOLE, lead_routes, longest_lead_resistance, recess_length
 from .gauge_rules import lead
 from .rule import at_least, at_most, rule, wrong
 
@@ -78,16 +81,16 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule(after="reading_within_period")
+@rule(after="override_names_element")
 def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
-    hot, volts = heating(d), d.readout.excitation
+    hot, volts = heating(layout), d.readout.excitation
     mean, rise = hot.power_density / d.gauge.power_density, hot.rise / d.gauge.rise
     most = volts / max(mean, rise) ** 0.5
     yield from at_most(
         "readout.excitation",
         f"more than the gauge's backing bears: {hot.power_density:.3g} kW/m2 of grid on average "
-        f"(gauge.power_density = {d.gauge.power_density:g}), {hot.rise:.3g} K over the leaf "
+        f"(gauge.power_density = {d.gauge.power_density:g}), {hot.rise:.3g} K over the body "
         f"(gauge.rise = {d.gauge.rise:g})",
         volts,
         most,
@@ -98,55 +101,128 @@ def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
 @rule(after="override_names_element")
 def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
     """With no load, every tolerance at its worst."""
-    d, chain = layout.design, design_readout(layout.design)
-    low, high = imbalance(layout)
+    d, chain, lead = layout.design, design_readout(layout.design), longest_lead_resistance(layout)
+    arm = completion_tolerance(d)
+    low, high = imbalance(d, lead, arm)
     if chain.lowest <= low and high <= chain.highest:
         return
-    off = completion_tolerance(d)
-    own = d.readout.completion_tolerance is not None
-    same = d.readout.completion_resistance in (None, d.gauge.resistance)
-    without_low, without_high = imbalance(layout, 0.0)
-    most = d.readout.gain * min(_share(chain.lowest, 0.0, low), _share(chain.highest, 0.0, high))
-    path, legal = "readout.gain", f"at most {rounded_down(most)}, or less excitation"
-    value: object = d.readout.gain
+    said = (
+        f"unloaded bridges reach {low:.3g} to {high:.3g} V behind the amplifier, whose range is "
+        f"{chain.lowest:.3g} to {chain.highest:.3g}"
+    )
     if not chain.lowest < 0.0 < chain.highest:
         r = d.readout
-        path, value = "readout.headroom", r.headroom
         legal = f"less than either supply: {min(r.supply_positive, -r.supply_negative):g} V"
-    elif not same:
-        path, value = "readout.completion_resistance", completion_resistance(d)
-        legal = f"{d.gauge.resistance:g} ohm, the gauge's"
-    elif chain.lowest < without_low and without_high < chain.highest:
-        tolerance = off * min(
-            _share(chain.lowest, without_low, low), _share(chain.highest, without_high, high)
-        )  # linear within a hundredth
-        path = "readout.completion_tolerance" if own else "readout.completion"
-        value = off if own else d.readout.completion
-        legal = f"resistors within {rounded_down(0.99 * tolerance)} of their value"
-    yield wrong(
-        path,
-        f"unloaded bridges reach {low:.3g} to {high:.3g} V behind the amplifier, whose range is "
-        f"{chain.lowest:.3g} to {chain.highest:.3g}",
-        value,
-        legal,
-    )
+        yield wrong("readout.headroom", said, r.headroom, legal)
+        return
+
+    def bearable(reach: Callable[[float], tuple[float, float]]) -> float:
+        """Share of a cause that the range leaves room for."""
+
+        def fits(share: float) -> bool:
+            lowest, highest = reach(share)
+            return chain.lowest <= lowest and highest <= chain.highest
+
+        least, most = 0.0, 1.0
+        for _ in range(30 if fits(0.0) else 0):
+            middle = (least + most) / 2
+            least, most = (middle, most) if fits(middle) else (least, middle)
+        return least
+
+    borne = [(cause, share) for cause in _causes(layout, arm) if (share := bearable(cause.reach)) > 0]
+    if borne:  # what adds most of it
+        cause, share = min(borne, key=lambda found: max(map(abs, found[0].reach(0.0))))
+        yield wrong(cause.path, said, cause.value, cause.legal(share))
+        return
+    yield _too_much_gain(d, said, bearable(lambda share: (share * low, share * high)))
 
 
-def _share(limit: float, without: float, with_all: float) -> float:
-    """Share of the way from `without` to `with_all` at which the limit is met; inf where it leads away."""
-    moved = with_all - without
-    return (limit - without) / moved if moved * limit > 0 else inf
+@dataclass(frozen=True)
+class _Cause:
+    """Of an unbalanced bridge: a field and its value; what the bridges reach with a share of it, V; what is
+    legal where the range bears that share."""
+
+    path: str
+    value: object
+    reach: Callable[[float], tuple[float, float]]
+    legal: Callable[[float], str]
+
+
+def _causes(layout: Layout, arm: float) -> Iterator[_Cause]:
+    """Fields that the design sets otherwise than they come."""
+    d, lead = layout.design, longest_lead_resistance(layout)
+    r, ohm, tolerance = d.readout, completion_resistance(d), d.gauge.resistance_tolerance
+    if ohm != d.gauge.resistance:
+        alike = replace(d, readout=replace(r, completion_resistance=d.gauge.resistance))
+        yield _Cause(
+            "readout.completion_resistance",
+            ohm,
+            lambda share: imbalance(alike, lead, arm),
+            lambda share: f"{d.gauge.resistance:g} ohm, the gauge's",
+        )
+    if r.bridge_offset:
+        yield _Cause(
+            "readout.bridge_offset",
+            r.bridge_offset,
+            lambda s: imbalance(replace(d, readout=replace(r, bridge_offset=s * r.bridge_offset)), lead, arm),
+            lambda share: f"at most {rounded_down(share * abs(r.bridge_offset))}, plus or minus",
+        )
+    if r.connection == "two-wire":
+        yield _Cause(
+            "wiring.to_board",
+            d.wiring.to_board,
+            lambda share: imbalance(d, share * lead, arm),
+            lambda share: _shorter(layout, share),
+        )
+    own = r.completion_tolerance is not None
+    if own or r.completion != Readout().completion:
+        yield _Cause(
+            "readout.completion_tolerance" if own else "readout.completion",
+            arm if own else r.completion,
+            lambda share: imbalance(d, lead, share * arm),
+            lambda share: f"resistors within {rounded_down(arm * share)} of their value",
+        )
+    if tolerance != StrainGauge().resistance_tolerance:
+        yield _Cause(
+            "gauge.resistance_tolerance",
+            tolerance,
+            lambda s: imbalance(
+                replace(d, gauge=replace(d.gauge, resistance_tolerance=s * tolerance)), lead, arm
+            ),
+            lambda share: f"at most {rounded_down(tolerance * share)}",
+        )
+
+
+def _shorter(layout: Layout, share: float) -> str:
+    """Leads cut to a share of their length; they are cut to whole steps."""
+    w, longest = layout.design.wiring, max(lead_routes(layout), key=lambda route: route.cut)
+    most = w.to_board - longest.length + (share * longest.cut - WHOLE) / (1 + w.slack)
+    three = 'readout.connection = "three-wire"'
+    return f"at most {floor(most)} mm, or {three}" if most >= 1 else three
+
+
+def _too_much_gain(design: Design, said: str, share: float) -> Finding:
+    """Where no cause alone is to blame: a gain that the amplifier has, or less excitation."""
+    r, amplifier = design.readout, AMPLIFIERS[design.readout.amplifier]
+    most = r.gain * share
+    fitting = [f"{g:g}" for g in amplifier.gains if g <= most]
+    if fitting:
+        return wrong("readout.gain", said, r.gain, f"{' or '.join(fitting)}, or less excitation")
+    if not amplifier.gains and most >= amplifier.least_gain:
+        return wrong("readout.gain", said, r.gain, f"at most {rounded_down(most)}, or less excitation")
+    return wrong("readout.excitation", said, r.excitation, f"at most {rounded_down(r.excitation * share)} V")
 
 
 def rounded_down(value: float) -> str:
-    """To three digits, not above the value."""
-    text = f"{value:.3g}"
-    return text if float(text) <= value else f"{value * 0.999:.3g}"
+    """To three digits, not above the value (> 0)."""
+    step = 10.0 ** (floor(log10(value)) - 2)
+    return f"{floor(value / step + SAME) * step:.3g}"
 
 
 @rule(after="override_names_element")
 def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
-    """Both outputs of a bridge lie where amplifier and multiplexer take them."""
+    """Both outputs of a bridge lie where amplifier and multiplexer take them: while it is read, and at its
+    supply while its switch is open."""
     r, amplifier = layout.design.readout, AMPLIFIERS[layout.design.readout.amplifier]
     volts = bridge_signal(layout.design, longest_lead_resistance(layout))
     low, high = min(volts), max(volts)
@@ -159,11 +235,11 @@ def inputs_within_common_mode(layout: Layout) -> Iterator[Finding]:
         min(least, low),
         f"at most {least:.3g} V, or more excitation",
     )
-    most = max(high + amplifier.below_positive, r.excitation)
+    most = r.excitation + amplifier.below_positive
     yield from at_least(
         "readout.supply_positive",
-        f"{under}, fed with {r.excitation:g} V, lie above the {r.amplifier}'s common mode or the "
-        f"{r.multiplexer}'s supply",
+        f"bridges fed with {r.excitation:g} V lie above the {r.amplifier}'s common mode while no switch "
+        "is closed",
         r.supply_positive,
         most,
         f"at least {most:.3g} V, or less excitation",
@@ -187,7 +263,9 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
 @rule(after="recess_fits_rear")
 def leads_are_relieved(layout: Layout) -> Iterator[Finding]:
     """The leads are bonded into the recess over a length that holds them."""
-    bonded, least, room = layout.design.wiring.bonded, RELIEF * lead(layout), recess_length(layout)
-    legal = f"from {least:g} mm, {RELIEF} diameters of the lead, to {room:g} mm, the wire recess"
+    d = layout.design
+    terminals = AHEAD_OF_LEADS + (d.bonding.terminal_length if d.bonding else 0.0)
+    bonded, least, room = d.wiring.bonded, RELIEF * lead(layout), recess_length(layout) - terminals
+    legal = f"from {least:g} mm, {RELIEF} diameters of the lead, to {room:g} mm, behind the terminals"
     yield from at_least("wiring.bonded", "leads without strain relief", bonded, least, legal)
-    yield from at_most("wiring.bonded", "longer than the wire recess", bonded, room, legal)
+    yield from at_most("wiring.bonded", "reaches over the gauge's terminals", bonded, room, legal)
