@@ -47,7 +47,7 @@ def draw_readout(d: Draw) -> None:
     # room for the bridges' middle and the multiplexer's supply: 9 V at least
     span = d.between(max(9.5, least), min(most, 33.0) - 0.5)
     volts = d.number("readout.excitation", high=min(volts, span - 2 * (max(above, 0.0) + below) - 1))
-    low, high = volts * (0.5 - x) - above, max(volts * (0.5 + x) + below, volts, 1.0)
+    low, high = volts * (0.5 - x) - above, max(volts + below, 1.0)
     negative = d.number("readout.supply_negative", max(-30.0, high - span + 0.1 - 30.0), min(low, 0.0) - 0.05)
     negative = d.put(
         "readout.supply_negative", min(max(negative, high + 0.1 - span, -span + 1.0), 29.9 - span, 0.0)
@@ -77,7 +77,7 @@ def draw_readout(d: Draw) -> None:
 def _leads(d: Draw) -> float:
     """Wiring; returns the share of the gauge's resistance that its leads add on one side."""
     d.put("wiring.wire", d.choice("AWG38", "AWG36"))
-    d.number("wiring.bonded", 2.6, d.recess)
+    d.number("wiring.bonded", 2.6, d.recess - 1.1)
     way = d.number("wiring.gather") + d.number("wiring.to_board") + 2 * d.longest_way
     share = 2 * COPPER * (way * (1 + d.number("wiring.slack")) + 5) / d.table["gauge.resistance"]
     thin = share < 0.05
