@@ -17,6 +17,7 @@ AMPLIFIERS = {
     "AD623": (2.7, 12, -0.15, 1.5, (1.0, 1000.0), 200, 1e4),
     "INA128": (4.5, 36, 2.0, 2.0, (1.0, 10000.0), 125, 2e5),
 }
+LEAST_CONDUCTIVITY = 6.7  # W/(m K) of the table's alloys: titanium's
 COPPER = 0.0022  # ohm/mm of the thinnest wire
 
 
@@ -96,9 +97,14 @@ def _times(d: Draw) -> None:
 
 
 def _power(d: Draw) -> float:
-    """V that the gauge bears continuously: (V/2)^2/R through its backing, and over its grid."""
+    """V that the gauge bears continuously: (V/2)^2/R through its backing and half its leaf, and over its
+    grid."""
     t = d.table
+    thin = min(v for path, v in t.items() if path.endswith(".hinge_thickness"))
+    long = max(v for path, v in t.items() if path.endswith(".hinge_length"))
+    conducts = t.get("material.conductivity", LEAST_CONDUCTIVITY)
+    leaf = long / 2 / (conducts * thin * t["sheet.thickness"]) * 1e3
     area = t["gauge.grid_length"] * t["gauge.grid_width"] * 1e-6
     through = t["gauge.grid_height"] * 1e-3 / (t["gauge.carrier_conductivity"] * area)
-    watts = min(t["gauge.power_density"] * 1e3 * area, t["gauge.rise"] / max(through, 1e-9))
+    watts = min(t["gauge.power_density"] * 1e3 * area, t["gauge.rise"] / (through + leaf))
     return 2 * (watts * t["gauge.resistance"]) ** 0.5
