@@ -350,8 +350,8 @@ def _clamp(d: Draw) -> None:
     rear_end = max(spots[-1] + max(web + widest / 2, head + 1), offset + counterbore / 2 + 1)
     over = max(d.ledge - recess, 0.0)
     behind = sqrt(max(web**2 - over**2, 0.0)) + 0.001
-    # ten diameters of the leads are bonded in the recess
-    glued = corner + 10 * LEAD + 0.2
+    # ten diameters of the leads are bonded in the recess, behind the terminals
+    glued = corner + 10 * LEAD + 0.2 + 1.2
     length = d.number("element.rear_length", max(rear_end, behind + glued), 1.5 * d.deepest)
     start = d.number("element.recess_offset", behind, length - glued)
     d.recess = length - start

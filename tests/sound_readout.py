@@ -17,6 +17,7 @@ AMPLIFIERS = {
     "AD623": (2.7, 12, -0.15, 1.5, (1.0, 1000.0), 200, 1e4),
     "INA128": (4.5, 36, 2.0, 2.0, (1.0, 10000.0), 125, 2e5),
 }
+LEAST_CONDUCTIVITY = 6.7  # W/(m K) of the table's alloys: titanium's
 COPPER = 0.0022  # ohm/mm of the thinnest wire
 
 
@@ -47,7 +48,7 @@ def draw_readout(d: Draw) -> None:
     # room for the bridges' middle and the multiplexer's supply: 9 V at least
     span = d.between(max(9.5, least), min(most, 33.0) - 0.5)
     volts = d.number("readout.excitation", high=min(volts, span - 2 * (max(above, 0.0) + below) - 1))
-    low, high = volts * (0.5 - x) - above, max(volts * (0.5 + x) + below, volts, 1.0)
+    low, high = volts * (0.5 - x) - above, max(volts + below, 1.0)
     negative = d.number("readout.supply_negative", max(-30.0, high - span + 0.1 - 30.0), min(low, 0.0) - 0.05)
     negative = d.put(
         "readout.supply_negative", min(max(negative, high + 0.1 - span, -span + 1.0), 29.9 - span, 0.0)
@@ -77,7 +78,7 @@ def draw_readout(d: Draw) -> None:
 def _leads(d: Draw) -> float:
     """Wiring; returns the share of the gauge's resistance that its leads add on one side."""
     d.put("wiring.wire", d.choice("AWG38", "AWG36"))
-    d.number("wiring.bonded", 2.6, d.recess)
+    d.number("wiring.bonded", 2.6, d.recess - 1.1)
     way = d.number("wiring.gather") + d.number("wiring.to_board") + 2 * d.longest_way
     share = 2 * COPPER * (way * (1 + d.number("wiring.slack")) + 5) / d.table["gauge.resistance"]
     thin = share < 0.05
@@ -96,9 +97,14 @@ def _times(d: Draw) -> None:
 
 
 def _power(d: Draw) -> float:
-    """V that the gauge bears continuously: (V/2)^2/R through its backing, and over its grid."""
+    """V that the gauge bears continuously: (V/2)^2/R through its backing and half its leaf, and over its
+    grid."""
     t = d.table
+    thin = min(v for path, v in t.items() if path.endswith(".hinge_thickness"))
+    long = max(v for path, v in t.items() if path.endswith(".hinge_length"))
+    conducts = t.get("material.conductivity", LEAST_CONDUCTIVITY)
+    leaf = long / 2 / (conducts * thin * t["sheet.thickness"]) * 1e3
     area = t["gauge.grid_length"] * t["gauge.grid_width"] * 1e-6
     through = t["gauge.grid_height"] * 1e-3 / (t["gauge.carrier_conductivity"] * area)
-    watts = min(t["gauge.power_density"] * 1e3 * area, t["gauge.rise"] / max(through, 1e-9))
+    watts = min(t["gauge.power_density"] * 1e3 * area, t["gauge.rise"] / (through + leaf))
     return 2 * (watts * t["gauge.resistance"]) ** 0.5

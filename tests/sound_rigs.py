@@ -33,6 +33,7 @@ def sound_rigs(d: Draw) -> None:
         _cart(d)
         _grasping(d)
     _calibration(d, d.table["sample.travel"] if both else 0.0)
+    d.number("bonding.terminal_length", 0.5, d.recess - 0.51 - d.table["wiring.bonded"])
     d.rest("bonding")
 
 

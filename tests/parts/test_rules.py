@@ -180,7 +180,9 @@ WITNESSES = {
         ({"readout.completion_tolerance": 0.02}, "readout.completion_tolerance"),
         ({"readout.completion": "film-1", "gauge.resistance_tolerance": 0.03}, "readout.completion"),
         ({"readout.completion_resistance": 130.0}, "readout.completion_resistance"),
-        ({"readout.bridge_offset": 0.08}, "readout.gain"),
+        ({"readout.bridge_offset": 0.08}, "readout.bridge_offset"),
+        ({"gauge.resistance_tolerance": 0.08}, "gauge.resistance_tolerance"),
+        ({"readout.headroom": 4.8}, "readout.gain"),
         ({"readout.headroom": 5.0}, "readout.headroom"),
     ],
     "inputs_within_common_mode": [

@@ -114,7 +114,7 @@ SEEDS = {
     "an element added, soft": seed(
         SOFT, "[[5, 9, 5, 9]", "[[5, 9, 9, 5, 9]", "array.row_arms",
         revised=OF_ARRAY | {"carrier", "stop-plate"}, added={"blank"},
-        bill=r".*-(spacer|element-a9mm|blank)|ISO8734-3x(28|30)-pin|STRAIN-GAUGE|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE"
+        bill=r".*-(spacer|element-a9mm|blank)|ISO8734-3x(28|30)-pin|STRAIN-GAUGE|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE-(RD|WH|BK)"
         "|IRLML6244TRPBF",
     ),
     "pad 0.05 higher": seed(
@@ -184,7 +184,7 @@ SEEDS = {
         revised={"spacer", "end-plate-tapped", "carrier", "stop-plate", "ballast"},
         added={"element-a6mm", "blank"},
         bill=r".*-(spacer|blank|element-a6mm)|ISO4762-M3x(20|25)-A2-70-screw|ISO8734-3x(24|28)-pin|STRAIN-GAUGE"
-        r"|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE|IRLML6244TRPBF",
+        r"|BRIDGE-RESISTOR|TERMINAL|LEAD-WIRE-(RD|WH|BK)|IRLML6244TRPBF",
     ),
     "wheels 0.05 further apart": seed(
         SMALL, "wheel_base = 44.0", "wheel_base = 44.05", "cart.wheel_base", revised={"cart-plate"},

@@ -26,7 +26,7 @@ def array_supplies(layout: Layout) -> tuple[Supply, ...]:
             f"foil strain gauge, {ohm}, grid {g.grid_length:g} x {g.grid_width:g} mm, for {metal}",
             n,
             "pcs",
-            f"foil strain gauge {ohm}, gauge factor {g.factor:g}, grid {g.grid_length:g} x "
+            f"foil strain gauge {ohm}, grid {g.grid_length:g} x "
             f"{g.grid_width:g} mm, self-compensated for {metal}, tabs at one end; carrier trimmed to "
             f"{g.carrier_arm_side + g.carrier_body_side:g} x {g.carrier_width:g} mm; any maker's",
             alternates="any foil gauge of that grid and resistance",

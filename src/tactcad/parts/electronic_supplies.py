@@ -79,7 +79,7 @@ def board_supplies(layout: Layout) -> tuple[Supply, ...]:
     amplifier, switch, multiplexer = AMPLIFIERS[r.amplifier], SWITCHES[r.switch], MULTIPLEXERS[r.multiplexer]
     to_leads, to_card = header_pins(d)
     length, width = board_size(d)
-    name, ohm = f"{d.name}-circuit_{d.design.revision}.net", gain_resistance(d)
+    ohm = gain_resistance(d)
     lines = [
         _part(
             switch.mpn,
@@ -136,9 +136,9 @@ def board_supplies(layout: Layout) -> tuple[Supply, ...]:
             BOARD,
             "circuit board, bare; laid out by who makes it",
             count,
-            f"circuit board to {name}, all boards alike, with every channel of the multiplexer: FR-4 1.6 mm, "
-            f"2 layers, copper 35 um, tin or gold on pads, at least {length:g} x {width:g} mm, a hole of "
-            "3.2 mm in each corner",
+            f"circuit board to the netlist {d.name}-circuit, all boards alike, with every channel of the "
+            f"multiplexer: FR-4 1.6 mm, 2 layers, copper 35 um, tin or gold on pads, at least {length:g} x "
+            f"{width:g} mm, a hole of 3.2 mm in each corner",
         ),
         _part(
             STANDOFFS,

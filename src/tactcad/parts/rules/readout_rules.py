@@ -81,7 +81,7 @@ def boards_have_inputs(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@rule(after="override_names_element")
+@rule(after="reading_within_period")
 def gauge_bears_power(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     hot, volts = heating(layout), d.readout.excitation
@@ -182,7 +182,7 @@ def _causes(layout: Layout, arm: float) -> Iterator[_Cause]:
             lambda share: imbalance(d, lead, share * arm),
             lambda share: f"resistors within {rounded_down(arm * share)} of their value",
         )
-    if tolerance != StrainGauge().resistance_tolerance:
+    elif tolerance != StrainGauge().resistance_tolerance:
         yield _Cause(
             "gauge.resistance_tolerance",
             tolerance,
@@ -264,8 +264,13 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
 def leads_are_relieved(layout: Layout) -> Iterator[Finding]:
     """The leads are bonded into the recess over a length that holds them."""
     d = layout.design
-    terminals = AHEAD_OF_LEADS + (d.bonding.terminal_length if d.bonding else 0.0)
-    bonded, least, room = d.wiring.bonded, RELIEF * lead(layout), recess_length(layout) - terminals
+    behind_wall = recess_length(layout) - AHEAD_OF_LEADS
+    terminals = d.bonding.terminal_length if d.bonding else 0.0
+    bonded, least, room = d.wiring.bonded, RELIEF * lead(layout), behind_wall - terminals
+    if d.bonding and room < least - SAME <= behind_wall:
+        legal = f"at most {behind_wall - least:g} mm, or a longer element.rear_length"
+        yield wrong("bonding.terminal_length", "no room to bond leads behind it", terminals, legal)
+        return
     legal = f"from {least:g} mm, {RELIEF} diameters of the lead, to {room:g} mm, behind the terminals"
     yield from at_least("wiring.bonded", "leads without strain relief", bonded, least, legal)
     yield from at_most("wiring.bonded", "reaches over the gauge's terminals", bonded, room, legal)
