@@ -6,7 +6,6 @@ written in one step and verified when it is read (tactcad.export.cache); the res
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.cache import Cache
+from tactcad.export.contents import sha256_of
 
 from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study
@@ -54,11 +54,12 @@ class Kept:
         return None if table is None or self._lacks_files(start, table) else table
 
     def put(self, start: int, stop: int, table: pa.Table) -> None:
-        """Keep it. Raises CheckFailure where it does not read back."""
-        self._cache.put(self._key(start, stop), as_bytes(table))
-        if self._cache.get(self._key(start, stop)) is None:
-            why = self._said[-1] if self._said else "it does not read back"
-            raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
+        """Keep it. Raises CheckFailure where that cannot be."""
+        key = self._key(start, stop)
+        self._said.clear()
+        self._cache.put(key, as_bytes(table))
+        if self._said or not self._cache.has(key):
+            raise CheckFailure(f"{self.folder}: a result cannot be kept: {' '.join(self._said[-1:])}")
 
     def _key(self, start: int, stop: int) -> str:
         return f"{self._prefix} {start} {stop}"
@@ -69,7 +70,7 @@ class Kept:
             return False
         wanted = table["manifest_sha256"][0].as_py()
         manifest = export_folder(self.folder, start + 1) / "manifest.json"
-        there = hashlib.sha256(manifest.read_bytes()).hexdigest() if manifest.is_file() else ""
+        there = sha256_of(manifest.read_bytes()) if manifest.is_file() else ""
         return there != wanted
 
 

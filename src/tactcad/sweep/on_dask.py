@@ -8,11 +8,12 @@ import multiprocessing
 import os
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib import metadata
 from itertools import islice
+from multiprocessing import forkserver
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,9 +34,16 @@ if TYPE_CHECKING:
 AT_ONCE = 500
 ANSWER = "10s"  # within which a scheduler answers, or nobody is there
 
-# Dask has its workers' C library give back every freed array at once; vector calls then take 2.5 times as
-# long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most that it takes.
-MEMORY = {"MALLOC_TRIM_THRESHOLD_": 1 << 28, "MALLOC_MMAP_THRESHOLD_": 1 << 25}
+# Of workers on this machine. Dask has their C library give back every freed array at once; vector calls then
+# take 2.5 times as long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most
+# that it takes. A process uses one core: there is one for each.
+ENVIRONMENT = {
+    "MALLOC_TRIM_THRESHOLD_": str(1 << 28),
+    "MALLOC_MMAP_THRESHOLD_": str(1 << 25),
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+}
 
 NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
@@ -63,6 +71,7 @@ class Done:
     `seconds`: processor time of computing, without what the store takes.
     """
 
+    start: int
     designs: int
     computed: bool
     unable: str = ""
@@ -72,30 +81,32 @@ class Done:
 def carry_out(order: SweepTask) -> Done:
     """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
     finished ones too."""
-    designs = order.stop - order.start
+    which = order.start, order.stop - order.start
     with _ALONE:
         if order.inputs != (own := made_by(order.study.measure.what)):
-            return Done(designs, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
+            return Done(*which, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
         if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
-            return Done(designs, False, NO_HELPERS)
+            return Done(*which, False, NO_HELPERS)
         folder = Path(order.folder)
         if not (folder / MARK).is_file() or mark_of(folder).get("study") != order.study.identity:
-            return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
+            return Done(*which, False, f"does not see {folder}: every worker needs the same folder there")
         kept = Kept(order.study, folder, order.inputs.key)
         if kept.get(order.start, order.stop) is not None:
-            return Done(designs, False)
+            return Done(*which, False)
         start = time.process_time()
         try:
             table = measured(order.study, order.start, order.stop, folder)
         except InputError as error:
-            return Done(designs, False, f"cannot export: {error}")
+            return Done(*which, False, f"cannot export: {error}")
         seconds = time.process_time() - start
         kept.put(order.start, order.stop, table)
-    return Done(designs, True, seconds=seconds)
+    return Done(*which, True, seconds=seconds)
 
 
 @contextmanager
-def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> Iterator[Client]:
+def cluster(
+    address: str | None, workers: int, loads: list[str], say: Callable[[str], None]
+) -> Iterator[Client]:
     """A client of the scheduler at that address, or of processes on this machine where there is none.
 
     Parameters
@@ -104,6 +115,8 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
         As "tcp://HOST:8786".
     workers
         Processes on this machine.
+    loads
+        Modules that these start with; never the CAD kernel, which bears no fork.
     say
         Receives the dashboard's address.
 
@@ -114,35 +127,60 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     """
     import dask
 
-    logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
-    quiet = {"logging": dict.fromkeys(logs, "critical")}
-    with dask.config.set(quiet):  # read when it is loaded
+    with ExitStack() as stack:
+        if address is None:
+            stack.enter_context(_environment(ENVIRONMENT))
+            _load_ahead(loads)  # in a process of its own, while this one loads Dask
+        logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
+        settings = {
+            "logging": dict.fromkeys(logs, "critical"),  # read when it is loaded
+            "distributed.worker.daemon": False,
+            "distributed.worker.multiprocessing-method": "forkserver",
+        }
+        stack.enter_context(dask.config.set(settings))
         from distributed import Client, LocalCluster
 
-    environ = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
-    with dask.config.set({**quiet, **environ, "distributed.worker.daemon": False}):
         if address is not None:
-            with _connected(Client, address) as client:
-                _refuse_without_tactcad(client)
-                say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
-                yield client
-            return
-        with scratch_folder("sweep") as scratch:
-            options = {"local_directory": str(scratch), "dashboard_address": "127.0.0.1:0"}
-            with _started(LocalCluster, workers, options) as local, Client(local) as client:
-                say(f"dashboard: {client.dashboard_link}")
-                yield client
+            client = stack.enter_context(_connected(Client, address))
+            _refuse_without_tactcad(client)
+            say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
+        else:
+            scratch = stack.enter_context(scratch_folder("sweep"))
+            client = stack.enter_context(
+                Client(stack.enter_context(_started(LocalCluster, workers, scratch)))
+            )
+            say(f"dashboard: {client.dashboard_link}")
+        yield client
 
 
-def _started(local: type[LocalCluster], workers: int, options: dict[str, str]) -> LocalCluster:
-    """Processes of one thread each, by spawn, which is Dask's own way."""
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _load_ahead(modules: list[str]) -> None:
+    """Start the process that workers are forked from: what it has loaded none of them loads again, and having
+    no threads it can be forked."""
+    multiprocessing.set_forkserver_preload(["distributed", *modules])
+    forkserver.ensure_running()
+
+
+def _started(local: type[LocalCluster], workers: int, scratch: Path) -> LocalCluster:
+    """Processes of one thread each."""
     try:
         return local(
             n_workers=workers,
             threads_per_worker=1,
             host="127.0.0.1",
+            local_directory=str(scratch),
+            dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
-            **options,
         )
     except RuntimeError as error:
         raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
