@@ -15,7 +15,7 @@ from importlib import metadata
 from itertools import islice
 from multiprocessing import forkserver
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from tactcad.account import KERNEL
 from tactcad.design.files import scratch_folder
@@ -53,18 +53,6 @@ _ALONE = threading.Lock()
 
 
 @dataclass(frozen=True)
-class SweepTask:
-    """One task: designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what
-    `inputs` says."""
-
-    study: Study
-    inputs: Inputs
-    folder: str
-    start: int
-    stop: int
-
-
-@dataclass(frozen=True)
 class Done:
     """A task at its end: whether it was computed now, or found in the store; `unable`: why neither.
 
@@ -78,29 +66,49 @@ class Done:
     seconds: float = 0.0
 
 
-def carry_out(order: SweepTask) -> Done:
-    """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
-    finished ones too."""
-    which = order.start, order.stop - order.start
-    with _ALONE:
-        if order.inputs != (own := made_by(order.study.measure.what)):
-            return Done(*which, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
-        if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
+class Order(Protocol):
+    """A task as it is handed to a worker."""
+
+    def carry_out(self) -> Done:
+        """Do it, unless the store has it: Dask runs tasks of a dead worker again, finished ones too."""
+
+
+@dataclass(frozen=True)
+class SweepTask:
+    """Designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what `inputs` says."""
+
+    study: Study
+    inputs: Inputs
+    folder: str
+    start: int
+    stop: int
+
+    def carry_out(self) -> Done:
+        which = self.start, self.stop - self.start
+        what = self.study.measure.what
+        if self.inputs != (own := made_by(what)):
+            return Done(*which, False, "is of another version: " + "; ".join(reasons(own, self.inputs)[:3]))
+        if EXPORT in what and multiprocessing.current_process().daemon:
             return Done(*which, False, NO_HELPERS)
-        folder = Path(order.folder)
-        if not (folder / MARK).is_file() or mark_of(folder).get("study") != order.study.identity:
+        folder = Path(self.folder)
+        if not (folder / MARK).is_file() or mark_of(folder).get("study") != self.study.identity:
             return Done(*which, False, f"does not see {folder}: every worker needs the same folder there")
-        kept = Kept(order.study, folder, order.inputs.key)
-        if kept.get(order.start, order.stop) is not None:
+        kept = Kept(self.study, folder, self.inputs.key)
+        if kept.get(self.start, self.stop) is not None:
             return Done(*which, False)
         start = time.process_time()
         try:
-            table = measured(order.study, order.start, order.stop, folder)
+            table = measured(self.study, self.start, self.stop, folder)
         except InputError as error:
             return Done(*which, False, f"cannot export: {error}")
         seconds = time.process_time() - start
-        kept.put(order.start, order.stop, table)
-    return Done(*which, True, seconds=seconds)
+        kept.put(self.start, self.stop, table)
+        return Done(*which, True, seconds=seconds)
+
+
+def _carried_out(order: Order) -> Done:
+    with _ALONE:
+        return order.carry_out()
 
 
 @contextmanager
@@ -204,7 +212,7 @@ def _refuse_without_tactcad(client: Client) -> None:
         raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
 
 
-def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
+def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
     """Each task's end, as they come; never more than AT_ONCE of them are handed out.
 
     Raises
@@ -218,11 +226,7 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
     from distributed.comm.core import CommClosedError
 
     left = iter(orders)
-
-    def handed(order: SweepTask):  # type: ignore[no-untyped-def]
-        return client.submit(carry_out, order, pure=False)
-
-    running = as_completed([handed(order) for order in islice(left, AT_ONCE)])
+    running = as_completed(client.map(_carried_out, list(islice(left, AT_ONCE)), pure=False))
     try:
         for future in running:
             done = future.result()
@@ -230,7 +234,7 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
                 raise InputError("a worker", done.unable)
             yield done
             for order in islice(left, 1):
-                running.add(handed(order))
+                running.add(client.submit(_carried_out, order, pure=False))
     except KilledWorker as error:
         raise CheckFailure(
             f"a task killed every worker it was given to, the last one {error.last_worker.address}: too "
