@@ -72,7 +72,7 @@ def carried_out(orders: list[Item], workers: int) -> int:
     left = [item for item in orders if item.found() is None]
     if not left:
         return 0
-    with slow_work(sys.stderr) as tell, cluster(None, workers, [], print) as client:
+    with slow_work(sys.stderr) as tell, cluster(None, workers, [], lambda: None, print) as client:
         before = len(orders) - len(left)
         tell(before, len(orders), "tried")
         for n, _ in enumerate(all_done(client, left), before + 1):

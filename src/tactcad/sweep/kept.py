@@ -1,7 +1,8 @@
 """The folder of a study: whose it is, what is finished in it, and the table at its end.
 
-DIR/study.json names the study by digest; DIR/store holds one entry for every task that is finished, each
-written in one step and verified when it is read (tactcad.export.cache); the rest is written whole at the end.
+DIR/study.json names the study by digest; DIR/store, or another place, holds one entry for every task that is
+finished, each written in one step and verified when it is read (tactcad.export.cache, far_store); the rest is
+written whole at the end.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.cache import Cache
 from tactcad.export.contents import sha256_of
 
+from .far_store import FarStore
 from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study
 
@@ -39,17 +41,19 @@ class Kept:
         Where; absolute, so that a worker with another working folder finds it.
     made_by
         Digest of the rooms and libraries that results come from (`measured.made_by`).
+    store
+        Address of the store where it is not in the folder.
     """
 
-    def __init__(self, study: Study, folder: Path, made_by: str) -> None:
+    def __init__(self, study: Study, folder: Path, made_by: str, store: str | None = None) -> None:
         self.study, self.folder = study, folder
         self._prefix = f"{SCHEMA} {study.identity} {made_by}"
         self._said: list[str] = []
-        self._cache = Cache(folder / STORE, self._said.append)
+        self._store = FarStore(store) if store else Cache(folder / STORE, self._said.append)
 
     def get(self, start: int, stop: int) -> pa.Table | None:
         """What is kept of these designs; None where they are not finished, or the entry is damaged."""
-        data = self._cache.get(self._key(start, stop))
+        data = self._store.get(self._key(start, stop))
         table = from_bytes(data) if data is not None else None
         return None if table is None or self._lacks_files(start, table) else table
 
@@ -57,8 +61,8 @@ class Kept:
         """Keep it. Raises CheckFailure where that cannot be."""
         key = self._key(start, stop)
         self._said.clear()
-        self._cache.put(key, as_bytes(table))
-        if self._said or not self._cache.has(key):
+        self._store.put(key, as_bytes(table))
+        if self._said or not self._store.has(key):
             raise CheckFailure(f"{self.folder}: a result cannot be kept: {' '.join(self._said[-1:])}")
 
     def _key(self, start: int, stop: int) -> str:

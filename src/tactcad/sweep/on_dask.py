@@ -66,7 +66,7 @@ class Done:
     seconds: float = 0.0
 
 
-class Order(Protocol):
+class SweepOrder(Protocol):
     """A task as it is handed to a worker."""
 
     def carry_out(self) -> Done:
@@ -75,13 +75,15 @@ class Order(Protocol):
 
 @dataclass(frozen=True)
 class SweepTask:
-    """Designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what `inputs` says."""
+    """Designs `start` to `stop` (exclusive) of a study, kept in `folder` or at the address `store`, made by
+    what `inputs` says."""
 
     study: Study
     inputs: Inputs
     folder: str
     start: int
     stop: int
+    store: str | None = None
 
     def carry_out(self) -> Done:
         which = self.start, self.stop - self.start
@@ -91,29 +93,36 @@ class SweepTask:
         if EXPORT in what and multiprocessing.current_process().daemon:
             return Done(*which, False, NO_HELPERS)
         folder = Path(self.folder)
-        if not (folder / MARK).is_file() or mark_of(folder).get("study") != self.study.identity:
+        if (self.store is None or EXPORT in what) and not self._sees(folder):
             return Done(*which, False, f"does not see {folder}: every worker needs the same folder there")
-        kept = Kept(self.study, folder, self.inputs.key)
-        if kept.get(self.start, self.stop) is not None:
-            return Done(*which, False)
-        start = time.process_time()
         try:
+            kept = Kept(self.study, folder, self.inputs.key, self.store)
+            if kept.get(self.start, self.stop) is not None:
+                return Done(*which, False)
+            start = time.process_time()
             table = measured(self.study, self.start, self.stop, folder)
-        except InputError as error:
-            return Done(*which, False, f"cannot export: {error}")
-        seconds = time.process_time() - start
+            seconds = time.process_time() - start
+        except InputError as error:  # of an export's folder, or of the store: it has no pickle
+            return Done(*which, False, f"cannot go on: {error}")
         kept.put(self.start, self.stop, table)
         return Done(*which, True, seconds=seconds)
 
+    def _sees(self, folder: Path) -> bool:
+        return (folder / MARK).is_file() and mark_of(folder).get("study") == self.study.identity
 
-def _carried_out(order: Order) -> Done:
+
+def _carried_out(order: SweepOrder) -> Done:
     with _ALONE:
         return order.carry_out()
 
 
 @contextmanager
 def cluster(
-    address: str | None, workers: int, loads: list[str], say: Callable[[str], None]
+    address: str | None,
+    workers: int,
+    loads: list[str],
+    prepare: Callable[[], None],
+    say: Callable[[str], None],
 ) -> Iterator[Client]:
     """A client of the scheduler at that address, or of processes on this machine where there is none.
 
@@ -125,6 +134,8 @@ def cluster(
         Processes on this machine.
     loads
         Modules that these start with; never the CAD kernel, which bears no fork.
+    prepare
+        What is to be done here while they do.
     say
         Receives the dashboard's address.
 
@@ -138,7 +149,8 @@ def cluster(
     with ExitStack() as stack:
         if address is None:
             stack.enter_context(_environment(ENVIRONMENT))
-            _load_ahead(loads)  # in a process of its own, while this one loads Dask
+            _load_ahead(loads)  # in a process of its own
+        prepare()
         logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
         settings = {
             "logging": dict.fromkeys(logs, "critical"),  # read when it is loaded
@@ -212,7 +224,7 @@ def _refuse_without_tactcad(client: Client) -> None:
         raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
 
 
-def all_done(client: Client, orders: Iterable[Order]) -> Iterator[Done]:
+def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
     """Each task's end, as they come; never more than AT_ONCE of them are handed out.
 
     Raises

@@ -15,8 +15,9 @@ from tactcad import __version__
 from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure
 
+from .designs_taken import prepared
 from .kept import SCHEMA, Kept, claimed
-from .measured import designs_a_task, loaded_first, made_by
+from .measured import as_rows, designs_a_task, loaded_first, made_by
 from .on_dask import Done, SweepTask, all_done, cluster
 from .results_table import CSV, PARQUET, Tally, write_tables
 from .study import Study
@@ -51,6 +52,7 @@ def sweep(
     with_csv: bool,
     say: Callable[[str], None],
     tell: Callable[[int, int, str], None],
+    store: str | None = None,
 ) -> Swept:
     """Measure every design of a study that is not measured yet, and write the table.
 
@@ -70,6 +72,8 @@ def sweep(
         Receives lines worth keeping.
     tell
         Receives (done, total, text) as designs finish.
+    store
+        An fsspec address that keeps what is finished; None for the folder.
 
     Raises
     ------
@@ -80,15 +84,15 @@ def sweep(
     """
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
-    kept = Kept(study, folder, inputs.key)
+    kept = Kept(study, folder, inputs.key, store)
     step, count = designs_a_task(study), study.count
     tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
     tell(0, count, "reading what is finished")
     missing = [task for task in tasks if kept.get(*task) is None]
-    orders = [SweepTask(study, inputs, str(folder), *task) for task in missing]
+    orders = [SweepTask(study, inputs, str(folder), *task, store) for task in missing]
     work = _Work(count, sum(stop - start for start, stop in missing), tell)
     with_csv = with_csv or count <= MOST_CSV
-    clusters = cluster(address, min(workers, len(missing)), loaded_first(study), say)
+    clusters = cluster(address, min(workers, len(missing)), loaded_first(study), lambda: prepared(study), say)
     with closing(work.done_on(clusters, orders)) as done:
         tally = write_tables(folder, _chunks(kept, tasks, orders, done), with_csv)
     files = (PARQUET, *([CSV] if with_csv else []))
@@ -113,7 +117,7 @@ def _chunks(
         table = kept.get(start, stop)
         if table is None:
             raise CheckFailure(f"{kept.folder}: designs {start + 1} to {stop} are damaged; run it again")
-        yield table
+        yield as_rows(kept.study, start, table)
 
 
 class _Work:
