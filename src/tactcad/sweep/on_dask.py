@@ -9,6 +9,7 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib import metadata
@@ -135,7 +136,7 @@ def cluster(
     loads
         Modules that these start with; never the CAD kernel, which bears no fork.
     prepare
-        What is to be done here while they do.
+        What is to be done here while they do, and while Dask starts.
     say
         Receives the dashboard's address.
 
@@ -150,7 +151,7 @@ def cluster(
         if address is None:
             stack.enter_context(_environment(ENVIRONMENT))
             _load_ahead(loads)  # in a process of its own
-        prepare()
+        prepared = stack.enter_context(ThreadPoolExecutor(1)).submit(prepare)
         logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
         settings = {
             "logging": dict.fromkeys(logs, "critical"),  # read when it is loaded
@@ -170,6 +171,7 @@ def cluster(
                 Client(stack.enter_context(_started(LocalCluster, workers, scratch)))
             )
             say(f"dashboard: {client.dashboard_link}")
+        prepared.result()
         yield client
 
 
