@@ -60,9 +60,10 @@ reference: environment ## the published benchmarks again, in full, on a quiet ma
 	$(BIN)/python benchmarks/publish.py exports/bench
 	$(BIN)/python benchmarks/interval_tables.py docs/validation.md
 
-nightly: environment ## the long tests, and the kernel's tests on the kernel that comes next
+nightly: environment ## the long tests, a night by chance, and the kernel's tests on the kernel that comes next
 	@status=0; \
-	$(BIN)/python -m pytest -m nightly || status=1; \
+	$(BIN)/python tests/night.py exports/night --workers $(WORKERS) || status=1; \
+	$(BIN)/python -m pytest -m "nightly and not night" || status=1; \
 	packaging/ocp8.sh || status=1; \
 	exit $$status
 

@@ -10,6 +10,8 @@ seconds of a whole sweep, and of two workers against one, want a quiet machine.
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import os
 import re
 import tempfile
 import threading
@@ -21,6 +23,8 @@ from pathlib import Path
 import psutil
 import pyarrow.parquet as pq
 
+from tactcad.design.design_text import design_text
+from tactcad.design.load import read
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.sweep import measured as one_task
@@ -37,12 +41,14 @@ VARY = (
 )
 CLOSED = '[measure]\nwhat = ["solid"]\nelements = [4]\n'
 ELEMENTS = '[measure]\nwhat = ["fem-plane"]\nelements = [4]\n'
-SMALL_TASKS, SOLVED = 400, 60
+EXPORTS = '[measure]\nwhat = ["export"]\n'
+SMALL_TASKS, SOLVED, EXPORTED = 400, 60, 12
 
 
-def study_of(folder: Path, count: int, measure: str) -> Study:
+def study_of(folder: Path, count: int, measure: str, head: str = "") -> Study:
     path = folder / "study.toml"
-    path.write_text(HEAD.format(count=count) + VARY + measure)
+    vary = VARY.partition('[vary."array')[0] if head else VARY
+    path.write_text(HEAD.format(count=count) + head + vary + measure)
     return read_study(path)
 
 
@@ -113,19 +119,41 @@ def overhead(folder: Path) -> list[str]:
 
 
 def two_workers(folder: Path) -> list[str]:
-    study = study_of(folder, SOLVED, ELEMENTS)
-    one, two = (swept(study, folder / f"{n}-workers", n).seconds["computing"] for n in (1, 2))
-    return [
-        f"| {SOLVED} elements by fem-plane, worker processes | s |",
-        "|---|---|",
-        f"| 1 | {one:.3g} |",
-        f"| 2 | {two:.3g} |",
-        f"| times as fast | {one / two:.2f} |",
-    ]
+    """One worker against two, from the first task to the last: without starting, and loading the kernel."""
+    lines = ["| worker processes | 1, s | 2, s | times as fast | load before |", "|---|---|---|---|---|"]
+    one_element(folder / "small.toml")
+    for what, count, measure, head in (
+        ("elements by fem-plane", SOLVED, ELEMENTS, ""),
+        ("elements by fem-solid", SOLVED, ELEMENTS.replace("plane", "solid"), ""),
+        ("exports of an array of one element", EXPORTED, EXPORTS, 'design = "small.toml"\n'),
+    ):
+        study = study_of(folder, count, measure, head)
+        load = os.getloadavg()[0]
+        one, two = (per_task(study, folder / f"{what} {n}", n) * count for n in (1, 2))
+        lines.append(f"| {count} {what} | {one:.3g} | {two:.3g} | {one / two:.2f} | {load:.2g} |")
+    return lines
+
+
+def per_task(study: Study, folder: Path, workers: int) -> float:
+    """Seconds a task, between the first `workers` of them and the last."""
+    ends: list[float] = []
+    run_sweep.sweep(
+        study, folder, None, workers, False, lambda _: None, lambda *_: ends.append(time.perf_counter())
+    )
+    done = ends[-study.count :]
+    return (done[-1] - done[workers - 1]) / (study.count - workers)
+
+
+def one_element(path: Path) -> None:
+    macro = read("macro-array")
+    rigs = dict.fromkeys(("cart", "holder", "sample", "calibration", "grasping"))
+    array = dataclasses.replace(macro.array, row_arms=((6.0,),))
+    origin = {"material.youngs_modulus": "the paper's"}
+    path.write_text(design_text(dataclasses.replace(macro, array=array, origin=origin, **rigs)))
 
 
 def closed_forms(folder: Path, designs: int) -> list[str]:
-    study = study_of(folder, designs, CLOSED)
+    study, load = study_of(folder, designs, CLOSED), os.getloadavg()[0]
     with watched() as memory:
         start = time.perf_counter()
         got = swept(study, folder / "closed", 2)
@@ -140,6 +168,7 @@ def closed_forms(folder: Path, designs: int) -> list[str]:
     return [
         f"| {designs:.0e} closed forms, 2 worker processes | |",
         "|---|---|",
+        f"| load of the machine before, of {os.cpu_count()} cores | {load:.2g} |",
         *(f"| {name}, s | {seconds:.3g} |" for name, seconds in got.seconds.items()),
         f"| whole, s | {whole:.3g} |",
         f"| the same columns written once by pyarrow, s | {once:.3g} |",

@@ -76,6 +76,16 @@ def as_toml(tree: dict[str, Any], path: tuple[str, ...] = ()) -> str:
     return "\n".join([*lines, *(as_toml(v, (*path, key)) for key, v in tree.items() if isinstance(v, dict))])
 
 
+@dataclass(frozen=True)
+class Judged:
+    """The rule that refuses a design ("" where none does), its scenes, and what the checks have against
+    it."""
+
+    rule: str
+    scenes: tuple[str, ...]
+    failed: tuple[str, ...]
+
+
 @dataclass
 class Counts:
     """What became of the designs drawn so far."""
@@ -89,26 +99,18 @@ class Counts:
     def judge(self, who: str, tree: dict[str, Any]) -> None:
         """Count the design as accepted, as refused by its rule, or as failed, with what the checks have
         against it."""
+        self.add(who, judged(tree))
+
+    def add(self, who: str, one: Judged) -> None:
         self.drawn += 1
-        try:
-            rule, names, failures = verdict(tree)
-        except Exception as error:  # a crash is a failure as any other, and says where it was
-            at = traceback.extract_tb(error.__traceback__)[-1]
-            rule, names, failures = (
-                "",
-                (),
-                [f"{type(error).__name__} in {at.name}, line {at.lineno}: {error}"],
-            )
-        if rule:
-            self.refused[rule] += 1
-        elif not failures:
+        if one.rule:
+            self.refused[one.rule] += 1
+        elif not one.failed:
             self.accepted += 1
-            self.scenes.update(names)
+            self.scenes.update(one.scenes)
         else:
-            self.failed.append(
-                f"{who}: {'; '.join(failures[:3])}"
-                + (f" and {len(failures) - 3} more" if failures[3:] else "")
-            )
+            more = f" and {len(one.failed) - 3} more" if one.failed[3:] else ""
+            self.failed.append(f"{who}: {'; '.join(one.failed[:3])}{more}")
 
     def __str__(self) -> str:
         refused = sum(self.refused.values())
@@ -119,6 +121,16 @@ class Counts:
             "rule "
             f"({most}), {len(self.failed)} failed"
         )
+
+
+def judged(tree: dict[str, Any]) -> Judged:
+    """The verdict; a crash is a failure as any other, and says where it was."""
+    try:
+        rule, scenes, failed = verdict(tree)
+    except Exception as error:
+        at = traceback.extract_tb(error.__traceback__)[-1]
+        return Judged("", (), (f"{type(error).__name__} in {at.name}, line {at.lineno}: {error}",))
+    return Judged(rule, scenes, tuple(failed))
 
 
 def verdict(tree: dict[str, Any]) -> tuple[str, tuple[str, ...], list[str]]:

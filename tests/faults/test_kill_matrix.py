@@ -178,6 +178,7 @@ def test_one_moment_of_each_signal(bench, tmp_path, command):
 
 
 @pytest.mark.nightly
+@pytest.mark.night
 @pytest.mark.parametrize("command", COMMANDS)
 def test_twenty_moments_of_each_signal(bench, tmp_path, command):
     case, standing = prepared(bench, tmp_path, COMMANDS[command]), "A"

@@ -89,11 +89,12 @@ def started(*command: object) -> subprocess.Popen[str]:
 
 
 def computing(process: subprocess.Popen) -> list[psutil.Process]:
-    """Worker processes of a sweep on this machine."""
+    """Worker processes of a sweep on this machine, or of a `dask worker`."""
     try:
         children = psutil.Process(process.pid).children(recursive=True)
-        return [c for c in children if "spawn_main" in " ".join(c.cmdline())]
-    except psutil.Error:
+        spawned = [c for c in children if "spawn_main" in " ".join(c.cmdline())]
+        return spawned + [c for c in children if "forkserver" in " ".join(c.parent().cmdline())]
+    except (psutil.Error, AttributeError):  # one of them has just ended
         return []
 
 

@@ -11,6 +11,7 @@ from scipy.stats import qmc
 from small_study import SMALL, written
 
 from tactcad.design.load import from_table, read
+from tactcad.sweep import sobol
 from tactcad.sweep.designs_taken import designs_taken, table_of
 from tactcad.sweep.study import read_study
 
@@ -83,3 +84,12 @@ def test_a_value_stands_where_its_path_says(tmp_path):
     assert design.holes.screw_offsets == (base.holes.screw_offsets[0], 14.0)
     assert design.rating.force == 1.5 and design.design.revision == "Z"
     assert study.design == base
+
+
+@pytest.mark.parametrize("start, stop", [(0, 1), (1, 2), (5, 6), (3, 70), (4095, 4097), (999_999, 1_010_000)])
+@pytest.mark.parametrize("fields", [1, 5])
+def test_any_stretch_of_a_sobol_sequence_is_scipys(fields, start, stop):
+    sampler = qmc.Sobol(fields, rng=7)
+    wanted = (sampler.fast_forward(start) if start else sampler).random(stop - start)
+    for count in (stop, 2_000_000):
+        assert np.array_equal(sobol.stretch(sobol.points_at_powers(fields, count, 7), start, stop), wanted)

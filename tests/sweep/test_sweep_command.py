@@ -23,7 +23,7 @@ from tactcad.design.load import from_table, read
 from tactcad.sweep.designs_taken import designs_taken, table_of
 from tactcad.sweep.kept import claimed
 from tactcad.sweep.measured import made_by
-from tactcad.sweep.on_dask import SweepTask, carry_out
+from tactcad.sweep.on_dask import SweepTask
 from tactcad.sweep.study import read_study
 
 
@@ -220,7 +220,7 @@ def test_a_task_handed_out_twice_is_computed_once(tmp_path):
     study = read_study(written(tmp_path))
     folder = claimed(study, tmp_path / "out")
     task = SweepTask(study, made_by(study.measure.what), str(folder), 0, 24)
-    first, kept = carry_out(task), entries(folder)
-    second = carry_out(task)
+    first, kept = task.carry_out(), entries(folder)
+    second = task.carry_out()
     assert (first.computed, second.computed) == (True, False) and first.designs == second.designs == 24
     assert len(kept) == 1 and entries(folder) == kept

@@ -109,6 +109,7 @@ def test_a_worker_that_would_make_something_else_is_refused(tmp_path, worker, sa
 
 
 @pytest.mark.nightly
+@pytest.mark.night
 def test_twenty_kills_at_random(undisturbed, tmp_path):
     """Of workers and clients, whenever."""
     path, wanted = undisturbed

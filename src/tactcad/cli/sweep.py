@@ -43,6 +43,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "processes on this machine)",
     )
     parser.add_argument(
+        "--store",
+        metavar="ADDRESS",
+        help="where tasks' results are kept, as s3://bucket/path: any that fsspec knows and every worker "
+        "reaches (default: DIR/store)",
+    )
+    parser.add_argument(
         "--workers", type=int, metavar="N", help="processes on this machine (default: one a core)"
     )
     parser.add_argument("--csv", action="store_true", help="write results.csv above 1e6 rows, too")
@@ -79,7 +85,7 @@ def _sweep(args: argparse.Namespace) -> int:
     workers = args.workers or cores()
     say = progress(sys.stderr).line
     with slow_work(sys.stderr) as tell:
-        got = sweep(study, args.out, args.scheduler, workers, args.csv, say, tell)
+        got = sweep(study, args.out, args.scheduler, workers, args.csv, say, tell, args.store)
     if args.json:
         print(json.dumps(_record(study, got), indent=1))
     else:

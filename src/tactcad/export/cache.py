@@ -81,6 +81,10 @@ class Cache:
             path.unlink()
         return None
 
+    def has(self, key: str) -> bool:
+        """Whether something is kept under the key, damaged or not."""
+        return not self._trouble and self._path(key).is_file()
+
     def put(self, key: str, data: bytes) -> None:
         """Keep the bytes under the key, whole or not at all."""
         if self._trouble:
@@ -94,7 +98,8 @@ class Cache:
             try:
                 with unfinished(lambda: os.unlink(temporary)), open(handle, "wb") as file:
                     fcntl.flock(file, fcntl.LOCK_EX)  # by which `trim` recognises what a killed run left
-                    file.write(self._header(key, data) + b"\n" + data)
+                    file.write(self._header(key, data) + b"\n")
+                    file.write(data)
                     file.flush()
                     os.replace(temporary, path)  # another process may put the same entry: the last one stays
             except BaseException:
@@ -144,8 +149,9 @@ class Cache:
         return self.root / name[:2] / name
 
     def _header(self, key: str, data: bytes) -> bytes:
-        digest = hmac.digest(self._secret, key.encode() + b"\0" + data, "sha256").hex()
-        return b"%s %s" % (FORMAT, digest.encode())
+        digest = hmac.new(self._secret, key.encode() + b"\0", "sha256")
+        digest.update(data)
+        return b"%s %s" % (FORMAT, digest.hexdigest().encode())
 
     def _complain(self, error: OSError) -> None:
         if not self._complained:

@@ -141,8 +141,7 @@ def in_zone(zone: dict, groups: dict[str, Array], two_sided: np.ndarray) -> np.n
 
 def expected_error(s: HingeSection, candidate: Candidate) -> Array:
     """Promised worst error of a candidate at every design, NaN outside the envelope."""
-    promised = _promised(zones(s), candidate)
-    return np.where(validity.reasons(s, MEASURED_FOR) == "", promised, np.nan)
+    return np.where(validity.within(s, MEASURED_FOR), _promised(zones(s), candidate), np.nan)
 
 
 def expected_error_of(s: HingeSection, rung: str, mesh: int | None = None) -> Array:

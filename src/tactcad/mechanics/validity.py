@@ -223,6 +223,12 @@ def broken_rules(s: HingeSection, rung: str) -> dict[str, np.ndarray]:
     return {name: mask for name, mask in masks.items() if mask.any()}
 
 
+def within(s: HingeSection, rung: str) -> np.ndarray:
+    """Mask of the designs that keep every rule of the rung, of the section's shape."""
+    broken = broken_rules(s, rung)
+    return ~np.logical_or.reduce([*broken.values(), np.zeros(s.shape, bool)])
+
+
 def reasons(s: HingeSection, rung: str) -> np.ndarray:
     """For each design the first rule it breaks and the fields to look at, "rule (field, field)", or an empty
     string; array of str of the section's shape."""

@@ -16,6 +16,7 @@ from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import HingeSection
 
 from .designs_taken import Column, table_of
+from .refused import ALL, Refused, Rows
 from .study import STRENGTH, Study
 from .vector_sections import Floats, VectorDesigns
 
@@ -29,7 +30,7 @@ def names_of(study: Study, rung: str, number: int) -> list[str]:
 
 
 def closed_forms(
-    study: Study, columns: dict[str, Column], reason: Column, results: Mapping[str, Floats]
+    study: Study, columns: dict[str, Column], refused: Refused, results: Mapping[str, Floats]
 ) -> None:
     """Fill in what closed forms say of these designs.
 
@@ -39,29 +40,28 @@ def closed_forms(
         The study.
     columns
         The designs.
-    reason
-        Of each design why it is refused, "" where it is not: filled in where this refuses it first.
+    refused
+        Which of them are not to be measured; filled in with those that closed forms refuse.
     results
         By column, NaN where nothing is known: filled in.
     """
     rungs = [rung for rung in study.measure.rungs if rung in ladder.CLOSED_FORMS]
     if not rungs:
         return
-    for rows, design, numbers in _alike(study, columns, reason):
+    for rows, design, numbers in _alike(study, columns, refused):
         many = VectorDesigns(design, numbers)
         there = len(many.layout.elements)
         for number in study.elements:
             if number > there:
-                _refuse(reason, rows, f"the design has no element {number}")
+                refused.add(rows, f"the design has no element {number}")
                 continue
             section = many.section(number)
             for rung in rungs:
                 result = ladder.evaluate(section, rung)
                 all_valid = result.valid.all()
                 if not all_valid:
-                    why = np.broadcast_to(result.reason, len(rows))
-                    said = [w and f"{rung} E{number}: {w}" for w in why]
-                    _refuse(reason, rows, np.array(said, object))
+                    said = [why and f"{rung} E{number}: {why}" for why in result.reason.flat]
+                    refused.add(rows, np.array(said, object))
                 values = [result.stiffness, expected_error_of(section, rung)]
                 if STRENGTH in study.measure.what:
                     values += _forces(many, section, rung, result)
@@ -90,52 +90,39 @@ def _stress(section: HingeSection, rung: str) -> Floats:
 
 
 def _alike(
-    study: Study, columns: dict[str, Column], reason: Column
-) -> Iterator[tuple[np.ndarray, Design, dict[str, Floats]]]:
+    study: Study, columns: dict[str, Column], refused: Refused
+) -> Iterator[tuple[Rows, Design, dict[str, Floats]]]:
     """Rows that differ in numbers only, a design that has all else of theirs, and those numbers. Designs
     that cannot be read are refused."""
     numbers = {path: column for path, column in columns.items() if column.dtype != object}
     others = {path: column for path, column in columns.items() if column.dtype == object}
-    count = len(next(iter(columns.values())))
     alike: dict[str, list[int]] = {}
     for i, row in enumerate(zip(*others.values())):
         alike.setdefault(json.dumps(row), []).append(i)
-    for rows in map(np.array, alike.values()) if others else [np.arange(count)]:
-        rows = rows[reason[rows] == ""]
+    groups: list[Rows] = [np.array(rows) for rows in alike.values()] if others else [ALL]
+    for rows in groups:
         try:
-            design = _design(study, others, rows) if rows.size else None
+            first = {path: column[rows] for path, column in others.items()}
+            design = from_table(table_of(study, first, 0)) if others else study.design
         except InputError as error:
-            _refuse(reason, rows, str(error))
+            refused.add(rows, str(error))
             continue
-        own = {path: column[rows] for path, column in numbers.items()}
-        if design is not None and any(path.startswith("material.") for path in own):
-            kept = _with_material(design, own, reason, rows)
-            rows, own = rows[kept], {path: column[kept] for path, column in own.items()}
-        if rows.size and design is not None:
-            yield rows, design, own
+        material = {path: column[rows] for path, column in numbers.items() if path.startswith("material.")}
+        if material:
+            refused.add(rows, _misnamed(design, material))
+        rows = refused.left(rows)
+        if refused.valid[rows].any():
+            yield rows, design, {path: column[rows] for path, column in numbers.items()}
 
 
-def _design(study: Study, others: dict[str, Column], rows: np.ndarray) -> Design:
-    return from_table(table_of(study, others, rows[0])) if others else study.design
-
-
-def _with_material(
-    design: Design, numbers: dict[str, Floats], reason: Column, rows: np.ndarray
-) -> np.ndarray:
-    """Which designs' material may bear its name; the others are refused, as when their file is read."""
-    material = {path: column for path, column in numbers.items() if path.startswith("material.")}
-    kept = np.ones(len(rows), bool)
-    for i, values in enumerate(zip(*material.values())):
+def _misnamed(design: Design, material: dict[str, Floats]) -> Column:
+    """Why these values may not bear the material's name, as when their file is read; "" where they may."""
+    why = []
+    for values in zip(*material.values()):
         own = {path.partition(".")[2]: float(value) for path, value in zip(material, values)}
         try:
             differences(design.material.alloy, vars(design.material) | own, design.origin)
+            why.append("")
         except InputError as error:
-            kept[i] = False
-            reason[rows[i]] = str(error)
-    return kept
-
-
-def _refuse(reason: Column, rows: np.ndarray, why: Column | str) -> None:
-    """Keep the first reason of each of the rows."""
-    first = reason[rows] == ""
-    reason[rows[first]] = np.broadcast_to(why, len(rows))[first]
+            why.append(str(error))
+    return np.array(why, object)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tactcad.assembly.virtual_shop import within_limits
-
+from . import sobol
 from .field_paths import placed, value_at
 from .study import GRID, LIST, SOBOL, Study, Varied
 
@@ -23,6 +21,12 @@ def designs_taken(study: Study, start: int, stop: int) -> dict[str, Column]:
         return _counted(study, np.arange(start, stop))
     shares = _shares(study, start, stop)
     return {path: _drawn(study, path, one, share) for (path, one), share in zip(study.vary.items(), shares.T)}
+
+
+def prepared(study: Study) -> None:
+    """What all designs are drawn from, made once; it goes with the study wherever that is sent."""
+    if study.study.sampling == SOBOL:
+        _ = study.sobol
 
 
 def table_of(study: Study, columns: dict[str, Column], i: int) -> dict[str, Any]:
@@ -62,20 +66,16 @@ def _drawn(study: Study, path: str, one: Varied, share: NDArray[np.float64]) -> 
         return low + (high - low) * share
     from scipy.special import ndtri
 
+    from tactcad.assembly.virtual_shop import within_limits
+
     return value_at(study.design, path) + (one.normal or 0.0) * within_limits(ndtri(share), "normal")
 
 
 def _shares(study: Study, start: int, stop: int) -> NDArray[np.float64]:
     """Points of the unit cube, one column a field."""
-    from scipy.stats import qmc
-
-    fields, head = len(study.vary), study.study
-    if head.sampling != SOBOL:
-        return _hypercube(fields, study.count, head.seed)[start:stop]
-    points = qmc.Sobol(fields, rng=head.seed)
-    with warnings.catch_warnings():  # it wants powers of two; a study of any size is spread well enough
-        warnings.simplefilter("ignore", UserWarning)
-        return (points.fast_forward(start) if start else points).random(stop - start)
+    if study.study.sampling == SOBOL:
+        return sobol.stretch(study.sobol, start, stop)
+    return _hypercube(len(study.vary), study.count, study.study.seed)[start:stop]
 
 
 @lru_cache(maxsize=1)

@@ -1,12 +1,12 @@
 """The folder of a study: whose it is, what is finished in it, and the table at its end.
 
-DIR/study.json names the study by digest; DIR/store holds one entry for every task that is finished, each
-written in one step and verified when it is read (tactcad.export.cache); the rest is written whole at the end.
+DIR/study.json names the study by digest; DIR/store, or another place, holds one entry for every task that is
+finished, each written in one step and verified when it is read (tactcad.export.cache, far_store); the rest is
+written whole at the end.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from pathlib import Path
@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any
 from tactcad.design.files import absolute, make_folder, read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.cache import Cache
+from tactcad.export.contents import sha256_of
 
+from .far_store import FarStore
 from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study
 
@@ -39,26 +41,29 @@ class Kept:
         Where; absolute, so that a worker with another working folder finds it.
     made_by
         Digest of the rooms and libraries that results come from (`measured.made_by`).
+    store
+        Address of the store where it is not in the folder.
     """
 
-    def __init__(self, study: Study, folder: Path, made_by: str) -> None:
+    def __init__(self, study: Study, folder: Path, made_by: str, store: str | None = None) -> None:
         self.study, self.folder = study, folder
         self._prefix = f"{SCHEMA} {study.identity} {made_by}"
         self._said: list[str] = []
-        self._cache = Cache(folder / STORE, self._said.append)
+        self._store = FarStore(store) if store else Cache(folder / STORE, self._said.append)
 
     def get(self, start: int, stop: int) -> pa.Table | None:
         """What is kept of these designs; None where they are not finished, or the entry is damaged."""
-        data = self._cache.get(self._key(start, stop))
+        data = self._store.get(self._key(start, stop))
         table = from_bytes(data) if data is not None else None
         return None if table is None or self._lacks_files(start, table) else table
 
     def put(self, start: int, stop: int, table: pa.Table) -> None:
-        """Keep it. Raises CheckFailure where it does not read back."""
-        self._cache.put(self._key(start, stop), as_bytes(table))
-        if self._cache.get(self._key(start, stop)) is None:
-            why = self._said[-1] if self._said else "it does not read back"
-            raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
+        """Keep it. Raises CheckFailure where that cannot be."""
+        key = self._key(start, stop)
+        self._said.clear()
+        self._store.put(key, as_bytes(table))
+        if self._said or not self._store.has(key):
+            raise CheckFailure(f"{self.folder}: a result cannot be kept: {' '.join(self._said[-1:])}")
 
     def _key(self, start: int, stop: int) -> str:
         return f"{self._prefix} {start} {stop}"
@@ -69,7 +74,7 @@ class Kept:
             return False
         wanted = table["manifest_sha256"][0].as_py()
         manifest = export_folder(self.folder, start + 1) / "manifest.json"
-        there = hashlib.sha256(manifest.read_bytes()).hexdigest() if manifest.is_file() else ""
+        there = sha256_of(manifest.read_bytes()) if manifest.is_file() else ""
         return there != wanted
 
 

@@ -14,7 +14,8 @@ from tactcad.mechanics.ladder import FINITE_ELEMENTS
 
 from .closed_forms import closed_forms
 from .designs_taken import Column, designs_taken, table_of
-from .study import BUILDS, CHECKS, EXPORT, Study
+from .refused import Refused
+from .study import BUILDS, CHECKS, EXPORT, HYPERCUBE, Study
 from .whole_designs import measured_whole, numbers_of, texts_of
 
 if TYPE_CHECKING:
@@ -50,42 +51,58 @@ def designs_a_task(study: Study) -> int:
     return 1 if {*FINITE_ELEMENTS, BUILDS, CHECKS, EXPORT} & set(study.measure.what) else RULES_A_TASK
 
 
+def loaded_first(study: Study) -> list[str]:
+    """Modules that its tasks need, but for the CAD kernel and what needs it."""
+    drawn = ["scipy.stats.qmc"] * (study.study.sampling == HYPERCUBE)
+    solved = ["tactcad.lab.array_estimate"] * bool(set(FINITE_ELEMENTS) & set(study.measure.what))
+    return ["pyarrow", "tactcad.sweep.on_dask", *drawn, *solved]
+
+
 def export_folder(folder: Path, number: int) -> Path:
     """Where the files of the design of that number go."""
     return folder / "exports" / f"{number:06}"
 
 
 def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
-    """The rows of designs `start` to `stop` (exclusive).
+    """What is found of designs `start` to `stop` (exclusive).
 
     Returns
     -------
     pyarrow.Table
-        number (from 1), every varied field, rung, results (empty where unknown), valid, reason.
+        Every varied field, results (empty where unknown), valid, and reason, null where all are valid.
     """
     import pyarrow as pa
 
     columns = designs_taken(study, start, stop)
     count = stop - start
-    reason: Column = np.full(count, "", object)
+    refused = Refused(count)
     numbers = {name: np.full(count, np.nan) for name in numbers_of(study)}
     texts = {name: np.full(count, "", object) for name in texts_of(study)}
     if study.measure.whole_designs:
         for i in range(count):
             table = table_of(study, columns, i)
-            found, reason[i] = measured_whole(study, table, export_folder(folder, start + i + 1))
+            found, why = measured_whole(study, table, export_folder(folder, start + i + 1))
+            refused.add(np.array([i]), why)
             for name, value in found.items():
                 (texts if name in texts else numbers)[name][i] = value
-    closed_forms(study, columns, reason, numbers)
-    table = {"number": pa.array(np.arange(start + 1, stop + 1))}
-    table |= {path: _field(column) for path, column in columns.items()}
-    table["rung"] = pa.repeat(" ".join(study.measure.rungs), count)
+    closed_forms(study, columns, refused, numbers)
+    table = {path: _field(column) for path, column in columns.items()}
     table |= {name: pa.array(column, from_pandas=True) for name, column in numbers.items()}
     table |= {name: pa.array(column, pa.string()) for name, column in texts.items()}
-    valid = reason == ""
-    table["valid"] = pa.array(valid)
-    table["reason"] = pa.repeat("", count) if valid.all() else pa.array(reason, pa.string())
+    table["valid"] = pa.array(refused.valid)
+    table["reason"] = pa.nulls(count) if refused.valid.all() else pa.array(refused.reason, pa.string())
     return pa.table(table)
+
+
+def as_rows(study: Study, start: int, found: pa.Table) -> pa.Table:
+    """Rows of the study's table: what was found, and what is known of designs from `start` without it."""
+    import pyarrow as pa
+
+    count, fields = found.num_rows, len(study.vary)
+    if pa.types.is_null(found["reason"].type):
+        found = found.set_column(found.num_columns - 1, "reason", pa.repeat("", count))
+    found = found.add_column(fields, "rung", pa.repeat(" ".join(study.measure.rungs), count))
+    return found.add_column(0, "number", pa.array(np.arange(start + 1, start + count + 1)))
 
 
 def _field(column: Column) -> pa.Array:

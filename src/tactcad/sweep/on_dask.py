@@ -8,13 +8,15 @@ import multiprocessing
 import os
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib import metadata
 from itertools import islice
+from multiprocessing import forkserver
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from tactcad.account import KERNEL
 from tactcad.design.files import scratch_folder
@@ -33,9 +35,16 @@ if TYPE_CHECKING:
 AT_ONCE = 500
 ANSWER = "10s"  # within which a scheduler answers, or nobody is there
 
-# Dask has its workers' C library give back every freed array at once; vector calls then take 2.5 times as
-# long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most that it takes.
-MEMORY = {"MALLOC_TRIM_THRESHOLD_": 1 << 28, "MALLOC_MMAP_THRESHOLD_": 1 << 25}
+# Of workers on this machine. Dask has their C library give back every freed array at once; vector calls then
+# take 2.5 times as long, measured. Up to these sizes (bytes) it keeps them; of the second, 32 MiB is the most
+# that it takes. A process uses one core: there is one for each.
+ENVIRONMENT = {
+    "MALLOC_TRIM_THRESHOLD_": str(1 << 28),
+    "MALLOC_MMAP_THRESHOLD_": str(1 << 25),
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+}
 
 NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
@@ -45,57 +54,77 @@ _ALONE = threading.Lock()
 
 
 @dataclass(frozen=True)
-class SweepTask:
-    """One task: designs `start` to `stop` (exclusive) of a study, kept in `folder`, made by what
-    `inputs` says."""
-
-    study: Study
-    inputs: Inputs
-    folder: str
-    start: int
-    stop: int
-
-
-@dataclass(frozen=True)
 class Done:
     """A task at its end: whether it was computed now, or found in the store; `unable`: why neither.
 
     `seconds`: processor time of computing, without what the store takes.
     """
 
+    start: int
     designs: int
     computed: bool
     unable: str = ""
     seconds: float = 0.0
 
 
-def carry_out(order: SweepTask) -> Done:
-    """Measure the designs of one task, unless the store has them: Dask runs tasks of a dead worker again,
-    finished ones too."""
-    designs = order.stop - order.start
-    with _ALONE:
-        if order.inputs != (own := made_by(order.study.measure.what)):
-            return Done(designs, False, "is of another version: " + "; ".join(reasons(own, order.inputs)[:3]))
-        if EXPORT in order.study.measure.what and multiprocessing.current_process().daemon:
-            return Done(designs, False, NO_HELPERS)
-        folder = Path(order.folder)
-        if not (folder / MARK).is_file() or mark_of(folder).get("study") != order.study.identity:
-            return Done(designs, False, f"does not see {folder}: every worker needs the same folder there")
-        kept = Kept(order.study, folder, order.inputs.key)
-        if kept.get(order.start, order.stop) is not None:
-            return Done(designs, False)
-        start = time.process_time()
+class SweepOrder(Protocol):
+    """A task as it is handed to a worker."""
+
+    def carry_out(self) -> Done:
+        """Do it, unless the store has it: Dask runs tasks of a dead worker again, finished ones too."""
+
+
+@dataclass(frozen=True)
+class SweepTask:
+    """Designs `start` to `stop` (exclusive) of a study, kept in `folder` or at the address `store`, made by
+    what `inputs` says."""
+
+    study: Study
+    inputs: Inputs
+    folder: str
+    start: int
+    stop: int
+    store: str | None = None
+
+    def carry_out(self) -> Done:
+        which = self.start, self.stop - self.start
+        what = self.study.measure.what
+        if self.inputs != (own := made_by(what)):
+            return Done(*which, False, "is of another version: " + "; ".join(reasons(own, self.inputs)[:3]))
+        if EXPORT in what and multiprocessing.current_process().daemon:
+            return Done(*which, False, NO_HELPERS)
+        folder = Path(self.folder)
+        if (self.store is None or EXPORT in what) and not self._sees(folder):
+            return Done(*which, False, f"does not see {folder}: every worker needs the same folder there")
         try:
-            table = measured(order.study, order.start, order.stop, folder)
-        except InputError as error:
-            return Done(designs, False, f"cannot export: {error}")
-        seconds = time.process_time() - start
-        kept.put(order.start, order.stop, table)
-    return Done(designs, True, seconds=seconds)
+            kept = Kept(self.study, folder, self.inputs.key, self.store)
+            if kept.get(self.start, self.stop) is not None:
+                return Done(*which, False)
+            start = time.process_time()
+            table = measured(self.study, self.start, self.stop, folder)
+            seconds = time.process_time() - start
+        except InputError as error:  # of an export's folder, or of the store: it has no pickle
+            return Done(*which, False, f"cannot go on: {error}")
+        kept.put(self.start, self.stop, table)
+        return Done(*which, True, seconds=seconds)
+
+    def _sees(self, folder: Path) -> bool:
+        return (folder / MARK).is_file() and mark_of(folder).get("study") == self.study.identity
+
+
+def _carried_out(order: SweepOrder) -> Done:
+    with _ALONE:
+        return order.carry_out()
 
 
 @contextmanager
-def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> Iterator[Client]:
+def cluster(
+    address: str | None,
+    workers: int,
+    loads: list[str],
+    prepare: Callable[[], None],
+    say: Callable[[str], None],
+) -> Iterator[Client]:
     """A client of the scheduler at that address, or of processes on this machine where there is none.
 
     Parameters
@@ -104,6 +133,10 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
         As "tcp://HOST:8786".
     workers
         Processes on this machine.
+    loads
+        Modules that these start with; never the CAD kernel, which bears no fork.
+    prepare
+        What is to be done here while they do, and while Dask starts.
     say
         Receives the dashboard's address.
 
@@ -114,35 +147,62 @@ def cluster(address: str | None, workers: int, say: Callable[[str], None]) -> It
     """
     import dask
 
-    logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
-    quiet = {"logging": dict.fromkeys(logs, "critical")}
-    with dask.config.set(quiet):  # read when it is loaded
+    with ExitStack() as stack:
+        if address is None:
+            stack.enter_context(_environment(ENVIRONMENT))
+            _load_ahead(loads)  # in a process of its own
+        prepared = stack.enter_context(ThreadPoolExecutor(1)).submit(prepare)
+        logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
+        settings = {
+            "logging": dict.fromkeys(logs, "critical"),  # read when it is loaded
+            "distributed.worker.daemon": False,
+            "distributed.worker.multiprocessing-method": "forkserver",
+        }
+        stack.enter_context(dask.config.set(settings))
         from distributed import Client, LocalCluster
 
-    environ = {f"distributed.nanny.pre-spawn-environ.{name}": value for name, value in MEMORY.items()}
-    with dask.config.set({**quiet, **environ, "distributed.worker.daemon": False}):
         if address is not None:
-            with _connected(Client, address) as client:
-                _refuse_without_tactcad(client)
-                say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
-                yield client
-            return
-        with scratch_folder("sweep") as scratch:
-            options = {"local_directory": str(scratch), "dashboard_address": "127.0.0.1:0"}
-            with _started(LocalCluster, workers, options) as local, Client(local) as client:
-                say(f"dashboard: {client.dashboard_link}")
-                yield client
+            client = stack.enter_context(_connected(Client, address))
+            _refuse_without_tactcad(client)
+            say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
+        else:
+            scratch = stack.enter_context(scratch_folder("sweep"))
+            client = stack.enter_context(
+                Client(stack.enter_context(_started(LocalCluster, workers, scratch)))
+            )
+            say(f"dashboard: {client.dashboard_link}")
+        prepared.result()
+        yield client
 
 
-def _started(local: type[LocalCluster], workers: int, options: dict[str, str]) -> LocalCluster:
-    """Processes of one thread each, by spawn, which is Dask's own way."""
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _load_ahead(modules: list[str]) -> None:
+    """Start the process that workers are forked from: what it has loaded none of them loads again, and having
+    no threads it can be forked."""
+    multiprocessing.set_forkserver_preload(["distributed", *modules])
+    forkserver.ensure_running()
+
+
+def _started(local: type[LocalCluster], workers: int, scratch: Path) -> LocalCluster:
+    """Processes of one thread each."""
     try:
         return local(
             n_workers=workers,
             threads_per_worker=1,
             host="127.0.0.1",
+            local_directory=str(scratch),
+            dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
-            **options,
         )
     except RuntimeError as error:
         raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
@@ -166,7 +226,7 @@ def _refuse_without_tactcad(client: Client) -> None:
         raise InputError("a worker", what, legal="pip install 'tactcad[sweep]' there") from error
 
 
-def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
+def all_done(client: Client, orders: Iterable[SweepOrder]) -> Iterator[Done]:
     """Each task's end, as they come; never more than AT_ONCE of them are handed out.
 
     Raises
@@ -180,11 +240,7 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
     from distributed.comm.core import CommClosedError
 
     left = iter(orders)
-
-    def handed(order: SweepTask):  # type: ignore[no-untyped-def]
-        return client.submit(carry_out, order, pure=False)
-
-    running = as_completed([handed(order) for order in islice(left, AT_ONCE)])
+    running = as_completed(client.map(_carried_out, list(islice(left, AT_ONCE)), pure=False))
     try:
         for future in running:
             done = future.result()
@@ -192,7 +248,7 @@ def all_done(client: Client, orders: Iterable[SweepTask]) -> Iterator[Done]:
                 raise InputError("a worker", done.unable)
             yield done
             for order in islice(left, 1):
-                running.add(handed(order))
+                running.add(client.submit(_carried_out, order, pure=False))
     except KilledWorker as error:
         raise CheckFailure(
             f"a task killed every worker it was given to, the last one {error.last_worker.address}: too "

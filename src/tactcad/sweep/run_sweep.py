@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import AbstractContextManager, closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,14 +15,16 @@ from tactcad import __version__
 from tactcad.design.files import write_whole
 from tactcad.design.messages import CheckFailure
 
+from .designs_taken import prepared
 from .kept import SCHEMA, Kept, claimed
-from .measured import designs_a_task, made_by
-from .on_dask import SweepTask, all_done, cluster
+from .measured import as_rows, designs_a_task, loaded_first, made_by
+from .on_dask import Done, SweepTask, all_done, cluster
 from .results_table import CSV, PARQUET, Tally, write_tables
 from .study import Study
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from distributed import Client
 
 MANIFEST = "manifest.json"
 MOST_CSV = 1_000_000  # rows that are written as CSV unasked
@@ -49,6 +52,7 @@ def sweep(
     with_csv: bool,
     say: Callable[[str], None],
     tell: Callable[[int, int, str], None],
+    store: str | None = None,
 ) -> Swept:
     """Measure every design of a study that is not measured yet, and write the table.
 
@@ -68,6 +72,8 @@ def sweep(
         Receives lines worth keeping.
     tell
         Receives (done, total, text) as designs finish.
+    store
+        An fsspec address that keeps what is finished; None for the folder.
 
     Raises
     ------
@@ -78,65 +84,82 @@ def sweep(
     """
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
-    kept = Kept(study, folder, inputs.key)
+    kept = Kept(study, folder, inputs.key, store)
     step, count = designs_a_task(study), study.count
     tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
     tell(0, count, "reading what is finished")
     missing = [task for task in tasks if kept.get(*task) is None]
-    orders = (SweepTask(study, inputs, str(folder), *task) for task in missing)
-    wanted = sum(stop - start for start, stop in missing)
-    clock = _Stopwatch()
-    computed, in_workers = 0, 0.0
-    if missing:
-        tell(count - wanted, count, "starting")
-        with cluster(address, min(workers, len(missing)), say) as client:
-            clock.lap("starting")
-            tell(count - wanted, count, "designs, none finished yet")
-            done = 0
-            for each in all_done(client, orders):
-                done += each.designs
-                computed += each.designs * each.computed
-                in_workers += each.seconds
-                tell(count - wanted + done, count, _rate(done, wanted, clock.lapsed))
-            clock.lap("computing")
-        clock.lap("ending")
-
-    def chunks() -> Iterator[pa.Table]:
-        for start, stop in tasks:
-            table = kept.get(start, stop)
-            if table is None:
-                raise CheckFailure(f"{folder}: designs {start + 1} to {stop} are damaged; run it again")
-            yield table
-
+    orders = [SweepTask(study, inputs, str(folder), *task, store) for task in missing]
+    work = _Work(count, sum(stop - start for start, stop in missing), tell)
     with_csv = with_csv or count <= MOST_CSV
-    tally = write_tables(folder, chunks(), with_csv)
+    clusters = cluster(address, min(workers, len(missing)), loaded_first(study), lambda: prepared(study), say)
+    with closing(work.done_on(clusters, orders)) as done:
+        tally = write_tables(folder, _chunks(kept, tasks, orders, done), with_csv)
     files = (PARQUET, *([CSV] if with_csv else []))
     write_whole(folder / MANIFEST, _manifest(study, folder, files, tally))
-    clock.lap("writing")
-    return Swept(folder, (*files, MANIFEST), tally, computed, count - computed, clock.seconds, in_workers)
+    work.lap("writing")
+    return Swept(
+        folder, (*files, MANIFEST), tally, work.computed, count - work.computed, work.seconds, work.in_workers
+    )
 
 
-class _Stopwatch:
-    def __init__(self) -> None:
+def _chunks(
+    kept: Kept, tasks: list[tuple[int, int]], orders: list[SweepTask], done: Iterator[Done]
+) -> Iterator[pa.Table]:
+    """Every task's rows in the order of the designs, each as soon as it is kept: so most of the table is
+    written while others compute."""
+    running = {order.start for order in orders}
+    for start, stop in tasks:
+        while start in running:
+            running.remove(next(done).start)
+            if not running:
+                next(done, None)  # the cluster ends
+        table = kept.get(start, stop)
+        if table is None:
+            raise CheckFailure(f"{kept.folder}: designs {start + 1} to {stop} are damaged; run it again")
+        yield as_rows(kept.study, start, table)
+
+
+class _Work:
+    """What is computed of `wanted` designs of `count`, told as they finish, and how long its parts took."""
+
+    def __init__(self, count: int, wanted: int, tell: Callable[[int, int, str], None]) -> None:
+        self.count, self.wanted, self.tell = count, wanted, tell
+        self.computed, self.in_workers = 0, 0.0
         self.seconds: dict[str, float] = {}
         self._last = time.perf_counter()
 
-    @property
-    def lapsed(self) -> float:
-        return time.perf_counter() - self._last
+    def done_on(
+        self, clusters: AbstractContextManager[Client], orders: list[SweepTask]
+    ) -> Generator[Done, None, None]:
+        """Tasks as they finish, on a cluster that is there until all have."""
+        if not orders:
+            return
+        before, finished = self.count - self.wanted, 0
+        self.tell(before, self.count, "starting")
+        with clusters as client:
+            self.lap("starting")
+            self.tell(before, self.count, "designs, none finished yet")
+            for each in all_done(client, orders):
+                finished += each.designs
+                self.computed += each.designs * each.computed
+                self.in_workers += each.seconds
+                self.tell(before + finished, self.count, self._rate(finished))
+                yield each
+            self.lap("computing")
+        self.lap("ending")
 
     def lap(self, name: str) -> None:
-        self.seconds[name] = round(self.lapsed, 3)
-        self._last = time.perf_counter()
+        """A part has ended."""
+        now = time.perf_counter()
+        self.seconds[name] = round(now - self._last, 3)
+        self._last = now
 
-
-def _rate(done: int, wanted: int, seconds: float) -> str:
-    rate = done / max(seconds, 1e-6)
-    left = (wanted - done) / rate
-    shown = (
-        f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min" if left < 7200 else f"{left / 3600:.1f} h"
-    )
-    return f"designs, {rate:.3g} a second, {shown} left"
+    def _rate(self, finished: int) -> str:
+        rate = finished / max(time.perf_counter() - self._last, 1e-6)
+        left = (self.wanted - finished) / rate
+        units = f"{left:.0f} s" if left < 120 else f"{left / 60:.0f} min"
+        return f"designs, {rate:.3g} a second, {units if left < 7200 else f'{left / 3600:.1f} h'} left"
 
 
 def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) -> bytes:

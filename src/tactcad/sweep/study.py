@@ -21,6 +21,7 @@ from tactcad.mechanics.ladder import CLOSED_FORMS, RUNGS
 from tactcad.parts.layout import Layout
 
 from .field_paths import spec_at, value_at
+from .sobol import Points, points_at_powers
 
 # Chosen: ten times the largest study that was timed.
 MOST_DESIGNS = 100_000_000
@@ -128,6 +129,11 @@ class Study:
     def identity(self) -> str:
         """Digest of what is asked: equal for equal tables, whatever their comments and order."""
         return digest([self.study, self.vary, self.measure, self.base])
+
+    @cached_property
+    def sobol(self) -> Points:
+        """Of which its Sobol points are made: drawn once, and handed on with the study."""
+        return points_at_powers(len(self.vary), self.count, self.study.seed)
 
     @property
     def count(self) -> int:

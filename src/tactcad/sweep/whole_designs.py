@@ -113,15 +113,14 @@ def _checks(_: Study, design: Design) -> dict[str, Any]:
 
 
 def _export(design: Design, folder: Path) -> dict[str, Any]:
-    import hashlib
-
+    from tactcad.export.contents import sha256_of
     from tactcad.export.pipeline import ExportOptions, export
     from tactcad.scenes import scene_names
 
     folder.parent.mkdir(parents=True, exist_ok=True)
     done = export(design, ExportOptions(tuple(scene_names(design))), folder, _Quiet())
     manifest = (folder / "manifest.json").read_bytes()
-    return {"files": done.files, "manifest_sha256": hashlib.sha256(manifest).hexdigest()}
+    return {"files": done.files, "manifest_sha256": sha256_of(manifest)}
 
 
 class _Quiet:

@@ -1,0 +1,82 @@
+"""A store of finished tasks at any address that fsspec knows: s3://bucket/path, gs://..., sftp://...
+
+An entry is one object: a line with the SHA-256 of key and bytes, then the bytes. It is written whole or not
+at all, by fsspec's transactions, and verified when it is read. Whoever may write there is trusted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export.contents import sha256_of
+
+Kind = TypeVar("Kind")
+
+
+class FarStore:
+    """The store at an address; entries' names are digests of their keys.
+
+    Raises
+    ------
+    InputError
+        Where fsspec does not know such addresses, or what it needs for them is not installed.
+    CheckFailure
+        Here and later, where the place does not answer or refuses.
+    """
+
+    def __init__(self, address: str) -> None:
+        import fsspec
+
+        self.address = address
+        try:
+            self._files, self._root = fsspec.url_to_fs(address)
+        except (ValueError, ImportError) as error:
+            legal = "a folder, or an address such as s3://bucket/path"
+            raise InputError("--store", str(error), value=address, legal=legal) from error
+        except Exception as error:  # each kind of place has its own
+            raise self._refusal(error) from error
+
+    def get(self, key: str) -> bytes | None:
+        """The bytes kept under the key, None where there are none or they are damaged."""
+        try:
+            kept = self._tried(lambda: self._files.cat_file(self._path(key)))
+        except FileNotFoundError:
+            return None
+        header, _, data = kept.partition(b"\n")
+        return data if header == _header(key, data) else None
+
+    def put(self, key: str, data: bytes) -> None:
+        """Keep the bytes under the key."""
+
+        def write() -> None:
+            self._files.makedirs(self._root, exist_ok=True)
+            with self._files.transaction, self._files.open(self._path(key), "wb") as file:
+                file.write(_header(key, data) + b"\n")
+                file.write(data)
+
+        self._tried(write)
+
+    def has(self, key: str) -> bool:
+        """Whether something is kept under the key."""
+        return self._tried(lambda: self._files.exists(self._path(key)))
+
+    def _path(self, key: str) -> str:
+        return f"{self._root.rstrip('/')}/{sha256_of(key.encode())}"
+
+    def _tried(self, ask: Callable[[], Kind]) -> Kind:
+        try:
+            return ask()
+        except FileNotFoundError:
+            raise
+        except Exception as error:  # each kind of place has its own
+            raise self._refusal(error) from error
+
+    def _refusal(self, error: Exception) -> CheckFailure:
+        why = " ".join(str(error).split()) or type(error).__name__
+        return CheckFailure(f"--store {self.address}: {why}; what was finished is kept")
+
+
+def _header(key: str, data: bytes) -> bytes:
+    return sha256_of(key.encode() + b"\0" + data).encode()
