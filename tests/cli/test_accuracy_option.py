@@ -80,7 +80,7 @@ def test_a_tenth_of_a_per_cent_is_solved_by_solid_elements(capsys, tmp_path):
 def test_report_names_rung_error_and_time(capsys):
     assert main(["estimate", "--accuracy", "5%"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[-1].startswith("budget: solid keeps K within 0.")
+    assert lines[-1].startswith("budget: solid: K within 0.")
     assert sum(line.startswith("K within 0.") and "docs/accuracy.md" in line for line in lines) == 1
 
 

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from tactcad.bench import costs, this_machine
+from tactcad.bench import costs, kernel_costs, rung_costs, this_machine
 from tactcad.cli.main import main
 from tactcad.fem import fem_ladder
 from tactcad.mechanics.accuracy import CANDIDATES, expected_error
 from tactcad.mechanics.section import REFERENCE
+from tactcad.parts.designs import load
 
 HEADER = (
     "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,"
@@ -81,11 +82,11 @@ def rows(tmp_path, lines, *args):
 def test_a_table_gets_each_row_its_rung_and_one_budget(tmp_path, capsys):
     found = rows(tmp_path, [ROW, DEEP, ROW.replace("0.33", "0.1")], "--in", "2")
     said = capsys.readouterr().out.splitlines()[-1]
-    assert said.startswith("budget: solid keeps K within 4.7 %")
+    assert said.startswith("budget: solid: K within 4.7 %")
     assert [row["model"] for row in found] == ["solid", "solid", ""]
     found = rows(tmp_path, [ROW, DEEP], "--within", "1%")
     said = capsys.readouterr().out.splitlines()[-1]
-    assert "solid for 1 and fem-solid, mesh 2 for 1 keeps K within 0.29 %" in said
+    assert "solid for 1 and fem-solid, mesh 2 for 1: K within 0.29 %" in said
     assert [row["model"] for row in found] == ["solid", "fem-solid"]
     assert all(float(row["expected_error"]) <= 0.01 for row in found)
     assert rows(tmp_path, [], "--in", "2") == []
@@ -93,14 +94,14 @@ def test_a_table_gets_each_row_its_rung_and_one_budget(tmp_path, capsys):
 
 def test_costs_follow_the_work(monkeypatch):
     many = REFERENCE.with_(load_arm=[5.0, 6.0, 7.0])
-    one, three = costs.rung_grades(REFERENCE), costs.rung_grades(many)
+    one, three = rung_costs.rung_grades(REFERENCE), rung_costs.rung_grades(many)
     assert [g.name for g in one] == [c.name for c in CANDIDATES]
     assert [g.error for g in one] == [float(expected_error(REFERENCE, c)) for c in CANDIDATES]
     start = costs.published()["start"]
-    work = [g.seconds - sum(start.values()) for g in (one[-1], three[-1])]
+    work = [g.seconds - start["numpy"] - start["elements"] for g in (one[-1], three[-1])]
     assert work[1] == pytest.approx(3.0 * work[0], rel=0.2)
     monkeypatch.setattr(costs, "slowness", lambda: 2.0)
-    assert costs.rung_grades(REFERENCE)[-1].seconds == pytest.approx(2.0 * one[-1].seconds, rel=0.06)
+    assert rung_costs.rung_grades(REFERENCE)[-1].seconds == pytest.approx(2.0 * one[-1].seconds, rel=0.06)
 
 
 def test_a_calibration_is_kept_and_a_damaged_or_unwritable_cache_survived(tmp_path, monkeypatch, capsys):
@@ -129,3 +130,43 @@ def test_costs_are_published_with_their_machine():
         c.name for c in CANDIDATES if "fem" in c.rung
     }
     assert Path(costs.DATA).is_file()
+
+
+@pytest.mark.cad
+def test_a_check_meshes_as_finely_as_asked_and_leaves_nothing_out(capsys):
+    args = ["check", "soft-tissue", "--scene", "array", "--json"]
+    assert main(args) == 0
+    usual = json.loads(capsys.readouterr().out)
+    assert main([*args, "--within", "0.2%"]) == 0
+    fine = json.loads(capsys.readouterr().out)
+    assert fine["budget"]["chosen"]["error"] <= 0.002 and "budget" not in usual
+    assert fine["runs"] == usual["runs"] and fine["passed"]
+
+
+@pytest.mark.cad
+def test_a_check_refuses_a_time_too_short_before_it_begins(capsys, monkeypatch):
+    monkeypatch.setattr("tactcad.checks.run.run_checks", lambda *_: pytest.fail("begun"))
+    for command in ("check", "export"):
+        assert main([command, "soft-tissue", "--in", "0.5"]) == 1
+        said = capsys.readouterr()
+        assert "0.5 s are too short: needs about" in said.err and said.err.count("\n") == 1 and not said.out
+
+
+@pytest.mark.cad
+def test_several_designs_share_one_time_and_one_mesh(capsys):
+    designs = [(load(name), ("array",)) for name in ("soft-tissue", "macro-array")]
+    one, other, both = (kernel_costs.check_grades(some) for some in (designs[:1], designs[1:], designs))
+    start = costs.published()["check"]["start"]
+    for a, b, c in zip(one, other, both, strict=True):
+        assert c.seconds == pytest.approx(a.seconds + b.seconds - start, rel=0.01)
+        assert a.error == b.error == c.error
+    assert main(["check", "soft-tissue", "nowhere", "--in", "0.5"]) == 1
+    assert "too short" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "export"])
+@pytest.mark.parametrize("option,value", [("--within", "0"), ("--within", "nan"), ("--in", "-1")])
+def test_other_commands_refuse_bad_input_alike(command, option, value, capsys):
+    assert main([command, "soft-tissue", f"{option}={value}"]) == 2
+    message = capsys.readouterr().err
+    assert message.startswith(f"tactcad: {option}: ") and message.count("\n") == 1

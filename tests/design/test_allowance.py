@@ -57,7 +57,7 @@ def test_what_cannot_be_had_is_refused_with_what_can():
 def test_text_and_record_say_the_same():
     picked = pick(GRADES, Allowance(0.2), "K")
     assert picked.text() == (
-        "budget: b keeps K within 20 % in about 2 s; a step less: a, 50 % in about 1 s; "
+        "budget: b: K within 20 % in about 2 s; a step less: a, 50 % in about 1 s; "
         "a step more: c, 1 % in about 30 s"
     )
     assert picked.record() == {

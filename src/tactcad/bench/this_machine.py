@@ -1,4 +1,4 @@
-"""How fast this machine is beside the one that the costs were measured on: a calibration, kept in the cache."""
+"""How fast this machine is beside the one that costs were measured on: a calibration, kept in the cache."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ KEPT = 24 * 3600.0  # s; chosen: a machine that was slow for hours is measured a
 
 
 def calibration() -> float:
-    """Processor seconds that a fixed piece of work takes here: rung solid over a table, and over single designs."""
+    """Processor seconds that a fixed piece of work takes here: rung solid over a table, and alone."""
     many = REFERENCE.with_(load_arm=np.linspace(5.0, 7.0, TABLE))
 
     def once() -> float:

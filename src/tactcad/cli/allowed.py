@@ -20,8 +20,8 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
         "--in",
         dest="seconds",
         metavar="SECONDS",
-        help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time that "
-        "is too short is refused before anything is begun, with the time needed: nothing is left out for it",
+        help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time too "
+        "short is refused before anything is begun, with the time needed: nothing is left out for it",
     )
 
 

@@ -125,7 +125,7 @@ def _asked(args: argparse.Namespace) -> Allowance:
 
 def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:
     """The rung for all elements, equal ones solved once."""
-    from tactcad.bench.costs import rung_grades
+    from tactcad.bench.rung_costs import rung_grades
     from tactcad.lab.array_estimate import choose_rung, distinct_sections
     from tactcad.mechanics.accuracy import CANDIDATES, require_measured
 
@@ -152,7 +152,7 @@ def _batch(args: argparse.Namespace, asked: Allowance) -> int:
     said: list[Picked] = []
 
     def accuracy(section: HingeSection) -> float:
-        from tactcad.bench.costs import row_grades
+        from tactcad.bench.rung_costs import row_grades
 
         said.append(pick(row_grades(section, asked.within), asked, "K"))
         return asked.within or said[0].grade.error

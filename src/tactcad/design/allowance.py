@@ -49,7 +49,7 @@ class Picked:
         """What was taken, what it promises, and what a step more or less would cost, in one line."""
         sides = (("a step less", self.coarser), ("a step more", self.finer))
         steps = "; ".join(f"{side}: {_whole(grade) if grade else 'none'}" for side, grade in sides)
-        return f"budget: {self.grade.name} keeps {self.what} within {_promise(self.grade)}; {steps}"
+        return f"budget: {self.grade.name}: {self.what} within {_promise(self.grade)}; {steps}"
 
     def record(self) -> dict:
         """The same as JSON holds it; errors relative, times in seconds."""
@@ -139,7 +139,7 @@ def _too_short(asked: Allowance, what: str, needed: Grade, in_time: Sequence[Gra
     of = "" if asked.within is None else f" for {what} within {percent(asked.within)}"
     best = f"; in {asked.seconds:g} s at best {_whole(in_time[-1])}" if in_time else ""
     return (
-        f"{asked.seconds:g} s are too short{of}: needs about {needed.seconds:.3g} s ({_whole(needed)}){best}"
+        f"{asked.seconds:g} s are too short{of}: needs about {needed.seconds:.4g} s ({_whole(needed)}){best}"
     )
 
 

@@ -96,7 +96,7 @@ def require_measured(s: HingeSection, names: Sequence[str] = ()) -> None:
     for `choose`."""
     outside = validity.reasons(s, MEASURED_FOR).ravel()
     for i in np.flatnonzero(outside != ""):
-        raise CheckFailure(_not_measured(outside[i]) + _named(names, i))
+        raise CheckFailure(_not_measured(outside[i]) + _named(names, int(i)))
 
 
 def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
