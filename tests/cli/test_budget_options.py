@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
+from scipy.stats import binomtest
 
 from tactcad.bench import costs, kernel_costs, rung_costs, this_machine
 from tactcad.cli.main import main
@@ -170,3 +171,16 @@ def test_other_commands_refuse_bad_input_alike(command, option, value, capsys):
     assert main([command, "soft-tissue", f"{option}={value}"]) == 2
     message = capsys.readouterr().err
     assert message.startswith(f"tactcad: {option}: ") and message.count("\n") == 1
+
+
+def test_a_build_makes_as_many_arrays_as_its_interval_needs(capsys):
+    assert main(["build", "soft-tissue", "--within", "5%", "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["count"] == 500 and made["budget"]["chosen"]["name"] == "500 arrays"
+    low, high = made["yield_interval"]
+    exact = binomtest(made["assembled"], made["count"]).proportion_ci(0.95, "exact")
+    assert (low, high) == pytest.approx((exact.low, exact.high), abs=1e-12)
+    assert (high - low) / 2.0 <= made["budget"]["chosen"]["error"] <= 0.05
+    assert main(["build", "--within", "5%", "--count", "10"]) == 2
+    assert "leave out --count 10" in capsys.readouterr().err
+    assert main(["build", "--in", "0.1"]) == 1 and "too short" in capsys.readouterr().err
