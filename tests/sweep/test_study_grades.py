@@ -1,4 +1,4 @@
-"""What a budget makes of a study: the rung against every design's own promise, arrays, and what is refused."""
+"""What a budget makes of a study: the rung against every design's own promise, arrays, refusals."""
 
 from __future__ import annotations
 

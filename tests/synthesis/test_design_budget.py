@@ -1,4 +1,4 @@
-"""`tactcad design` with a budget: as many arrays as its yield needs, and no more searched than was counted."""
+"""`tactcad design` with a budget: as many arrays as its yield needs, no more searched than counted."""
 
 from __future__ import annotations
 
