@@ -48,13 +48,11 @@ CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in r
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen: the promised worst error |K/K_reference - 1|, the time for all designs (s, on the
-    machine that data/accuracy.json names, one thread), and the zones of the envelope that the designs lie
-    in."""
+    """What was chosen: the promised worst error |K/K_reference - 1|, and the zones of the envelope that the
+    designs lie in."""
 
     candidate: Candidate
     expected_error: float
-    expected_time: float
     zones: tuple[str, ...]
 
 
@@ -193,9 +191,8 @@ def _least_work(zone: np.ndarray, accuracy: float) -> Choice | None:
     for candidate in CANDIDATES:
         error = float(_promised(zone, candidate).max())
         if error <= accuracy:
-            each = np.array([z["seconds"][candidate.name] for z in data["zones"]])[zone].sum()
             names = tuple(zone_name(data["zones"][z]) for z in np.unique(zone))
-            return Choice(candidate, error, float(data["seconds a call"][candidate.name] + each), names)
+            return Choice(candidate, error, names)
     return None
 
 
