@@ -42,6 +42,7 @@ def profile(*arguments, cwd, status=0):
     [
         (("estimate",), {"numpy"}),
         (("estimate", "--accuracy", "1%"), {"numpy"}),
+        (("estimate", "--within", "1%", "--in", "100"), {"numpy"}),  # costs of the finite elements told, too
         (("size", "--stiffness", "10", "--load-arm", "5"), {"numpy"}),
         (("schema",), set()),
     ],

@@ -20,6 +20,7 @@ from .requirements import Requirement, requirements
 from .stack import ROUNDING, SEED, StackLine, stack
 from .variables import Array, DimensionLimits
 from .virtual_shop import Distribution, made
+from .yield_interval import of_share
 
 # Least share of arrays that meet all requirements; below it nothing is released.
 LEAST_YIELD = 0.995
@@ -77,6 +78,11 @@ class Builds:
     def share(self) -> float:
         """Yield: share of arrays that meet every requirement, under the worse deciding distribution."""
         return self.kept[self.worse]
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """In which the yield lies at 95 %."""
+        return of_share(round(self.share * self.count), self.count)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def machine() -> dict:
     usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     return {
-        "processor": _processor(),
+        "processor": processor(),
         "cores": usable,
         "memory_GB": round(memory / 1e9, 1),
         "system": f"{platform.system()} {platform.machine()}",
@@ -56,7 +56,7 @@ def peers() -> dict[str, str]:
     return {"CalculiX": version or MISSING, "FreeCAD": freecad() or MISSING}
 
 
-def _processor() -> str:
+def processor() -> str:
     info = Path("/proc/cpuinfo")
     match = re.search(r"model name\s*:\s*(.+)", info.read_text()) if info.is_file() else None
     return match[1].strip() if match else platform.processor() or platform.machine()

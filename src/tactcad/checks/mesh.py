@@ -10,40 +10,42 @@ from tactcad.account import making
 from tactcad.parts.description import Part
 from tactcad.parts.finding import Finding
 from tactcad.solids.measure import measure
+from tactcad.solids.meshing import CHORD_MM, USUAL, Meshing
 from tactcad.solids.triangles import triangles
 
-LINEAR_MM, ANGULAR_RAD = 0.05, 0.2
 
-
-def check_mesh(part: Part, shape: TopoDS_Shape) -> list[Finding]:
+def check_mesh(part: Part, shape: TopoDS_Shape, meshing: Meshing = USUAL) -> list[Finding]:
     """Findings on the mesh of the part's shape: every edge used twice, windings alike, volume and area in
-    bounds."""
+    bounds, the volume within what is promised where anything is."""
     with making("mesh", part.part_no):
-        vertices, faces = triangles(shape, LINEAR_MM, ANGULAR_RAD)
+        vertices, faces = triangles(shape, CHORD_MM, meshing.angular)
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     findings = check_triangles(part.part_no, mesh)
     if findings:
         return findings
     exact = measure(shape)
-    bound = chord_bound(exact["area"])
-    for check, value, meant, limit in (
-        ("mesh-volume", mesh.volume, exact["volume"], bound),
-        ("mesh-area", mesh.area, exact["area"], AREA_SHARE * exact["area"]),
+    bound, why = chord_bound(exact["area"]), "tessellation explains"
+    if meshing.error is not None:
+        bound, why = meshing.error * exact["volume"], "allowed are"
+    for check, value, meant, limit, by in (
+        ("mesh-volume", mesh.volume, exact["volume"], bound, why),
+        ("mesh-area", mesh.area, exact["area"], area_share(meshing) * exact["area"], "tessellation explains"),
     ):
         if abs(value - meant) > limit:
-            message = f"mesh has {value:.6g}, the solid {meant:.6g}; tessellation explains {limit:.3g}"
+            message = f"mesh has {value:.6g}, the solid {meant:.6g}; {by} {limit:.3g}"
             findings.append(Finding(check, "fail", part.part_no, (), value, meant, message))
     return findings
 
 
-# A chord of a turn w is shorter than its arc by w^2/24: 0.17 % at 0.2 rad; twice that where both
-# directions curve.
-AREA_SHARE = 2 * ANGULAR_RAD**2 / 24
+def area_share(meshing: Meshing) -> float:
+    """A chord of a turn w is shorter than its arc by w^2/24: 0.17 % at 0.2 rad; twice that where both
+    directions curve."""
+    return 2 * meshing.angular**2 / 24
 
 
 def chord_bound(area: float) -> float:
     """Most that facets can take off or add: every face moved by the chord error (mm3)."""
-    return area * LINEAR_MM
+    return area * CHORD_MM
 
 
 def check_triangles(part_no: str, mesh: trimesh.Trimesh) -> list[Finding]:

@@ -15,6 +15,7 @@ from tactcad.parts.finding import Finding, Severity
 from tactcad.scenes import left_out, make_scene
 from tactcad.scenes.poses import poses
 from tactcad.solids.build import SolidError, build
+from tactcad.solids.meshing import USUAL, Meshing
 
 from .brep import check_brep, check_step
 from .calibration_travel import check_calibration
@@ -41,6 +42,7 @@ def run_checks(
     shop_file: Path = DEFAULT,
     say: Callable[[int, int, str], None] = lambda done, total, text: None,
     strict: bool = False,
+    meshing: Meshing = USUAL,
 ) -> Report:
     """Every check on every part and scene of a design.
 
@@ -58,6 +60,8 @@ def run_checks(
         Receives (done, total, text) before each part and scene.
     strict
         A rig that does not take the array fails; otherwise it is flagged.
+    meshing
+        Of the parts, for the mesh check.
 
     Raises
     ------
@@ -86,7 +90,7 @@ def run_checks(
             continue
         report.run("brep", check_brep, part, shapes[part.part_no])
         report.run("step", check_step, part, shapes[part.part_no])
-        report.run("mesh", check_mesh, part, shapes[part.part_no])
+        report.run("mesh", check_mesh, part, shapes[part.part_no], meshing)
         if part.process == "wire-cut":
             report.run("wire-cut", check_wirecut, part, shop)
         if part.process in MACHINED:

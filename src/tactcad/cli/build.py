@@ -1,4 +1,4 @@
-"""tactcad build [DESIGN] [--count N] [--seed S] [--json]"""
+"""tactcad build [DESIGN] [--count N] [--within P] [--in SECONDS] [--seed S] [--json]"""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from dataclasses import asdict
 from math import isfinite
 from typing import TYPE_CHECKING
 
+from tactcad.design.allowance import pick
 from tactcad.design.messages import InputError
 
+from .allowed import add_allowance, allowance, refuse_named
 from .parser import add_design, add_json
 
 if TYPE_CHECKING:
@@ -23,20 +25,22 @@ if TYPE_CHECKING:
 EXAMPLES = """\
   tactcad build                            1000 arrays of hardware/macro-array.toml, seed as published
   tactcad build soft-tissue --count 10000  more of them: the yield to a fraction of a percent
+  tactcad build --within 1%                as many as the yield's 95 % interval of plus and minus 1 % needs
   tactcad build my-sensor.toml --seed 7 --json
 
 Every dimension of every part is drawn within its limits, the array is put together as its guide says, and
 what does not go together is counted, with the limit to mend. Exit status 1 where fewer than 99.5 % of the
 arrays meet all requirements, under normal or uniform parts; corners are for information."""
 
-MOST = 1_000_000
+USUAL, MOST = 1000, 1_000_000
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     add_design(parser)
     parser.add_argument(
-        "--count", type=int, default=1000, metavar="N", help="arrays of each distribution (default: 1000)"
+        "--count", type=int, metavar="N", help=f"arrays of each distribution (default: {USUAL})"
     )
+    add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
     parser.add_argument("--seed", type=int, metavar="S", help="of chance (default: the published one)")
     add_json(parser)
 
@@ -46,20 +50,33 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.assembly.virtual_build import sensor
     from tactcad.parts.designs import load
 
-    if not 1 <= args.count <= MOST:
-        raise InputError("--count", "out of range", value=args.count, legal=f"1 to {MOST}")
+    asked = allowance(args)
+    refuse_named(asked, "--count", args.count)
+    count = USUAL if args.count is None else args.count
+    if not 1 <= count <= MOST:
+        raise InputError("--count", "out of range", value=count, legal=f"1 to {MOST}")
     if args.seed is not None and args.seed < 0:
         raise InputError("--seed", "out of range", value=args.seed, legal="0 or more")
     started = time.perf_counter()
-    made = sensor(load(args.design))
-    builds = made.built(args.count, SEED if args.seed is None else args.seed)
+    design, picked = load(args.design), None
+    if asked:
+        from tactcad.bench.sample_costs import YIELD, arrays_of, build_grades
+
+        picked = pick(build_grades(design), asked, YIELD)
+        count = arrays_of(picked.grade)
+    made = sensor(design)
+    builds = made.built(count, SEED if args.seed is None else args.seed)
     seconds = time.perf_counter() - started
     lines = made.stack()
     refusal = made.refusal(builds)
     if args.json:
-        print(json.dumps(_record(builds, lines, seconds, refusal), indent=1, allow_nan=False))
+        record = _record(builds, lines, seconds, refusal)
+        record |= {"budget": picked.record()} if picked else {}
+        print(json.dumps(record, indent=1, allow_nan=False))
     else:
         _print(made.layout, builds, lines)
+        if picked:
+            print(picked.text())
     if refusal:
         print(f"tactcad: {made.layout.design.name}: {refusal}", file=sys.stderr)
     return 1 if refusal else 0
@@ -72,6 +89,7 @@ def _record(builds: Builds, lines: list[StackLine], seconds: float, refusal: str
         "seed": builds.seed,
         "assembled": round(builds.share * builds.count),
         "yield": builds.share,
+        "yield_interval": list(builds.interval),
         "distribution": builds.worse,
         "failures": builds.failures[builds.worse],
         "distributions": {
@@ -102,6 +120,8 @@ def _print(layout: Layout, builds: Builds, lines: list[StackLine]) -> None:
         failed = builds.failures[which]
         why = "; ".join(f"{n} miss: {requirement}" for requirement, n in sorted(failed.items(), key=_most))
         print(f"  {which:8} {100 * share:6.2f} % meet all requirements{f' ({why})' if why else ''}")
+    low, high = builds.interval
+    print(f"  yield    {100 * builds.share:6.2f} % ({100 * low:.4g} to {100 * high:.4g} %)")
     named = {line.requirement.name: _with_unit(line) for line in lines}
     wide = max(map(len, named.values()), default=0)
     print(f"  {'requirement':{wide}} {'nominal':>9} {'worst case':>21} {'sigma':>8}  largest contributor")

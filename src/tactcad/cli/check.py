@@ -1,4 +1,5 @@
-"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--strict] [--report DIR] [--json]"""
+"""tactcad check [DESIGN]... [--scene NAME]... [--shop FILE] [--strict] [--report DIR] [--within P]
+[--in SECONDS] [--json]"""
 
 from __future__ import annotations
 
@@ -11,7 +12,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tactcad.checks.check_report import Report
+    from tactcad.design.allowance import Allowance, Picked
+    from tactcad.solids.meshing import Meshing
 
+from .allowed import add_allowance, allowance
 from .parser import add_design, add_json, add_shop, add_strict
 
 EXAMPLES = """\
@@ -20,6 +24,8 @@ EXAMPLES = """\
   tactcad check --shop my-shop.toml       with your own shop's limits
   tactcad check macro-array soft-tissue --report exports/check
                                           both designs; check.json and junit.xml in that folder
+  tactcad check --within 0.1%             parts meshed so that each volume is within 0.1 % of the solid's
+  tactcad check --in 60                   meshed as finely as 60 s allow; no check is left out
 
 Every failure is printed in a table at the end, and the exit status is 1 where there is one; what is only
 flagged (such as the hinge, for the quotation, or a rig that does not take the array, which fails with
@@ -34,35 +40,58 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_shop(parser)
     add_strict(parser)
     parser.add_argument("--report", metavar="DIR", help="write check.json and junit.xml there")
+    add_allowance(parser, "relative error of a part's meshed volume", "mesh")
     add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from tactcad.checks.check_report import as_record, failure_table, json_bytes, junit_bytes
     from tactcad.checks.shop import DEFAULT, load_shop
+    from tactcad.solids.meshing import USUAL
 
+    asked = allowance(args)
     shop = Path(args.shop) if args.shop else DEFAULT
     if args.report:
         _refuse_overwriting(Path(args.report), [*args.design, shop])
     load_shop(shop)  # a shop file that cannot be used is refused before the kernel is loaded
-    reports = [_checked(source, args, shop) for source in args.design]
+    meshing, picked = _picked(args, asked) if asked else (USUAL, None)
+    reports = [_checked(source, args, shop, meshing) for source in args.design]
     if args.report:
         _write(Path(args.report), {"check.json": json_bytes(reports), "junit.xml": junit_bytes(reports)})
     if args.json:
-        records = [as_record(report) for report in reports]
+        records = [as_record(report) | ({"budget": picked.record()} if picked else {}) for report in reports]
         print(json.dumps(records[0] if len(records) == 1 else records, indent=1))
     else:
         for report in reports:
             _print(report)
         for line in failure_table(reports):
             print(line)
+        if picked:
+            print(picked.text())
     for report in reports:
         if report.failures:
             print(f"tactcad: {report.design}: {len(report.failures)} failures", file=sys.stderr)
     return 1 if any(report.failures for report in reports) else 0
 
 
-def _checked(source: str, args: argparse.Namespace, shop: Path) -> Report:
+def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:
+    """One mesh for all designs; one that is refused costs nothing here."""
+    from tactcad.bench.kernel_costs import VOLUME, check_grades, meshing_of
+    from tactcad.design.allowance import pick
+    from tactcad.design.messages import InputError
+    from tactcad.parts.designs import load
+    from tactcad.scenes import chosen_scenes
+
+    checked = []
+    for source in args.design:
+        with suppress(*([InputError] if len(args.design) > 1 else [])):
+            design = load(source)
+            checked.append((design, chosen_scenes(design, args.scene)))
+    picked = pick(check_grades(checked), asked, VOLUME)
+    return meshing_of(picked.grade), picked
+
+
+def _checked(source: str, args: argparse.Namespace, shop: Path, meshing: Meshing) -> Report:
     """The design's report. Where several designs are checked, one that is refused counts as failed and the
     others go on.
     """
@@ -87,7 +116,7 @@ def _checked(source: str, args: argparse.Namespace, shop: Path) -> Report:
 
     from tactcad.checks.run import run_checks
 
-    report = run_checks(design, names, shop, progress(sys.stderr).step, args.strict)
+    report = run_checks(design, names, shop, progress(sys.stderr).step, args.strict, meshing)
     path = golden_path(find(source), design)
     if path:
         report.run("golden", check_golden, design, path)

@@ -5,20 +5,28 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from typing import TYPE_CHECKING
 
-from tactcad.design.messages import InputError
+from tactcad.design.allowance import Allowance, Picked, pick
+from tactcad.design.messages import CheckFailure
 
+from .allowed import add_allowance, allowance
 from .parser import add_json
+
+if TYPE_CHECKING:
+    from tactcad.synthesis.target import Target
 
 EXAMPLES = """\
   tactcad design hardware/targets/better-array.toml --out better
-  tactcad design mine.toml --out mine --in 30   the search whole, of the report what 30 s allow
+  tactcad design mine.toml --out mine --within 0.5%    the yield's 95 % interval plus and minus 0.5 % at most
+  tactcad design mine.toml --out mine --in 60   as many arrays as 60 s allow
   tactcad design mine.toml --out mine --best    the best there is, even where the target is not met
   tactcad schema --target                       every field of a target file
 
 DIR gets design.toml, which every rule accepts, report.html and report.json, and a design file for each
-alternative. Exit status 1 where the target cannot be met: what it misses, and the least change of each single
-field that would make it possible; nothing is written then but with --best."""
+alternative. The search is never cut short for time. Exit status 1 where the target cannot be met: what it
+misses, and the least change of each single field that would make it possible; nothing is written then but
+with --best."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,54 +37,54 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--best", action="store_true", help="write the best there is where the target is not met, too"
     )
-    parser.add_argument(
-        "--within",
-        type=float,
-        default=0.1,
-        metavar="P",
-        help="percent of the half-width by which more search may still change the answer (default 0.1)",
-    )
-    parser.add_argument(
-        "--in",
-        dest="seconds",
-        type=float,
-        metavar="SECONDS",
-        help="leave out of the report what is not done by then; the search itself is never cut short",
-    )
+    add_allowance(parser, "half-width of the yield's 95 % interval", "number of arrays")
     add_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
+    from tactcad.bench.sample_costs import arrays_of
     from tactcad.synthesis import target_report as report
-    from tactcad.synthesis.synthesise import design
+    from tactcad.synthesis.synthesise import ARRAYS, design
     from tactcad.synthesis.target import read_target
     from tactcad.synthesis.target_answer import answer
     from tactcad.synthesis.write import refuse_unwritable, write
 
     from .progress import slow_work
 
-    if not 1e-4 <= args.within <= 10:
-        raise InputError("--within", "out of range", value=args.within, legal="0.0001 to 10 (%)")
-    if args.seconds is not None and not 0 <= args.seconds <= 1e6:
-        raise InputError("--in", "out of range", value=args.seconds, legal="0 to 1e6 (s)")
+    asked = allowance(args)
     target = read_target(args.target)
     refuse_unwritable(args.out)
+    picked = _picked(target, asked) if asked else None
+    count = arrays_of(picked.grade) if picked else ARRAYS
     with slow_work(sys.stderr) as tell:
-        got = design(target, within=args.within / 100, seconds=args.seconds, tell=tell)
+        got = design(target, arrays=count, seconds=asked.seconds, tell=tell)
     r = report.record(got)
     written = got.met or (args.best and got.found.accepted)
     if written:
         write(got, args.out)
     if args.json:
-        print(json.dumps(r, indent=1))
+        print(json.dumps(r | ({"budget": picked.record()} if picked else {}), indent=1))
     else:
         print(answer(r))
         _print(r)
+        if picked:
+            print(picked.text())
         if written:
             print(f"{args.out}: written\nnext: tactcad check {args.out}/design.toml")
         elif args.best:
             print(f"{args.out}: not written: no candidate keeps every limit and rule, so none is the best")
     return 0 if got.met else 1
+
+
+def _picked(target: Target, asked: Allowance) -> Picked:
+    """With the whole report in the time, or else with what of it the search and the yield leave."""
+    from tactcad.bench.sample_costs import YIELD, synthesis_grades
+    from tactcad.synthesis.work_ahead import work_ahead
+
+    try:
+        return pick(synthesis_grades(work_ahead(target, True)), asked, YIELD)
+    except CheckFailure:
+        return pick(synthesis_grades(work_ahead(target, False)), asked, YIELD)
 
 
 def _print(r: dict) -> None:

@@ -4,27 +4,30 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING
 
+from tactcad.design.allowance import Allowance, Picked, pick, read_within
 from tactcad.design.messages import InputError
-from tactcad.design.plain_numbers import as_number
 from tactcad.mechanics.ladder import DEFAULT_RUNG, FINITE_ELEMENTS, FITTED, RUNGS
+
+from .allowed import add_allowance, allowance, refuse_named
 
 if TYPE_CHECKING:
     from tactcad.design.tree import Design, Tolerance
-    from tactcad.mechanics.accuracy import Choice
+    from tactcad.mechanics.accuracy import Candidate
+    from tactcad.mechanics.section import HingeSection
     from tactcad.parts.layout import Layout
 
 EXAMPLES = """\
   tactcad estimate
   tactcad estimate hardware/soft-tissue.toml --force 0.5 --json
   tactcad estimate --model fem-plane
-  tactcad estimate --accuracy 1%             # the quickest rung whose measured worst error is within it
-  tactcad estimate soft-tissue --accuracy 0.1% --json
+  tactcad estimate --within 1%               # the rung of least work whose measured worst error is within it
+  tactcad estimate --in 5                    # the most exact one that 5 s allow
+  tactcad estimate soft-tissue --within 0.1% --in 60 --json
   tactcad estimate --batch designs.csv --model plane --out stiffness.csv
-  tactcad estimate --batch designs.csv --accuracy 0.5% --out stiffness.csv    # a rung for every row
+  tactcad estimate --batch designs.csv --within 0.5% --out stiffness.csv    # a rung for every row
   tactcad estimate --inspection inspections/macro-array-D.csv
                                       the elements as made, from the inspection sheet that the shop
                                       filled in: a copy of an export's inspection.csv, kept outside the export
@@ -57,15 +60,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="RUNG",
         help=f"one of {', '.join(RUNGS)} (default {DEFAULT_RUNG}); never falls back to another",
     )
-    parser.add_argument(
-        "--accuracy",
-        metavar="P",
-        help="instead of --model: the error of stiffness that may be left, as 0.01 or in per cent (see the "
-        "examples), "
-        "against solid elements refined to their limit; takes the quickest rung whose measured worst error "
-        "at this "
-        "design is within it, or refuses (docs/accuracy.md)",
-    )
+    add_allowance(parser, "error of K, against solid elements refined to their limit,", "rung")
+    parser.add_argument("--accuracy", metavar="P", help="the same as --within P")
     parser.add_argument(
         "--force", type=float, metavar="N", help="force on each pad (default: the design's rated force)"
     )
@@ -88,78 +84,60 @@ def run(args: argparse.Namespace) -> int:
         from tactcad.design.tree import ASKED_FORCE
 
         ASKED_FORCE.read(args.force, "--force")
-    accuracy = _asked_accuracy(args)
+    asked = _asked(args)
     if args.batch is not None:
-        return _batch(args, accuracy)
+        return _batch(args, asked)
     if args.inspection is not None:
-        return _as_made(args)
+        return _as_made(args, asked)
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
-    from tactcad.lab.array_estimate import choose_rung, compare_uncut, estimate
+    from tactcad.lab.array_estimate import compare_uncut, estimate
     from tactcad.parts.designs import load
     from tactcad.parts.layout import Layout
 
     design = load(args.design or "macro-array")
     layout = Layout(design)
-    choice = choose_rung(layout, accuracy) if accuracy is not None else None
-    model, mesh = (
-        (choice.candidate.rung, choice.candidate.mesh) if choice else (args.model or DEFAULT_RUNG, None)
-    )
+    chosen, picked = _chosen(layout, asked) if asked else (None, None)
+    model, mesh = (chosen.rung, chosen.mesh) if chosen else (args.model or DEFAULT_RUNG, None)
     rows = [asdict(row) for row in estimate(layout, model, args.force, mesh)]
     shares = _shares(layout, model)
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
-        print(json.dumps(_document(design, model, rows, uncut, shares) | _chosen(choice, accuracy), indent=2))
+        budget = {"mesh": mesh, "budget": picked.record()} if picked else {}
+        print(json.dumps(_document(design, model, rows, uncut, shares) | budget, indent=2))
     else:
         print(_report(design, model, rows, uncut, shares))
-        if choice and accuracy:
-            print(_why(choice, accuracy))
+        if picked:
+            print(picked.text())
     return 0
 
 
-def _asked_accuracy(args: argparse.Namespace) -> float | None:
-    """The asked relative error of stiffness, from "1%", "1 %" or "0.01"; None where none is asked for."""
-    if args.accuracy is None:
-        return None
-    if args.model is not None:
-        raise InputError("--accuracy", f"chooses the rung itself; leave out --model {args.model}")
-    text = args.accuracy.strip()
-    try:
-        given = as_number(text.removesuffix("%"))
-    except ValueError:
-        given = math.nan
-    value = given / 100.0 if text.endswith("%") else given
-    if not 0.0 < value < 1.0:
-        raise InputError(
-            "--accuracy",
-            "not an accuracy",
-            value=args.accuracy,
-            legal='"0.1%", "1%", 0.01: above 0, below 100 %',
-        )
-    return value
+def _asked(args: argparse.Namespace) -> Allowance:
+    """--accuracy is --within by its older name."""
+    asked = allowance(args)
+    if args.accuracy is not None:
+        if args.within is not None:
+            raise InputError("--accuracy", "is the same as --within; leave one out", value=args.accuracy)
+        asked = replace(asked, within=read_within(args.accuracy, "--accuracy"))
+    refuse_named(asked, "--model", args.model)
+    return asked
 
 
-def _chosen(choice: Choice | None, accuracy: float | None) -> dict:
-    if choice is None:
-        return {}
-    return {
-        "accuracy_asked": accuracy,
-        "expected_time_s": choice.expected_time,
-        "mesh": choice.candidate.mesh,
-        "zones": list(choice.zones),
-    }
+def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:
+    """The rung for all elements, equal ones solved once."""
+    from tactcad.bench.rung_costs import rung_grades
+    from tactcad.lab.array_estimate import choose_rung, distinct_sections
+    from tactcad.mechanics.accuracy import CANDIDATES, require_measured
+
+    section, names = distinct_sections(layout)
+    require_measured(section, names)
+    if asked.within is not None:
+        choose_rung(layout, asked.within)  # refuses with the element that no rung answers
+    picked = pick(rung_grades(section), asked, "K")
+    return next(c for c in CANDIDATES if c.name == picked.grade.name), picked
 
 
-def _why(choice: Choice, accuracy: float) -> str:
-    from tactcad.mechanics.accuracy import accuracy_data
-
-    return (
-        f"chosen for {100 * accuracy:.3g} %: {choice.candidate.name}, in about {choice.expected_time:.2g} s "
-        f"(measured {accuracy_data()['date']})"
-    )
-
-
-def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
+def _batch(args: argparse.Namespace, asked: Allowance) -> int:
     from tactcad.design.files import refuse_overwriting
     from tactcad.lab.batch import estimate_file
 
@@ -171,12 +149,23 @@ def _batch(args: argparse.Namespace, accuracy: float | None) -> int:
     if args.out is None:
         raise InputError("--batch", "needs --out OUT.csv")
     refuse_overwriting(args.out, args.batch)
-    valid, count = estimate_file(args.batch, args.out, args.model or DEFAULT_RUNG, accuracy)
-    print(f"{args.out}: {count} designs, {count - valid} out of range" + (" or of reach" if accuracy else ""))
+    said: list[Picked] = []
+
+    def accuracy(section: HingeSection) -> float:
+        from tactcad.bench.rung_costs import row_grades
+
+        said.append(pick(row_grades(section, asked.within), asked, "K"))
+        return asked.within or said[0].grade.error
+
+    rung = args.model or DEFAULT_RUNG
+    valid, count = estimate_file(args.batch, args.out, rung, accuracy if asked else None)
+    print(f"{args.out}: {count} designs, {count - valid} out of range" + (" or of reach" if asked else ""))
+    for picked in said:
+        print(picked.text())
     return 0
 
 
-def _as_made(args: argparse.Namespace) -> int:
+def _as_made(args: argparse.Namespace, asked: Allowance) -> int:
     from tactcad.lab import as_made_text
     from tactcad.lab.as_made import as_made
     from tactcad.lab.inspection_sheet import read_sheet
@@ -185,9 +174,9 @@ def _as_made(args: argparse.Namespace) -> int:
 
     if args.out is not None:
         raise InputError("--out", "goes with --batch only", value=args.out)
-    if args.accuracy is not None:
+    if asked:
         raise InputError(
-            "--accuracy", "does not go with --inspection: the cut's scatter is far above it; use --model"
+            "--inspection", "takes no --within or --in: the cut's scatter is far above it; use --model"
         )
     if args.model in FINITE_ELEMENTS:
         closed = ", ".join(rung for rung in RUNGS if rung not in FINITE_ELEMENTS)

@@ -1,12 +1,15 @@
-"""tactcad export [DESIGN] [--scene NAME]... [--strict] [--out DIR] [--json]"""
+"""tactcad export [DESIGN] [--scene NAME]... [--strict] [--out DIR] [--within P] [--in SECONDS] [--json]"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import sys
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
+from tactcad.design.allowance import pick
+
+from .allowed import add_allowance, allowance
 from .parser import add_design, add_json, add_others, add_strict
 
 EXAMPLES = """\
@@ -17,6 +20,8 @@ EXAMPLES = """\
                                               a rig in a chosen configuration
   tactcad export --guide                      with the assembly guides, to open in a browser
   tactcad export --drawings                   with a dimensioned sheet of every part made, as PDF and SVG
+  tactcad export --within 0.1%                with an STL of every part made, its volume within 0.1 %
+  tactcad export --in 60                      the same, as fine as 60 s allow where nothing is in the cache
 
 The folder is replaced in one step by a finished one; a second export with nothing changed writes nothing.
 Rigs follow the array as far as what is sold reaches; a rig that cannot be had ends the export with a warning
@@ -55,6 +60,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_strict(parser)
     parser.add_argument("--out", metavar="DIR", help="folder to write (default exports/<design>)")
     add_others(parser)
+    add_allowance(parser, "relative error of a part's meshed volume, written as stl/PART_REV.stl,", "mesh")
     add_json(parser)
 
 
@@ -67,15 +73,27 @@ def run(args: argparse.Namespace) -> int:
 
     from .progress import progress
 
+    asked = allowance(args)
     design = read(args.design)
     scenes, say = chosen_scenes(design, args.scene), progress(sys.stderr)
     out = args.out or f"exports/{design.name}" + ("" if args.detail == "full" else f"-{args.detail}")
     refuse_overwriting(out, find(args.design))
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
+    picked = None
+    if asked:
+        from tactcad.bench.kernel_costs import VOLUME, export_grades, meshing_of
+        from tactcad.parts.rules import refuse_broken
+
+        refuse_broken(design)
+        picked = pick(export_grades(design, scenes, args.drawings, args.guide), asked, VOLUME)
+        options = replace(options, meshing=meshing_of(picked.grade))
     done = export(design, options, out, say, args.others)
     missing = [] if args.scene else left_out(design)
     for line in missing:
         say.line(f"warning: {line}")
     if args.json:
-        print(json.dumps({**asdict(done), "folder": str(done.folder), "left_out": missing}, indent=1))
+        record = {**asdict(done), "folder": str(done.folder), "left_out": missing}
+        print(json.dumps(record | ({"budget": picked.record()} if picked else {}), indent=1))
+    elif picked:
+        say.line(picked.text())
     return 1 if args.strict and missing else 0

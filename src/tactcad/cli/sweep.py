@@ -1,4 +1,5 @@
-"""tactcad sweep STUDY.toml --out DIR [--scheduler ADDRESS] [--workers N] [--csv] [--json]; sweep plot DIR"""
+"""tactcad sweep STUDY.toml --out DIR [--scheduler ADDRESS] [--workers N] [--within P] [--in SECONDS] [--csv]
+[--json]; sweep plot DIR"""
 
 from __future__ import annotations
 
@@ -10,15 +11,18 @@ from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure, InputError
 
+from .allowed import add_allowance, allowance
 from .parser import add_json
 
 if TYPE_CHECKING:
+    from tactcad.design.allowance import Picked
     from tactcad.sweep.run_sweep import Swept
     from tactcad.sweep.study import Study
 
 EXAMPLES = """\
   tactcad sweep hardware/studies/hinges.toml --out hinges
   tactcad sweep mine.toml --out mine --scheduler tcp://head:8786    on a cluster that is there already
+  tactcad sweep mine.toml --out mine --within 0.1%    by the rung that this takes, not the one it names
   tactcad sweep plot hinges               DIR/plot.html: pairs, main effects, shares of variance
   tactcad schema --study                  every field of a study file
 
@@ -52,6 +56,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--workers", type=int, metavar="N", help="processes on this machine (default: one a core)"
     )
     parser.add_argument("--csv", action="store_true", help="write results.csv above 1e6 rows, too")
+    add_allowance(
+        parser,
+        "error of K, and half-width of the yield's 95 % interval where a study has builds,",
+        "rung and number of arrays",
+    )
     add_json(parser)
 
 
@@ -81,15 +90,24 @@ def _sweep(args: argparse.Namespace) -> int:
         raise InputError("--workers", "out of range", value=args.workers, legal=f"1 to {MOST_WORKERS}")
     if args.workers is not None and args.scheduler is not None:
         raise InputError("--workers", "are the scheduler's own", value=args.workers, legal="left out")
+    asked = allowance(args)
+    if asked.seconds is not None and args.scheduler is not None:
+        raise InputError("--in", "a cluster's time is not known here", value=args.seconds, legal="--within")
     study = read_study(args.study[0])
     workers = args.workers or cores()
+    picked = None
+    if asked:
+        from tactcad.sweep.study_grades import with_allowance
+
+        study, picked = with_allowance(study, asked, workers)
     say = progress(sys.stderr).line
     with slow_work(sys.stderr) as tell:
         got = sweep(study, args.out, args.scheduler, workers, args.csv, say, tell, args.store)
     if args.json:
-        print(json.dumps(_record(study, got), indent=1))
+        budget = {"budget": picked.record()} if picked else {}
+        print(json.dumps(_record(study, got) | budget, indent=1))
     else:
-        _print(study, got)
+        _print(study, got, picked)
     if got.tally.refused == got.tally.rows:
         why, count = got.tally.reasons.most_common(1)[0]
         raise CheckFailure(f"{study.study.name}: every design is refused ({count} of them: {why})")
@@ -112,7 +130,7 @@ def _record(study: Study, got: Swept) -> dict:
     }
 
 
-def _print(study: Study, got: Swept) -> None:
+def _print(study: Study, got: Swept, picked: Picked | None) -> None:
     tally = got.tally
     refused = f", {tally.refused} refused" if tally.refused else ""
     print(f"{study.study.name}: {tally.rows} designs{refused}; {got.computed} computed now, {got.kept} kept")
@@ -120,6 +138,8 @@ def _print(study: Study, got: Swept) -> None:
         print(f"  {count} refused: {why}")
     print("  " + ", ".join(f"{name} {seconds:.1f} s" for name, seconds in got.seconds.items()))
     print(f"{got.folder}: {', '.join(got.files)}")
+    if picked:
+        print(picked.text())
 
 
 def _plot(args: argparse.Namespace) -> int:

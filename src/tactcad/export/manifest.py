@@ -15,6 +15,7 @@ from .formats import PART_FORMATS
 
 SCHEMA = "tactcad-manifest-1"
 KINDS = {f.kind for f in PART_FORMATS} | {
+    "stl",
     "step-assembly",
     "picture",
     "bom",

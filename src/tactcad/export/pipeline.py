@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from tactcad.account import listening
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
+from tactcad.solids.meshing import Meshing
 
 from . import manifest as manifests
 from .cache import Cache, default_root
@@ -75,7 +76,7 @@ class ExportOptions:
 
     `pose`: a rig's configuration, None for its rest pose. `guides`: with assembly guides. `detail`: `full` or
     `envelope`. `drawings`: with sheets, marked PRELIMINARY where a `draft`, not for order
-    where a `sample`.
+    where a `sample`. `meshing`: with the mesh of every part made, as STL, so fine.
     """
 
     scenes: tuple[str, ...]
@@ -85,6 +86,7 @@ class ExportOptions:
     drawings: bool = False
     draft: bool = False
     sample: bool = False
+    meshing: Meshing | None = None
 
 
 def export(
@@ -197,6 +199,7 @@ def _rebuild(
         circuit_products,
         drawing_products,
         guide_products,
+        mesh_products,
         part_products,
         scene_products,
         stack_products,
@@ -207,6 +210,8 @@ def _rebuild(
     scenes = [at_detail(make_scene(design, name, options.pose), options.detail) for name in options.scenes]
     parts = list({part.part_no: part for s in scenes for part in s.parts}.values())
     products = [p for part in parts for p in part_products(design, part, shapes)]
+    if options.meshing:
+        products += mesh_products(design, parts, shapes, options.meshing)
     products += [p for s in scenes for p in scene_products(design, s, shapes)]
     products += stack_products(design, options.scenes, shapes)
     products += circuit_products(design, shapes) if "array" in options.scenes else []

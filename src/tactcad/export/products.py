@@ -16,6 +16,7 @@ from tactcad.design.tree import Design
 from tactcad.parts.description import NOT_MADE, Extrusion, ModelFile, Part, Revolution
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement, Scene
+from tactcad.solids.meshing import Meshing
 
 from .cache import Cache
 from .contents import sha256_of
@@ -55,6 +56,28 @@ def part_products(design: Design, part: Part, shapes: Shapes) -> list[Output]:
         return Output(path, form.kind, part.part_no, key, partial(form.make, part, shapes, head))
 
     return [product(form) for form in PART_FORMATS if form.has(part)]
+
+
+def mesh_products(design: Design, parts: Sequence[Part], shapes: Shapes, meshing: Meshing) -> list[Output]:
+    """The mesh of every part made here, as STL."""
+    revision = design.design.revision
+    return [
+        Output(
+            f"stl/{part.part_no}_{revision}.stl",
+            "stl",
+            part.part_no,
+            digest(("stl", shapes.made_by, part, meshing)),
+            partial(_stl, part, shapes, meshing),
+        )
+        for part in parts
+        if not part.bought
+    ]
+
+
+def _stl(part: Part, shapes: Shapes, meshing: Meshing) -> bytes:
+    from .stl import part_stl
+
+    return part_stl(part.part_no, shapes.of(part), meshing)
 
 
 def scene_products(design: Design, scene: Scene, shapes: Shapes) -> list[Output]:

@@ -19,8 +19,6 @@ from math import ceil, log, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from tactcad.design.messages import CheckFailure
 
@@ -133,6 +131,9 @@ def merged(corners: Array) -> tuple[Array, NDArray[np.int64]]:
     points of a design in decimals would lie on grid lines, one coordinate on those of the first grid, the
     other on those of the second.
     """
+    from scipy.sparse import coo_matrix  # a mesh's size is told without it
+    from scipy.sparse.csgraph import connected_components
+
     flat = corners.reshape(-1, corners.shape[-1])
     step = SAME_POINT * np.ptp(flat, axis=0).max() / np.e
     count = len(flat)

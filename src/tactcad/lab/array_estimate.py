@@ -127,9 +127,14 @@ def choose_rung(layout: Layout, accuracy: float) -> Choice:
     CheckFailure
         No rung is that accurate at every element.
     """
+    section, names = distinct_sections(layout)
+    return choose(section, accuracy, names)
+
+
+def distinct_sections(layout: Layout) -> tuple[HingeSection, list[str]]:
+    """Elements that differ, the first of each kind, and their names for messages."""
     places = {(p.arm, p.hinge, p.body_length): p for p in layout.elements}
-    names = [f"element {p.number}" for p in places.values()]
-    return choose(hinge_section(layout, tuple(places.values())), accuracy, names)
+    return hinge_section(layout, tuple(places.values())), [f"element {p.number}" for p in places.values()]
 
 
 @dataclass(frozen=True)

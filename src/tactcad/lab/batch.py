@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +27,7 @@ ADDED_BY_ACCURACY = ("mesh",)
 
 
 def estimate_file(
-    source: str | Path, target: str | Path, rung: str, accuracy: float | None = None
+    source: str | Path, target: str | Path, rung: str, accuracy: Callable[[HingeSection], float] | None = None
 ) -> tuple[int, int]:
     """Estimate the stiffness of every row of a table of designs.
 
@@ -38,8 +39,9 @@ def estimate_file(
         The same table with the ADDED columns, stiffness in N/mm.
     rung : str
         Of the ladder, for every row.
-    accuracy : float, optional
-        Relative; with it every row gets the quickest rung that keeps to it, instead of `rung`.
+    accuracy : callable, optional
+        Gives for all rows' dimensions a relative error; every row then gets the rung of least work that keeps
+        to it, instead of `rung`.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def estimate_file(
             raise InputError(
                 f"{source}:1:{column + 1}", "column is one that this command adds", value=header[column]
             )
-        answers = estimate_rows_to(section, accuracy)
+        answers = estimate_rows_to(section, accuracy(section))
         reasons = [a.reason for a in answers]
         whole = [
             [*row, *_answer(a.stiffness, a.model, a.reason, a.expected_error), str(a.mesh or "")]

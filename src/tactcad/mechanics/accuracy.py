@@ -48,13 +48,11 @@ CANDIDATES = tuple(Candidate(rung.name, mesh) for rung in REGISTER for mesh in r
 
 @dataclass(frozen=True)
 class Choice:
-    """What was chosen: the promised worst error |K/K_reference - 1|, the time for all designs (s, on the
-    machine that data/accuracy.json names, one thread), and the zones of the envelope that the designs lie
-    in."""
+    """What was chosen: the promised worst error |K/K_reference - 1|, and the zones of the envelope that the
+    designs lie in."""
 
     candidate: Candidate
     expected_error: float
-    expected_time: float
     zones: tuple[str, ...]
 
 
@@ -82,16 +80,21 @@ def choose(s: HingeSection, accuracy: float, names: Sequence[str] = ()) -> Choic
         Where a design lies outside the envelope in which errors were measured, or no candidate keeps the
         accuracy.
     """
-    where = lambda i: f" ({names[i]})" if names else ""  # noqa: E731
-    outside = validity.reasons(s, MEASURED_FOR).ravel()
+    require_measured(s, names)
     zone = zones(s).ravel()
-    for i in np.flatnonzero(outside != ""):
-        raise CheckFailure(_not_measured(outside[i]) + where(i))
     if choice := _least_work(zone, accuracy):
         return choice
     best, error = _best(zone)
     worst = int(np.argmax(error))
-    raise CheckFailure(_none_keeps(accuracy, best, float(error[worst])) + where(worst))
+    raise CheckFailure(_none_keeps(accuracy, best, float(error[worst])) + _named(names, worst))
+
+
+def require_measured(s: HingeSection, names: Sequence[str] = ()) -> None:
+    """Raise CheckFailure where a design lies outside the envelope in which errors were measured; `names` as
+    for `choose`."""
+    outside = validity.reasons(s, MEASURED_FOR).ravel()
+    for i in np.flatnonzero(outside != ""):
+        raise CheckFailure(_not_measured(outside[i]) + _named(names, int(i)))
 
 
 def choose_each(s: HingeSection, accuracy: float) -> list[Choice | str]:
@@ -187,15 +190,18 @@ def _least_work(zone: np.ndarray, accuracy: float) -> Choice | None:
     for candidate in CANDIDATES:
         error = float(_promised(zone, candidate).max())
         if error <= accuracy:
-            each = np.array([z["seconds"][candidate.name] for z in data["zones"]])[zone].sum()
             names = tuple(zone_name(data["zones"][z]) for z in np.unique(zone))
-            return Choice(candidate, error, float(data["seconds a call"][candidate.name] + each), names)
+            return Choice(candidate, error, names)
     return None
 
 
 def _best(zone: np.ndarray) -> tuple[Candidate, Array]:
     """The candidate whose worst promise over the designs is least, and its promise at each."""
     return min(((c, _promised(zone, c)) for c in CANDIDATES), key=lambda pair: pair[1].max())
+
+
+def _named(names: Sequence[str], i: int) -> str:
+    return f" ({names[i]})" if names else ""
 
 
 def _not_measured(rule: str) -> str:

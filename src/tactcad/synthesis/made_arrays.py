@@ -13,11 +13,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.special import betaincinv
 
 from tactcad.assembly.mechanic import Assembled
 from tactcad.assembly.virtual_build import DECIDING, Sensor, sensor
 from tactcad.assembly.virtual_shop import SIGMAS, Distribution, made, within_limits
+from tactcad.assembly.yield_interval import of_share
 from tactcad.design.tree import Design
 from tactcad.mechanics import strength
 from tactcad.mechanics.section import Array
@@ -236,11 +236,3 @@ class MadeSensor:
             (off[0] ** 2).sum(axis=0), (off[1] ** 2).sum(axis=0), (off[0] * off[1]).sum(axis=0)
         )
         return e.stiffness * (1.0 + mean[0]), e.signal * (1.0 + mean[1]), stated
-
-
-def of_share(successes: int, count: int, level: float = 0.95) -> tuple[float, float]:
-    """Clopper and Pearson's interval of a share (Biometrika 26, 1934): never covers less than its level."""
-    tail = (1.0 - level) / 2.0
-    low = float(betaincinv(successes, count - successes + 1.0, tail)) if successes else 0.0
-    high = float(betaincinv(successes + 1.0, count - successes, 1.0 - tail)) if successes < count else 1.0
-    return low, high

@@ -153,7 +153,7 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
         Relative, by how much more search might change the answer.
     """
     looked, best = 0, None
-    for margin, some in _tries(target):
+    for margin, some in tries(target):
         found = [search(stand, goal_of(target, margin), within=within) for stand in some]
         looked += sum(one.evaluations for one in found)
         chosen = min(found, key=lambda f: (not f.accepted, f.goal))
@@ -172,7 +172,7 @@ def _worth(got: Synthesis) -> tuple[bool, bool, float, float]:
     return got.met, got.found.accepted, got.made.share, -got.found.half_width
 
 
-def _tries(target: Target) -> list[tuple[float, list[Stand]]]:
+def tries(target: Target) -> list[tuple[float, list[Stand]]]:
     """What is searched until the target is met: margins between wanted and nominal half-width, and stands."""
     everything, least = stands(target), target.target.least
     if target.target.half_width is not None and least in ("room", "cut", "kinds"):
@@ -202,7 +202,7 @@ def _made(target: Target, found: Found, arrays: int) -> tuple[Yield, float]:
 def design(
     target: Target,
     *,
-    within: float = 1e-3,
+    arrays: int = ARRAYS,
     seconds: float | None = None,
     tell: Tell = lambda done, total, what: None,
 ) -> Synthesis:
@@ -212,11 +212,11 @@ def design(
     ----------
     target
         As `target.read_target` gives it.
-    within
-        Relative; the search stops where more of it would not change the half-width by more.
+    arrays
+        To be made of each distribution for the yield.
     seconds
         Time to take; what it does not reach of the report (limits, variance shares, front, ratios) is left
-        out and named.
+        out and named. The search and the yield are never cut short.
     tell
         Called with (done, total, what comes next).
 
@@ -235,9 +235,9 @@ def design(
         ("stiffness ratios", _with_ratios),
     ]
     tell(0, len(steps) + 1, "searching")
-    got = attempt(target, within=within)
+    got = attempt(target, arrays)
     if not got.met:
-        return _with_changes(got, within, tell, started, seconds)
+        return _with_changes(got, arrays, tell, started, seconds)
     skipped = []
     for i, (what, step) in enumerate(steps, start=1):
         if seconds is not None and time.perf_counter() - started > seconds:
@@ -345,7 +345,7 @@ def _with_ratios(got: Synthesis) -> Synthesis:
 
 
 def _with_changes(
-    got: Synthesis, within: float, tell: Tell, started: float, seconds: float | None
+    got: Synthesis, arrays: int, tell: Tell, started: float, seconds: float | None
 ) -> Synthesis:
     """What of the target, changed alone by the least, would make it possible; each shown by a run."""
     names = [name for name, _ in relax.eased(got.target)]
@@ -355,7 +355,7 @@ def _with_changes(
             skipped.append(f"least change of {name}")
             continue
         tell(i, len(names), f"impossible as asked; the least change of {name}")
-        change = relax.least_change(got.target, name, lambda t: attempt(t, within=within).met)
+        change = relax.least_change(got.target, name, lambda t: attempt(t, arrays).met)
         if change:
             changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
     return replace(got, changes=tuple(changes), left_out=tuple(skipped))

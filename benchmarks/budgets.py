@@ -1,0 +1,219 @@
+"""Whether budgets are kept on designs drawn by chance, as the tables of docs/accuracy.md.
+
+    python benchmarks/budgets.py docs/accuracy.md --designs 200 --commands 12     an hour of one core
+
+Each of the first gets a P or a time by chance and is answered by `tactcad estimate --batch` in a process
+of its own; its K is held against solid elements on a mesh finer than any that was chosen, its processor time
+against the time stated. Each of the second, whole designs of tests/sound_designs.py, is checked and exported.
+What is done is kept in .cache/budgets.jsonl: run again it goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from pathlib import Path
+from random import Random
+
+import numpy as np
+from ladder_tables import filled
+
+from tactcad.bench.kernel_costs import check_grades, export_grades
+from tactcad.bench.rung_costs import mesh_sizes, row_grades
+from tactcad.design.allowance import Allowance, pick
+from tactcad.design.messages import CheckFailure, InputError
+from tactcad.fem.convergence import converged_solid
+from tactcad.fem.shape import reference_shape
+from tactcad.fit import accuracy_samples, fit_samples
+from tactcad.mechanics.section import HingeSection
+
+ROOT = Path(__file__).parents[1]
+KEPT = ROOT / ".cache" / "budgets.jsonl"
+SEED = 20261123 + 200
+MOST = 60.0  # elements x layers of a coarsest mesh: what is refined beyond mesh 3 in some 20 s
+ERRORS, SECONDS = (2.5e-4, 0.5), (0.3, 5.0)
+TIMES = 1.3
+
+
+def designs(count: int) -> list[HingeSection]:
+    """A third each of the box, of its edges, of the whole range; those that can be refined here."""
+    third = 2 * count
+    tables = (
+        fit_samples.draw_box(third, SEED),
+        fit_samples.draw_edges(third, SEED + 1),
+        accuracy_samples.draw_range(third, SEED + 2),
+    )
+    found = []
+    for table in tables:
+        some = fit_samples.section(table)
+        rows = (some.rows(i) for i in range(third))
+        small = [one for one in rows if float(np.prod([n[0] for n in mesh_sizes(one)])) <= MOST]
+        found += small[: -(-count // 3)]
+    return found[:count]
+
+
+def estimates(count: int) -> Iterator[tuple[str, Callable[[], dict]]]:
+    for i, one in enumerate(designs(count)):
+        yield f"estimate {i}", lambda i=i, one=one: estimated(one, Random(SEED + i))
+
+
+def estimated(one: HingeSection, random: Random) -> dict:
+    by_error = random.random() < 0.5
+    drawn = float(np.exp(random.uniform(*np.log(ERRORS if by_error else SECONDS))))
+    asked = Allowance(drawn, None) if by_error else Allowance(None, drawn)
+    try:
+        grade = pick(row_grades(listed(one), asked.within), asked, "K").grade
+    except CheckFailure as refusal:
+        return {"refused": str(refusal)}
+    with tempfile.TemporaryDirectory() as folder:
+        source, out = Path(folder) / "in.csv", Path(folder) / "out.csv"
+        names = [f.name for f in fields(one) if f.name not in ("two_sided", "pad_height", "friction")]
+        values = [repr(float(getattr(one, name))) for name in names]
+        sides = "two" if bool(one.two_sided) else "one"
+        source.write_text(",".join([*names, "sides"]) + "\n" + ",".join([*values, sides]) + "\n")
+        option = ["--within", repr(drawn)] if by_error else ["--in", repr(drawn)]
+        took = child("estimate", "--batch", str(source), "--out", str(out), *option)
+        (row,) = csv.DictReader(out.open(newline=""))
+    finer = (
+        3 if row["model"] == "fem-solid" and row["mesh"] == "2" else 4 if row["model"] == "fem-solid" else 2
+    )
+    material = (float(one.youngs_modulus), float(one.poisson), float(one.width))
+    truth = converged_solid(reference_shape(one), *material, mesh=finer).stiffness
+    return {
+        "rung": row["model"] + row["mesh"],
+        "promised": float(row["expected_error"]),
+        "asked": asked.within,
+        "error": abs(float(row["stiffness"]) / truth - 1.0),
+        "stated": grade.seconds,
+        "took": took,
+        "in": asked.seconds,
+    }
+
+
+def listed(one: HingeSection) -> HingeSection:
+    """The same as an array of one."""
+    return HingeSection(**{f.name: np.atleast_1d(getattr(one, f.name)) for f in fields(one)})
+
+
+def child(*arguments: str, cache: Path | None = None) -> float:
+    """Processor seconds of a command and of all that it starts."""
+    used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])  # noqa: E731
+    start, environment = used(), os.environ | {"OMP_NUM_THREADS": "1"}
+    environment |= {"TACTCAD_CACHE": str(cache)} if cache else {}
+    subprocess.run(
+        [sys.executable, "-m", "tactcad", *arguments], env=environment, capture_output=True, check=False
+    )
+    return used() - start
+
+
+def commands(count: int) -> Iterator[tuple[str, Callable[[], dict]]]:
+    sys.path.insert(0, str(ROOT / "tests"))
+    for i in range(count):
+        yield f"command {i}", lambda i=i: commanded(i)
+
+
+def commanded(number: int) -> dict:
+    from random_designs import as_toml
+    from sound_designs import as_table, sound_table
+
+    from tactcad.parts.designs import load
+    from tactcad.scenes import scene_names
+
+    random = Random(SEED + number)
+    rows = random.choice(((3, 3), (5, 5), (2,), (4,), (8, 8), (20, 20)))
+    tree = as_table(sound_table(random.randrange(2**48), rows, rigs=random.random() < 0.7))
+    tree["design"] |= {"name": f"drawn-{number}", "title": "t", "revision": "A", "date": "2026-11-23"}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "design.toml"
+        path.write_text(as_toml(tree), encoding="utf-8")
+        try:
+            design = load(path)
+        except InputError as refusal:
+            return {"refused": str(refusal)}
+        within = random.choice((0.02, 0.005, 0.002))
+        asked, names = Allowance(within), scene_names(design)
+        option = ("--within", repr(within))
+        return {
+            "stated": [
+                pick(grades, asked, "").grade.seconds
+                for grades in (check_grades([(design, names)]), export_grades(design, names))
+            ],
+            "took": [
+                child("check", str(path), *option),
+                child("export", str(path), "--out", f"{folder}/out", *option, cache=Path(folder) / "cache"),
+            ],
+        }
+
+
+def kept() -> dict[str, dict]:
+    lines = KEPT.read_text("utf-8").splitlines() if KEPT.is_file() else []
+    return dict(map(json.loads, lines))
+
+
+def run(tasks: Iterator[tuple[str, Callable[[], dict]]]) -> list[dict]:
+    done, found = kept(), []
+    KEPT.parent.mkdir(parents=True, exist_ok=True)
+    with KEPT.open("a", encoding="utf-8") as file:
+        for name, task in tasks:
+            if name not in done:
+                done[name] = task()
+                print(json.dumps([name, done[name]]), file=file, flush=True)
+            found.append(done[name])
+    return found
+
+
+def promises(rows: list[dict]) -> str:
+    lines = [
+        "| rung | designs | promise broken | largest error over promise | median of it |",
+        "|---|---|---|---|---|",
+    ]
+    for rung in [*dict.fromkeys(row["rung"] for row in rows), "all"]:
+        some = [row for row in rows if rung in (row["rung"], "all")]
+        share = np.array([row["error"] / row["promised"] for row in some])
+        broken = sum(r["error"] > r["promised"] or (r["asked"] or 1.0) < r["promised"] for r in some)
+        named = rung.replace("fem-solid", "fem-solid, mesh ")
+        lines.append(f"| {named} | {len(some)} | {broken} | {share.max():.2g} | {np.median(share):.2g} |")
+    return "\n".join(lines) + "\n"
+
+
+def times(named: dict[str, tuple[list[float], list[float]]]) -> str:
+    lines = [
+        f"| command | designs | took at most {TIMES:g} times as long as stated | least | median | largest |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, (stated, took) in named.items():
+        by = np.array(took) / np.array(stated)
+        quantiles = " | ".join(f"{v:.2f}" for v in (by.min(), np.median(by), by.max()))
+        lines.append(f"| `{name}` | {len(by)} | {100 * (by <= TIMES).mean():.0f} % | {quantiles} |")
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("document", type=Path, help="Markdown file that has the tables' places")
+    parser.add_argument("--designs", type=int, default=200)
+    parser.add_argument("--commands", type=int, default=12)
+    asked = parser.parse_args()
+    rows = [r for r in run(estimates(asked.designs)) if "refused" not in r]
+    others = [r for r in run(commands(asked.commands)) if "refused" not in r]
+    named = {"estimate": ([r["stated"] for r in rows], [r["took"] for r in rows])}
+    for i, name in enumerate(("check", "export")):
+        named[name] = [r["stated"][i] for r in others], [r["took"][i] for r in others]
+    text = asked.document.read_text(encoding="utf-8")
+    text = filled(text, "budget promises", promises(rows))
+    asked.document.write_text(filled(text, "budget times", times(named)), encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,19 @@
+"""How finely shapes are meshed, and what that may take off or add to their volume."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+CHORD_MM = 0.05  # largest chord error; the turn governs small radii, this one those above 10 mm
+
+
+@dataclass(frozen=True)
+class Meshing:
+    """`angular`: largest turn between facets, rad; `error`: largest relative error of a part's volume that is
+    promised, None where only what facets can explain is."""
+
+    angular: float = 0.2
+    error: float | None = None
+
+
+USUAL = Meshing()

@@ -1,0 +1,186 @@
+"""`--within` and `--in` as a user gives them."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+from scipy.stats import binomtest
+
+from tactcad.bench import costs, kernel_costs, rung_costs, this_machine
+from tactcad.cli.main import main
+from tactcad.fem import fem_ladder
+from tactcad.mechanics.accuracy import CANDIDATES, expected_error
+from tactcad.mechanics.section import REFERENCE
+from tactcad.parts.designs import load
+
+HEADER = (
+    "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,"
+    "poisson,youngs_modulus,width"
+)
+ROW = "0.25,0.75,0.15,6,2,4,4,0.33,69000,3"
+DEEP = "0.25,2.0,0.8,6,3,4,4,0.33,69000,1.2"  # a narrow leaf with deep fillets, where closed forms err most
+
+
+@pytest.fixture(autouse=True)
+def published_machine(monkeypatch, tmp_path):
+    """Costs as published, whatever runs beside."""
+    monkeypatch.setattr(costs, "slowness", lambda: 1.0)
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
+
+
+def budget(capsys, *args):
+    assert main([*args, "--json"]) == 0
+    return json.loads(capsys.readouterr().out)["budget"]
+
+
+def test_accuracy_is_within_by_another_name(capsys):
+    assert budget(capsys, "estimate", "--accuracy", "1%") == budget(capsys, "estimate", "--within", "0.01")
+
+
+def test_time_takes_the_most_exact_rung_and_says_its_neighbours(capsys):
+    said = budget(capsys, "estimate", "--in", "1")
+    assert said["chosen"]["name"] == "solid" and said["within"] is None and said["in_s"] == 1.0
+    assert said["less"]["error"] > said["chosen"]["error"] > said["more"]["error"]
+    assert said["more"]["seconds"] > 1.0 >= said["chosen"]["seconds"] >= said["less"]["seconds"]
+
+
+def test_too_short_a_time_ends_before_anything_is_solved(capsys, monkeypatch):
+    monkeypatch.setattr(fem_ladder, "solve", lambda *_: pytest.fail("solved"))
+    for args in (["--in", "0.001"], ["--within", "0.1%", "--in", "0.5"]):
+        assert main(["estimate", *args]) == 1
+        said = capsys.readouterr()
+        assert said.out == "" and "too short" in said.err and "needs about" in said.err
+        assert said.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "args,word",
+    [
+        (["--within", "1%", "--model", "solid"], "leave out --model solid"),
+        (["--in", "9", "--model", "solid"], "leave out --model solid"),
+        (["--within", "1%", "--accuracy", "1%"], "same as --within"),
+        (["--in", "9", "--inspection", "x.csv"], "--inspection"),
+        (["--in", "nothing"], "--in"),
+        (["--within", "0"], "--within"),
+    ],
+)
+def test_contradictions_are_refused_in_one_line(args, word, capsys):
+    assert main(["estimate", *args]) == 2
+    message = capsys.readouterr().err
+    assert word in message and message.count("\n") == 1
+
+
+def rows(tmp_path, lines, *args):
+    source, target = tmp_path / "in.csv", tmp_path / "out.csv"
+    source.write_text("\n".join([HEADER, *lines]) + "\n")
+    assert main(["estimate", "--batch", str(source), "--out", str(target), *args]) == 0
+    return list(csv.DictReader(target.open(newline="")))
+
+
+def test_a_table_gets_each_row_its_rung_and_one_budget(tmp_path, capsys):
+    found = rows(tmp_path, [ROW, DEEP, ROW.replace("0.33", "0.1")], "--in", "2")
+    said = capsys.readouterr().out.splitlines()[-1]
+    assert said.startswith("budget: solid: K within 4.7 %")
+    assert [row["model"] for row in found] == ["solid", "solid", ""]
+    found = rows(tmp_path, [ROW, DEEP], "--within", "1%")
+    said = capsys.readouterr().out.splitlines()[-1]
+    assert "solid for 1 and fem-solid, mesh 2 for 1: K within 0.29 %" in said
+    assert [row["model"] for row in found] == ["solid", "fem-solid"]
+    assert all(float(row["expected_error"]) <= 0.01 for row in found)
+    assert rows(tmp_path, [], "--in", "2") == []
+
+
+def test_costs_follow_the_work(monkeypatch):
+    many = REFERENCE.with_(load_arm=[5.0, 6.0, 7.0])
+    one, three = rung_costs.rung_grades(REFERENCE), rung_costs.rung_grades(many)
+    assert [g.name for g in one] == [c.name for c in CANDIDATES]
+    assert [g.error for g in one] == [float(expected_error(REFERENCE, c)) for c in CANDIDATES]
+    start = costs.published()["start"]
+    work = [g.seconds - start["numpy"] - start["elements"] for g in (one[-1], three[-1])]
+    assert work[1] == pytest.approx(3.0 * work[0], rel=0.2)
+    monkeypatch.setattr(costs, "slowness", lambda: 2.0)
+    assert rung_costs.rung_grades(REFERENCE)[-1].seconds == pytest.approx(2.0 * one[-1].seconds, rel=0.06)
+
+
+def test_a_calibration_is_kept_and_a_damaged_or_unwritable_cache_survived(tmp_path, monkeypatch, capsys):
+    runs = []
+    monkeypatch.setattr(this_machine, "calibration", lambda: runs.append(1) or 0.05)
+    assert this_machine.calibrated() == this_machine.calibrated() == 0.05 and len(runs) == 1
+    (entry,) = [p for p in (tmp_path / "cache").rglob("*") if len(p.name) == 64]
+    entry.write_bytes(entry.read_bytes()[:-1] + b"x")
+    assert this_machine.calibrated() == 0.05 and len(runs) == 2
+    assert "damaged" in capsys.readouterr().err
+    monkeypatch.setattr(this_machine.time, "time", lambda: 4e9)  # a later day
+    assert this_machine.calibrated() == 0.05 and len(runs) == 3
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "file" / "below"))
+    assert this_machine.calibrated() == 0.05 and len(runs) == 4
+
+
+def test_calibration_is_short():
+    """Under a second of processor time; a limit, not a promise about a loaded machine."""
+    assert 0.0 < this_machine.calibration() * this_machine.REPEATS < 1.0
+
+
+def test_costs_are_published_with_their_machine():
+    record = costs.published()
+    assert record["calibration_s"] > 0.0 and set(record["elements"]) == {
+        c.name for c in CANDIDATES if "fem" in c.rung
+    }
+    assert Path(costs.DATA).is_file()
+
+
+@pytest.mark.cad
+def test_a_check_meshes_as_finely_as_asked_and_leaves_nothing_out(capsys):
+    args = ["check", "soft-tissue", "--scene", "array", "--json"]
+    assert main(args) == 0
+    usual = json.loads(capsys.readouterr().out)
+    assert main([*args, "--within", "0.2%"]) == 0
+    fine = json.loads(capsys.readouterr().out)
+    assert fine["budget"]["chosen"]["error"] <= 0.002 and "budget" not in usual
+    assert fine["runs"] == usual["runs"] and fine["passed"]
+
+
+@pytest.mark.cad
+def test_a_check_refuses_a_time_too_short_before_it_begins(capsys, monkeypatch):
+    monkeypatch.setattr("tactcad.checks.run.run_checks", lambda *_: pytest.fail("begun"))
+    for command in ("check", "export"):
+        assert main([command, "soft-tissue", "--in", "0.5"]) == 1
+        said = capsys.readouterr()
+        assert "0.5 s are too short: needs about" in said.err and said.err.count("\n") == 1 and not said.out
+
+
+@pytest.mark.cad
+def test_several_designs_share_one_time_and_one_mesh(capsys):
+    designs = [(load(name), ("array",)) for name in ("soft-tissue", "macro-array")]
+    one, other, both = (kernel_costs.check_grades(some) for some in (designs[:1], designs[1:], designs))
+    start = costs.published()["check"]["start"]
+    for a, b, c in zip(one, other, both, strict=True):
+        assert c.seconds == pytest.approx(a.seconds + b.seconds - start, rel=0.01)
+        assert a.error == b.error == c.error
+    assert main(["check", "soft-tissue", "nowhere", "--in", "0.5"]) == 1
+    assert "too short" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "export"])
+@pytest.mark.parametrize("option,value", [("--within", "0"), ("--within", "nan"), ("--in", "-1")])
+def test_other_commands_refuse_bad_input_alike(command, option, value, capsys):
+    assert main([command, "soft-tissue", f"{option}={value}"]) == 2
+    message = capsys.readouterr().err
+    assert message.startswith(f"tactcad: {option}: ") and message.count("\n") == 1
+
+
+def test_a_build_makes_as_many_arrays_as_its_interval_needs(capsys):
+    assert main(["build", "soft-tissue", "--within", "5%", "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["count"] == 500 and made["budget"]["chosen"]["name"] == "500 arrays"
+    low, high = made["yield_interval"]
+    exact = binomtest(made["assembled"], made["count"]).proportion_ci(0.95, "exact")
+    assert (low, high) == pytest.approx((exact.low, exact.high), abs=1e-12)
+    assert (high - low) / 2.0 <= made["budget"]["chosen"]["error"] <= 0.05
+    assert main(["build", "--within", "5%", "--count", "10"]) == 2
+    assert "leave out --count 10" in capsys.readouterr().err
+    assert main(["build", "--in", "0.1"]) == 1 and "too short" in capsys.readouterr().err
