@@ -103,8 +103,12 @@ def run(args: argparse.Namespace) -> int:
     shares = _shares(layout, model)
     uncut = asdict(compare_uncut(layout)) if model in FINITE_ELEMENTS else None
     if args.json:
-        budget = {"mesh": mesh, "budget": picked.record()} if picked else {}
-        print(json.dumps(_document(design, model, rows, uncut, shares) | budget, indent=2))
+        document = _document(design, model, rows, uncut, shares)
+        if picked:
+            # the first two as --accuracy has always said them
+            document |= {"accuracy_asked": asked.within, "expected_time_s": picked.grade.seconds}
+            document |= {"mesh": mesh, "budget": picked.record()}
+        print(json.dumps(document, indent=2))
     else:
         print(_report(design, model, rows, uncut, shares))
         if picked:
