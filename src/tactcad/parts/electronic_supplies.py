@@ -108,14 +108,14 @@ def board_supplies(layout: Layout) -> tuple[Supply, ...]:
             "decoder, 3 to 8 lines, 5 V",
             count,
             "74HC238 decoder, outputs active high, SO16 (74HC238D); any maker's 74HC238",
-            _Order("Nexperia", "74HC238D", True),
+            _Order("Nexperia", "74HC238D"),
         ),
         _part(
             DECOUPLING,
             "decoupling capacitor",
             (ON_SUPPLIES + 1) * count,
             "ceramic capacitor 100 nF, 10 %, X7R, 50 V, 0805; or equal",
-            _Order("KEMET", "C0805C104K5RAC", True),
+            _Order("KEMET", "C0805C104K5RAC"),
         ),
         _part(
             RESERVOIR,

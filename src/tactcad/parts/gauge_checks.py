@@ -58,12 +58,8 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     gauge, electronics = design_gauge(d), design_readout(d)
     per_newton = _per_newton(s, gauge)
     signal = factor * per_newton * d.rating.force
-    # as 4 V/(T U G) of what the output may span less the signal: the bridge's slope at zero
-    room = (
-        4
-        * min(electronics.highest, -electronics.lowest)
-        / (electronics.excitation * electronics.gain * electronics.transmission)
-    )
+    # as 4 V/(U G) of what the output may span less the signal: the bridge's slope at zero
+    room = 4 * min(electronics.highest, -electronics.lowest) / (electronics.excitation * electronics.gain)
     push = min(PUSH, d.rating.force)
     arms = dict(zip((p.arm for p in layout.elements), factor * per_newton * push, strict=True))
     return GaugeChecks(
@@ -86,8 +82,8 @@ def allowed_places(layout: Layout) -> Array:
 
 def volts(layout: Layout, change: float) -> float:
     """Amplifier's output for a relative change of one gauge, V."""
-    own = design_readout(layout.design)
-    return float(own.excitation * own.gain * own.transmission * readout.bridge_output(change))
+    own = layout.design.readout
+    return float(own.excitation * own.gain * readout.bridge_output(change))
 
 
 def _per_newton(s: HingeSection, gauge: gauge_signal.Gauge) -> Array:
