@@ -184,3 +184,12 @@ def test_a_build_makes_as_many_arrays_as_its_interval_needs(capsys):
     assert main(["build", "--within", "5%", "--count", "10"]) == 2
     assert "leave out --count 10" in capsys.readouterr().err
     assert main(["build", "--in", "0.1"]) == 1 and "too short" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["estimate", "check", "export", "build", "design", "sweep"])
+def test_help_says_whose_error_p_is(command, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main([command, "--help"])
+    said = " ".join(capsys.readouterr().out.split())
+    assert ended.value.code == 0 and "--within P largest " in said and "as 1% or 0.01" in said
+    assert f"tactcad {command} " in said and "--within" in said[said.index("examples:") :]

@@ -34,7 +34,8 @@ def run(*arguments, cwd, script="-m"):
 def profile(*arguments, cwd, status=0):
     done = run(*arguments, "--profile", "--json", cwd=cwd)
     assert done.returncode == status, done.stderr
-    return json.loads(done.stderr[done.stderr.index("{\n") :])
+    record, _ = json.JSONDecoder().raw_decode(done.stderr[done.stderr.index("{\n") :])
+    return record  # behind it stands why a command is refused
 
 
 @pytest.mark.parametrize(
@@ -54,6 +55,45 @@ def test_estimates_load_numpy_alone_and_make_nothing(arguments, loaded, tmp_path
     assert set(record["loaded"]) == loaded
     assert record["made"] == {}
     assert record["peak_memory_mb"] < 100
+
+
+def fresh(folder, name):
+    """A working folder with no cache in it."""
+    (folder / name).mkdir()
+    return folder / name
+
+
+NIGHTLY = [pytest.mark.nightly, pytest.mark.cad]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("build", "--count", "100"),
+        pytest.param(("check", "--scene", "array"), marks=NIGHTLY),
+        pytest.param(("export", "--scene", "array"), marks=NIGHTLY),
+    ],
+    ids=lambda a: a[0],
+)
+def test_choosing_by_a_budget_loads_and_makes_nothing_else(arguments, tmp_path):
+    """What it costs is counted without kernel; scenes are described once more, for counting."""
+    command, *rest = arguments
+    chosen = rest[:-2] + ["--within", "10%"] if command == "build" else [*rest, "--within", "0.5%"]
+    if command == "export":
+        rest, chosen = ([*some, "--out", f"{len(some)}"] for some in (rest, chosen))
+    plain, by = (
+        profile(command, str(DESIGN), *some, cwd=fresh(tmp_path, f"{n}"))
+        for n, some in enumerate((rest, chosen))
+    )
+    added = {"mesh"} if command == "export" else set()
+    assert set(by["loaded"]) == set(plain["loaded"]) and set(by["made"]) - set(plain["made"]) <= added
+    assert set(by["made"].get("solid", {})) == set(plain["made"].get("solid", {}))
+
+
+def test_a_time_too_short_loads_no_kernel(tmp_path):
+    for command in ("check", "export"):
+        record = profile(command, str(DESIGN), "--in", "0.5", cwd=tmp_path, status=1)
+        assert not set(record["loaded"]) & (KERNEL | MESHES) and set(record["made"]) <= {"scene"}
 
 
 def test_finite_element_estimates_load_no_kernel_and_solve_each_distinct_element_once(tmp_path):

@@ -10,11 +10,12 @@ from tactcad.design.messages import InputError
 
 def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None:
     """The two options; `of` says whose error P is, `chosen` what is chosen by it."""
+    of = of.replace("%", "%%")  # argparse formats help
     parser.add_argument(
         "--within",
         metavar="P",
-        help=f"largest {of} that may be left, as 0.01 or in per cent (1 and the sign); takes the {chosen} of "
-        "least work that keeps it, or refuses; says what a step more or less would cost (docs/accuracy.md)",
+        help=f"largest {of} that may be left, as 1%% or 0.01; takes the {chosen} of least work that keeps "
+        "it, or refuses; says what a step more or less would cost (docs/accuracy.md)",
     )
     parser.add_argument(
         "--in",
