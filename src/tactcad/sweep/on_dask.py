@@ -153,14 +153,12 @@ def cluster(
             _load_ahead(loads)  # in a process of its own
         prepared = stack.enter_context(ThreadPoolExecutor(1)).submit(prepare)
         logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
-        settings = {
-            "logging": dict.fromkeys(logs, "critical"),  # read when it is loaded
-            "distributed.worker.daemon": False,
-            "distributed.worker.multiprocessing-method": "forkserver",
-        }
-        stack.enter_context(dask.config.set(settings))
-        from distributed import Client, LocalCluster
+        quiet = {"logging": dict.fromkeys(logs, "critical")}
+        with dask.config.set(quiet):  # read when it is loaded, which is when Dask gets its other settings
+            from distributed import Client, LocalCluster
 
+        ours = {"distributed.worker.daemon": False, "distributed.worker.multiprocessing-method": "forkserver"}
+        stack.enter_context(dask.config.set({**quiet, **ours}))
         if address is not None:
             client = stack.enter_context(_connected(Client, address))
             _refuse_without_tactcad(client)
@@ -182,8 +180,9 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
     try:
         yield
     finally:
-        for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
+        for name in values:
+            os.environ.pop(name, None)
+        os.environ.update({name: value for name, value in before.items() if value is not None})
 
 
 def _load_ahead(modules: list[str]) -> None:
