@@ -41,7 +41,7 @@ from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.meshing import CHORD_MM
 
 HARDWARE = Path(__file__).parents[1] / "hardware"
-DESIGNS = ("macro-array", "soft-tissue", "double-sample", "smallest-bearing", "better-array")
+DESIGNS = ("macro-array", "soft-tissue", "better-array", "double-sample", "smallest-bearing")
 COMMANDED = (("macro-array", True), ("macro-array", False), ("soft-tissue", True), ("smallest-bearing", True))
 WITH_EXTRAS = (1, 2)  # of these, drawings and guides too
 SEED = 20261123
@@ -296,6 +296,44 @@ def syntheses() -> dict[str, Any]:
     }
 
 
+STUDY = """
+[study]
+name = "costs"
+sampling = "sobol"
+count = {count}
+[vary."element.hinge_thickness"]
+range = [0.24, 0.26]
+[measure]
+what = ["{what}"]
+{elements}
+"""
+
+
+def sweeps() -> dict[str, Any]:
+    """`sweep` by one worker: starting, a design's row, a closed form of one element, a design's rules."""
+    many, few, alone = 1 << 19, 64, "elements = [4]"
+    with tempfile.TemporaryDirectory() as folder:
+
+        def took(count: int, what: str = "solid", elements: str = alone) -> float:
+            name = f"{what}-{count}-{len(elements)}"
+            study = Path(folder) / f"{name}.toml"
+            study.write_text(STUDY.format(count=count, what=what, elements=elements), "utf-8")
+            return child_seconds(
+                "-m", "tactcad", "sweep", str(study), "--out", f"{folder}/{name}", "--workers", "1"
+            )
+
+        start, one, five = took(1), took(many), took(many, elements="elements = [1, 2, 3, 4, 5]")
+        rules = (took(few, "rules", "") - took(1, "rules", "")) / (few - 1)
+    closed = (five - one) / (4 * many)
+    costs = {
+        "start": start,
+        "row": max((one - start) / many - closed, 0.0),
+        "closed": closed,
+        "design": rules,
+    }
+    return {"sweep": costs}
+
+
 PARTS = {
     "starts": starts,
     "elements": elements,
@@ -303,6 +341,7 @@ PARTS = {
     "commands": commands,
     "builds": builds,
     "syntheses": syntheses,
+    "sweeps": sweeps,
 }
 
 if __name__ == "__main__":

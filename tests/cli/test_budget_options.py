@@ -10,6 +10,7 @@ import pytest
 from scipy.stats import binomtest
 
 from tactcad.bench import costs, kernel_costs, rung_costs, this_machine
+from tactcad.bench.tessellation import ANGULAR
 from tactcad.cli.main import main
 from tactcad.fem import fem_ladder
 from tactcad.mechanics.accuracy import CANDIDATES, expected_error
@@ -127,6 +128,9 @@ def test_calibration_is_short():
 
 def test_costs_are_published_with_their_machine():
     record = costs.published()
+    parts = {"mesh", "check", "export", "drawings", "guides", "build", "array", "synthesis", "array tried"}
+    assert parts | {"start", "row", "sweep", "date", "machine"} <= set(record)
+    assert set(record["mesh"]["seconds"]) == {f"{angular:g}" for angular in ANGULAR}
     assert record["calibration_s"] > 0.0 and set(record["elements"]) == {
         c.name for c in CANDIDATES if "fem" in c.rung
     }

@@ -156,8 +156,27 @@ def test_solid_elements_keep_their_promise_at_a_thin_notch():
         assert abs(moved) < getattr(stated, name)
 
 
+SHORT_ARM = REFERENCE.with_(  # drawn by benchmarks/budgets.py: mesh 2 errs by 0.045 %, mesh 3 by 0.0085
+    hinge_length=1.0989244,
+    fillet_radius=0.35588813,
+    load_arm=1.5636555,
+    arm_height=0.9650757,
+    body_height=1.8544091,
+    body_length=5.3475012,
+    poisson=0.39249593,
+    width=1.0382833,
+    two_sided=False,
+)
+
+
+def test_solid_elements_keep_their_promise_at_a_short_arm():
+    coarse, fine = (elements.stiffness(SHORT_ARM, "fem-solid", mesh) for mesh in (2, 3))
+    promised = [float(accuracy.expected_error(SHORT_ARM, c)) for c in CANDIDATES if c.mesh]
+    assert 3e-4 < abs(coarse / fine - 1.0) < promised[0] - promised[1]
+
+
 @pytest.mark.nightly
-@pytest.mark.parametrize("s", [NOTCH, NARROW], ids=["notch", "narrow"])
+@pytest.mark.parametrize("s", [NOTCH, NARROW, SHORT_ARM], ids=["notch", "narrow", "short arm"])
 def test_solid_elements_keep_their_promise_against_a_higher_order(s):
     K = [elements.stiffness(s, "fem-solid", mesh) for mesh in (2, 3, 4)]
     for found, candidate in zip(K, (c for c in CANDIDATES if c.mesh)):
@@ -253,5 +272,5 @@ def test_every_zone_was_measured_by_enough_designs_of_every_kind():
     """Counted are designs with solid elements; where they are few the promise is further from the worst."""
     for zone in accuracy_data()["zones"]:
         count, worst, promised = (zone[name]["solid"] for name in ("designs", "worst", "promised"))
-        assert count >= 7 and promised >= (1.39 if count >= 60 else 2.4) * worst
+        assert count >= 7 and promised >= (1.99 if count >= 60 else 2.4) * worst
         assert zone["designs"]["fem-solid, mesh 2"] >= 36 and zone["designs"]["fem-solid, mesh 3"] >= 24

@@ -34,7 +34,7 @@ def arrays_of(grade: Grade) -> int:
 
 
 def _grades(fixed: float, each: float) -> list[Grade]:
-    return [Grade(_name(n), float(f"{widest(n):.3g}"), here(fixed + n * each)) for n in COUNTS]
+    return [Grade(_name(n), widest(n), here(fixed + n * each)) for n in COUNTS]
 
 
 def _name(count: int) -> str:

@@ -71,7 +71,7 @@ def with_allowance(study: Study, asked: Allowance, workers: int) -> tuple[Study,
             for n in COUNTS
         ]
     seconds = [_seconds(one, each, workers) for one, _, _ in choices]
-    grades = [Grade(name, float(f"{e:.3g}"), s) for (_, name, e), s in zip(choices, seconds)]
+    grades = [Grade(name, e, s) for (_, name, e), s in zip(choices, seconds)]
     if rungs and builds:  # no order of work among pairs but their time
         grades.sort(key=lambda grade: grade.seconds)
     picked = pick(grades, asked, " and ".join(["K"] * bool(rungs) + [YIELD] * builds))
