@@ -209,7 +209,7 @@ def commands() -> dict[str, Any]:
     cases = [
         (name, load(name), scene_names(load(name)) if whole else ("array",)) for name, whole in COMMANDED
     ]
-    rows, took = [], {"check": [], "export": []}
+    rows, took = [], {name: [] for name in ("check", "export", *EXTRAS)}
     with tempfile.TemporaryDirectory() as folder:
         for n, count in enumerate((20, 60)):
             path = Path(folder) / f"long-{n}.toml"
@@ -218,16 +218,14 @@ def commands() -> dict[str, Any]:
         for n, (source, design, scenes) in enumerate(cases):
             rows.append(dict(counts(design, scenes)[0]))
             chosen = [word for scene in scenes for word in ("--scene", scene)]
-            for command in took:
+            for command in ("check", "export"):
                 out = ["--out", f"{folder}/{n}"] if command == "export" else []
                 cache = Path(folder) / f"cache-{n}"
                 run = ("-m", "tactcad", command, source, *chosen, *out)
                 took[command].append(child_seconds(*run, cache=cache))
             if n in WITH_EXTRAS:
                 for option in EXTRAS:
-                    took.setdefault(option, []).append(
-                        _extra(source, chosen, option, folder, took["export"][-1])
-                    )
+                    took[option].append(_extra(source, chosen, option, folder, took["export"][-1]))
     names = ("start", "part", "element"), ("start", "made", "place", "element")
     found = {c: fitted(some, rows, took[c]) for c, some in zip(("check", "export"), names)}
     extra_rows = [rows[n] for n in WITH_EXTRAS]

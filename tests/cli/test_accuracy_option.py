@@ -129,7 +129,7 @@ def test_every_row_of_a_table_has_its_own_rung(tmp_path):
 
 
 def test_one_row_is_a_table_too(tmp_path):
-    for wanted, model in (("1%", "solid"), ("30%", "plane")):
+    for wanted, model in (("1%", "solid"), ("40%", "plane")):
         status, rows = batch(tmp_path, [ROW], "--accuracy", wanted)
         assert status == 0 and rows[0]["model"] == model
     assert batch(tmp_path, [], "--accuracy", "1%") == (0, [])
