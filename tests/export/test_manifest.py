@@ -131,7 +131,7 @@ def test_damage_is_seen(folder, damage):
     "changes",
     [
         {"files": (*MANIFEST.files, MANIFEST.files[0])},
-        {"files": (replace(MANIFEST.files[0], kind="stl"), MANIFEST.files[1])},
+        {"files": (replace(MANIFEST.files[0], kind="obj"), MANIFEST.files[1])},
         {"files": (replace(MANIFEST.files[0], part_no="nobody"), MANIFEST.files[1])},
         {"files": (*MANIFEST.files, FileRecord("../secret", "bom", "", "B", "0"))},
         {"files": (*MANIFEST.files, FileRecord("/etc/passwd", "bom", "", "B", "0"))},

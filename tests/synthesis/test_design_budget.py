@@ -13,7 +13,7 @@ from tactcad.synthesis.target import parse_target
 from tactcad.synthesis.work_ahead import work_ahead
 
 
-def test_a_design_makes_as_many_arrays_as_its_interval_needs(tmp_path, capsys, monkeypatch):
+def test_a_design_makes_as_many_arrays_as_its_interval_needs(tmp_path, capsys, monkeypatch, time_is_over):
     monkeypatch.setattr(costs, "slowness", lambda: 1.0)
     (tmp_path / "small.toml").write_text(SMALL)
     args = ["design", str(tmp_path / "small.toml"), "--out", str(tmp_path / "out")]

@@ -74,10 +74,13 @@ def test_fields_not_tried_are_not_said_to_have_been_tried():
     assert b"No other single field" in report_page(changed)
 
 
-def test_best_that_writes_nothing_says_so(tmp_path, capsys):
+def test_best_that_writes_nothing_says_so(tmp_path, capsys, time_is_over):
     (tmp_path / "t.toml").write_text(SMALL + "[stock]\nsheets = [0.2]\n")
     out = str(tmp_path / "o")
-    assert main(["design", str(tmp_path / "t.toml"), "--out", out, "--in", "0", "--best"]) == 1
+    assert (
+        main(["design", str(tmp_path / "t.toml"), "--out", out, "--within", "5%", "--in", "30", "--best"])
+        == 1
+    )
     said = capsys.readouterr().out
     assert f"{out}: not written: no candidate keeps every limit" in said and "not tried for time" in said
 

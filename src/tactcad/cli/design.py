@@ -101,6 +101,8 @@ def _print(r: dict) -> None:
         )
     if not r["met"]:
         print(f"  {no_other_change(r)}")
+    elif r["left_out"]:
+        print(f"  left out of the report for time: {', '.join(r['left_out'])}")
     for note in r["notes"]:
         print(f"  note: {note}")
 

@@ -35,6 +35,11 @@ QUICK = 2e-3  # relative; searches beside the answer stop there
 NEAR_SEEDS = (1, 2)  # each such search is made twice, and the better one counts
 
 Tell = Callable[[int, int, str], None]
+GoOn = Callable[[], None]  # called before each search beside the answer; raises TimeIsOver
+
+
+class TimeIsOver(Exception):
+    """Nothing more is to be begun."""
 
 
 @dataclass(frozen=True)
@@ -215,7 +220,7 @@ def design(
     arrays
         To be made of each distribution for the yield.
     seconds
-        Time to take; what it does not reach of the report (limits, variance shares, front, ratios) is left
+        Time to take; what is not done by then of the report (limits, variance shares, front, ratios) is left
         out and named. The search and the yield are never cut short.
     tell
         Called with (done, total, what comes next).
@@ -227,7 +232,12 @@ def design(
         alone would make it possible.
     """
     started = time.perf_counter()
-    steps: list[tuple[str, Callable[[Synthesis], Synthesis]]] = [
+
+    def go_on() -> None:
+        if seconds is not None and time.perf_counter() - started > seconds:
+            raise TimeIsOver
+
+    steps: list[tuple[str, Callable[[Synthesis, GoOn], Synthesis]]] = [
         ("variance shares", _with_shares),
         ("solid elements", _with_solids),
         ("what limits it", _with_limits),
@@ -237,22 +247,23 @@ def design(
     tell(0, len(steps) + 1, "searching")
     got = attempt(target, arrays)
     if not got.met:
-        return _with_changes(got, arrays, tell, started, seconds)
+        return _with_changes(got, arrays, tell, go_on)
     skipped = []
     for i, (what, step) in enumerate(steps, start=1):
-        if seconds is not None and time.perf_counter() - started > seconds:
+        try:
+            go_on()
+            tell(i, len(steps) + 1, what)
+            got = step(got, go_on)
+        except TimeIsOver:
             skipped.append(what)
-            continue
-        tell(i, len(steps) + 1, what)
-        got = step(got)
     return replace(got, left_out=tuple(skipped))
 
 
-def _with_shares(got: Synthesis) -> Synthesis:
+def _with_shares(got: Synthesis, _: GoOn) -> Synthesis:
     return replace(got, shares=tuple(variance_shares(got.sensor)))
 
 
-def _with_solids(got: Synthesis) -> Synthesis:
+def _with_solids(got: Synthesis, _: GoOn) -> Synthesis:
     """K of every element by solid elements."""
     rows = array_estimate.estimate(got.sensor.layout, "fem-solid")
     return replace(got, solid=tuple(row.stiffness for row in rows))
@@ -284,13 +295,14 @@ def _same_stand(one: Stand, other: Stand) -> bool:
     return kinds and alike == (other.base.sheet, other.base.material.alloy)
 
 
-def _with_limits(got: Synthesis) -> Synthesis:
+def _with_limits(got: Synthesis, go_on: GoOn) -> Synthesis:
     """Fields whose easing by a step narrows the interval, the most helpful first."""
     width, narrowest = got.found.half_width, _narrowest
     limits = []
     for name, other in relax.eased(got.target):
         if name in relax.NOT_NARROWING:
             continue
+        go_on()
         found = _search_near(other, got.found, narrowest)
         if found.accepted and found.half_width < width * (1.0 - NEAR):
             gain = 1.0 - found.half_width / width
@@ -303,7 +315,7 @@ def _narrowest(c: Candidates) -> Array:
     return c.half_width
 
 
-def _with_front(got: Synthesis) -> Synthesis:
+def _with_front(got: Synthesis, go_on: GoOn) -> Synthesis:
     """Designs with fewer elements, in less room, with looser tolerances, each as accurate as can be."""
     target, c = got.target, got.found.candidate
     wish = target.with_("target.half_width", None)
@@ -311,16 +323,19 @@ def _with_front(got: Synthesis) -> Synthesis:
     most = int(target.room.elements[1])
     for n in sorted({2, 4, 6, 8, most // 2, most, 2 * most}):
         if max(2, 2 * target.elements.of_a_kind) <= n != int(c.total[0]):
+            go_on()
             low = min(int(target.room.elements[0]), n)
             found = _search_near(wish.with_("room.elements", (low, n)), got.found, _narrowest)
             if found.accepted and int(found.candidate.total[0]) == n:
                 entries.append(Alternative(f"elements-{n}", f"at most {n} elements", found))
     longest = 2.0 * float(c.arm.max() + c.slot[0] / 2 + c.stand.beyond_slot)
     for less in (1.0, 2.0, 3.0):
+        go_on()
         found = _search_near(wish.with_("room.length", round(longest - less, 3)), got.found, _narrowest)
         if found.accepted:
             entries.append(Alternative(f"shorter-{less:g}", f"{less:g} mm shorter", found))
     for times in (0.5, 2.0) if target.known.how == "drawn" else ():
+        go_on()
         finest = round(min(target.stock.hinge_tolerances) * times, 6)
         found = _search_near(wish.with_("stock.hinge_tolerances", (finest,)), got.found, _narrowest)
         if found.accepted:
@@ -328,7 +343,7 @@ def _with_front(got: Synthesis) -> Synthesis:
     return replace(got, front=tuple(entries))
 
 
-def _with_ratios(got: Synthesis) -> Synthesis:
+def _with_ratios(got: Synthesis, go_on: GoOn) -> Synthesis:
     """Half-width by K_r/K_m, everything else at its best."""
     out = []
     for ratio in RATIOS:
@@ -338,24 +353,30 @@ def _with_ratios(got: Synthesis) -> Synthesis:
             off = np.abs(np.log(K.max(axis=1) / K.min(axis=1) / ratio))
             return np.where(off > SAME_RATIO, FAR * (1.0 + off), c.half_width)
 
+        go_on()
         found = _search_near(got.target, got.found, goal)
         if found.accepted:
             out.append((ratio, found.half_width))
     return replace(got, ratios=tuple(out))
 
 
-def _with_changes(
-    got: Synthesis, arrays: int, tell: Tell, started: float, seconds: float | None
-) -> Synthesis:
+def _with_changes(got: Synthesis, arrays: int, tell: Tell, go_on: GoOn) -> Synthesis:
     """What of the target, changed alone by the least, would make it possible; each shown by a run."""
     names = [name for name, _ in relax.eased(got.target)]
     changes, skipped = [], []
+
+    def possible(target: Target) -> bool:
+        go_on()
+        return attempt(target, arrays).met
+
     for i, name in enumerate(names):
-        if seconds is not None and time.perf_counter() - started > seconds:
+        try:
+            go_on()
+            tell(i, len(names), f"impossible as asked; the least change of {name}")
+            change = relax.least_change(got.target, name, possible)
+        except TimeIsOver:
             skipped.append(f"least change of {name}")
             continue
-        tell(i, len(names), f"impossible as asked; the least change of {name}")
-        change = relax.least_change(got.target, name, lambda t: attempt(t, arrays).met)
         if change:
             changes.append(LeastChange(name, relax.value_of(got.target, name), change[0]))
     return replace(got, changes=tuple(changes), left_out=tuple(skipped))

@@ -1,0 +1,17 @@
+"""What tests of a synthesis share."""
+
+from __future__ import annotations
+
+from itertools import count
+from types import SimpleNamespace
+
+import pytest
+
+from tactcad.synthesis import synthesise
+
+
+@pytest.fixture
+def time_is_over(monkeypatch):
+    """A clock by which any time given is over at once."""
+    clock = count(step=1e4)
+    monkeypatch.setattr(synthesise, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
