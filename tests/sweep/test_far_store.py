@@ -60,7 +60,10 @@ def test_what_ends_while_it_is_written_leaves_nothing(store, monkeypatch):
     assert not [path for path in objects(store) if not path.endswith("/x")]
 
 
-@pytest.mark.parametrize("address, said", [("nosuch://x/y", "Protocol not known"), ("s3://b/x", "s3fs")])
+@pytest.mark.parametrize(
+    "address, said",
+    [("nosuch://x/y", "Protocol not known"), ("s3://b/x", "s3fs"), ("memory://x", "workers are others")],
+)
 def test_an_address_that_cannot_be_is_one_line(tmp_path, capsys, address, said):
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--store", address]) == 2
     err = capsys.readouterr().err

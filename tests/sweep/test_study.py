@@ -66,7 +66,7 @@ def test_lists_are_of_one_length(tmp_path):
         ("{study} --out o --scheduler nobody:1", "nobody answers there; found 'nobody:1'"),
         ("{study} --out {folder}", "holds files that are no study's, such as study.toml"),
         ("plot", "takes one folder"),
-        ("plot {folder}", "no such file"),
+        ("plot {folder}", "is not the folder of a study"),
     ],
 )
 def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):

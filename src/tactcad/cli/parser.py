@@ -36,7 +36,7 @@ class Parser(argparse.ArgumentParser):
     def _refuse_empty(self, action: argparse.Action, value: Any) -> None:
         """Refuse an empty text: it is a mistake in the calling script, never a wish for the default."""
         if "" in (value if isinstance(value, list) else [value]):
-            self._refuse(_named(action), "empty", value="", legal=action.help or "")
+            self._refuse(_named(action), "empty", value="", legal=(action.help or "").replace("%%", "%"))
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:

@@ -90,6 +90,11 @@ def _sweep(args: argparse.Namespace) -> int:
         raise InputError("--workers", "out of range", value=args.workers, legal=f"1 to {MOST_WORKERS}")
     if args.workers is not None and args.scheduler is not None:
         raise InputError("--workers", "are the scheduler's own", value=args.workers, legal="left out")
+    if args.store is not None and args.store.startswith("memory:"):
+        legal = "a folder, or an address such as s3://bucket/path"
+        raise InputError(
+            "--store", "the memory of a process, and workers are others", value=args.store, legal=legal
+        )
     asked = allowance(args)
     if asked.seconds is not None and args.scheduler is not None:
         raise InputError("--in", "a cluster's time is not known here", value=args.seconds, legal="--within")

@@ -40,9 +40,15 @@ class FarStore:
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
-        try:
-            kept = self._tried(lambda: self._files.cat_file(self._path(key)))
-        except FileNotFoundError:
+
+        def read() -> bytes | None:
+            try:
+                return self._files.cat_file(self._path(key))
+            except FileNotFoundError:
+                return None
+
+        kept = self._tried(read)
+        if kept is None:
             return None
         header, _, data = kept.partition(b"\n")
         return data if header == _header(key, data) else None
@@ -68,8 +74,6 @@ class FarStore:
     def _tried(self, ask: Callable[[], Kind]) -> Kind:
         try:
             return ask()
-        except FileNotFoundError:
-            raise
         except Exception as error:  # each kind of place has its own
             raise self._refusal(error) from error
 

@@ -107,7 +107,8 @@ def claimed(study: Study, out: str | Path) -> Path:
 
 def mark_of(folder: Path) -> dict[str, Any]:
     """What the folder says of its study. Raises InputError where it is no study's."""
-    found = read_json(folder / MARK, MOST_BYTES, "a study's mark")
+    there = (folder / MARK).exists()
+    found = read_json(folder / MARK, MOST_BYTES, "a study's mark") if there else None
     if not isinstance(found, dict) or found.get("schema") != SCHEMA:
         raise InputError(
             str(folder), "is not the folder of a study", legal="DIR of `tactcad sweep --out DIR`"
