@@ -94,6 +94,18 @@ def test_leads_bonded_over_their_terminals(tmp_path, capsys):
     refused(longer, "wiring.bonded", "18", "behind the terminals", tmp_path, capsys)
 
 
+def test_a_wire_that_is_too_thick_for_the_length_that_is_bonded(tmp_path, capsys):
+    """Ten diameters of 0.5 mm are 5 mm, of 0.4 mm they are the 4 mm that come: both ways out are taken."""
+    thick = BARE_TEXT + '\n[wiring]\nwire = "AWG30"\n'
+    legal = "AWG38, AWG36, AWG34, AWG32, or wiring.bonded from 5 mm"
+    refused(thick, "wiring.wire", "AWG30", legal, tmp_path, capsys)
+    for wire in ("AWG38", "AWG36", "AWG34", "AWG32"):
+        assert broken_rules(variant({"wiring.wire": wire})) == []
+    assert broken_rules(variant({"wiring.wire": "AWG30", "wiring.bonded": 5.0})) == []
+    (found,) = broken_rules(variant({"wiring.wire": "AWG30", "wiring.bonded": 4.9}))
+    assert found.part == "wiring.bonded"
+
+
 @pytest.mark.parametrize(("arms", "helps"), [("[[5], [5]]", False), ("[[5, 5, 5, 5, 5, 5]]", True)])
 def test_another_multiplexer_is_offered_where_it_saves_inputs(arms, helps, tmp_path, capsys):
     design = text("inputs = 1").replace("[[4, 7, 6, 8, 6], [8, 5, 4, 5, 7]]", arms)

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
 
-from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
-from tactcad.design.sensing import Readout, StrainGauge
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES
+from tactcad.design.sensing import Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
 
 from ..boards import boards
@@ -270,6 +270,13 @@ def leads_are_relieved(layout: Layout) -> Iterator[Finding]:
     if d.bonding and room < least - SAME <= behind_wall:
         legal = f"at most {behind_wall - least:g} mm, or a longer element.rear_length"
         yield wrong("bonding.terminal_length", "no room to bond leads behind it", terminals, legal)
+        return
+    w, came = d.wiring, Wiring()
+    if bonded < least - SAME and w.wire != came.wire and bonded == came.bonded:  # the wire alone was set
+        fitting = [name for name, wire in WIRES.items() if RELIEF * wire.outer <= bonded + SAME]
+        legal = f"{', '.join(fitting)}, or wiring.bonded from {least:g} mm"
+        what = f"a lead needs {RELIEF} of its diameters, {least:g} mm, bonded for its strain relief"
+        yield wrong("wiring.wire", f"{what}; wiring.bonded is {bonded:g}", w.wire, legal)
         return
     legal = f"from {least:g} mm, {RELIEF} diameters of the lead, to {room:g} mm, behind the terminals"
     yield from at_least("wiring.bonded", "leads without strain relief", bonded, least, legal)
