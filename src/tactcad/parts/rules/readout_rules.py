@@ -28,9 +28,9 @@ RELIEF = 10
 @rule()
 def reading_within_period(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
-    yield from at_most(
-        "readout.on_time", "longer than readout.period", r.on_time, r.period, f"at most {r.period:g} s"
-    )
+    if r.on_time > r.period:
+        what = f"readout.on_time = {r.on_time:g} is longer than readout.period = {r.period:g}"
+        yield wrong("readout.on_time", what, r.on_time, f"at most {r.period:g} s")
 
 
 @rule()
@@ -111,9 +111,7 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
         f"{chain.lowest:.3g} to {chain.highest:.3g}"
     )
     if not chain.lowest < 0.0 < chain.highest:
-        r = d.readout
-        legal = f"less than either supply: {min(r.supply_positive, -r.supply_negative):g} V"
-        yield wrong("readout.headroom", said, r.headroom, legal)
+        yield wrong("readout.headroom", said, d.readout.headroom, "both supplies further than this from 0 V")
         return
 
     def bearable(reach: Callable[[float], tuple[float, float]]) -> float:
@@ -254,7 +252,8 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
     if r.on_time < least:
         yield wrong(
             "readout.on_time",
-            f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s",
+            f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s, more than "
+            f"readout.on_time = {r.on_time:g} of each readout.period = {r.period:g}",
             r.on_time,
             f"at least {least * 1.005:.3g} s",
         )
