@@ -69,6 +69,19 @@ def test_each_pin_of_the_decoder_and_what_sets_the_gain_as_in_the_netlist():
         assert ("R10" in first and "499 ohm" in first) == bool(changes)
 
 
+@pytest.mark.parametrize(("changes", "outputs", "inputs"), [({}, 5, 2), (OTHERS["one element"], 4, 1)])
+def test_the_card_has_what_the_boards_ask_of_it(changes, outputs, inputs):
+    """As many as there are such nets on the boards' connectors: A0 to A2, ENABLE and OUT of each."""
+    design = variant(changes)
+    parts = netlist(Layout(design)).of_kind("connector")
+    nets = {pin.net for part in parts for pin in part.pins}
+    digital = {net for net in nets if re.fullmatch(r"A\d|ENABLE\d+", net)}
+    assert len(digital) == outputs and len([net for net in nets if net.startswith("OUT")]) == inputs
+    text = " ".join(pdf_runs(circuit_written(CircuitOrder(design)).pdf)[0])
+    assert f"The card needs {outputs} digital outputs, A0 to A2" in text
+    assert re.search(rf"and {inputs} differential inputs?, OUT and GND of a board", text)
+
+
 def test_no_general_tolerance_on_a_sheet_without_dimensions():
     pages = pdf_runs(circuit_written(CircuitOrder(read("macro-array"))).pdf)
     assert not any("2768" in run or "8015" in run for page in pages for run in page)

@@ -159,7 +159,7 @@ WITNESSES = {
             "element.seat_length",
         ),
     ],
-    "reading_within_period": [({"readout.period": 0.004}, "readout.on_time")],
+    "reading_within_period": [({"readout.period": 0.004}, "readout.period")],
     "amplifier_has_gain": [
         ({"readout.gain": 50}, "readout.gain"),
         ({"readout.amplifier": "AD620", "readout.gain": 2000, "readout.excitation": 0.3}, "readout.gain"),
@@ -170,7 +170,7 @@ WITNESSES = {
     ],
     "boards_have_inputs": [({"readout.inputs": 1}, "readout.inputs")],
     "gauge_bears_power": [
-        ({"readout.on_time": 0.2}, "readout.excitation"),
+        ({"readout.on_time": 0.2}, "readout.on_time"),
         (
             {"readout.excitation": 7.0, "readout.gain": 10, "readout.supply_positive": 9.0},
             "readout.excitation",
@@ -182,7 +182,7 @@ WITNESSES = {
         ({"readout.completion_resistance": 130.0}, "readout.completion_resistance"),
         ({"readout.bridge_offset": 0.08}, "readout.bridge_offset"),
         ({"gauge.resistance_tolerance": 0.08}, "gauge.resistance_tolerance"),
-        ({"readout.headroom": 4.8}, "readout.gain"),
+        ({"readout.headroom": 4.8}, "readout.headroom"),
         ({"readout.headroom": 5.0}, "readout.headroom"),
     ],
     "inputs_within_common_mode": [
@@ -197,7 +197,7 @@ WITNESSES = {
         )
     ],
     "switching_settles": [
-        ({"readout.samples": 1000}, "readout.on_time"),
+        ({"readout.samples": 1000}, "readout.samples"),
         ({"readout.on_time": 1e-5}, "readout.on_time"),
     ],
     "leads_are_relieved": [

@@ -10,8 +10,10 @@ from math import ceil
 
 from tactcad.circuit.bridges import netlist
 from tactcad.circuit.wiring_list import wiring
+from tactcad.design.electronics import MULTIPLEXERS
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
+from tactcad.parts.boards import boards
 from tactcad.parts.bridge_figures import settling_time
 from tactcad.parts.electronic_supplies import wire_metres
 from tactcad.parts.layout import Layout
@@ -96,7 +98,8 @@ def _sheets(design: Design, pages: Sequence[Page], draft: bool, sample: bool) ->
 
 
 def _channel_notes(layout: Layout) -> list[str]:
-    r = layout.design.readout
+    r, inputs = layout.design.readout, len(boards(layout))
+    address = len(MULTIPLEXERS[r.multiplexer].address)
     settled = ceil(settling_time(layout.design) * 1e6)
     return [
         "Symbols IEC 60617, letters of designators IEC 81346-2: B gauge, C capacitor, J connector, Q "
@@ -105,8 +108,9 @@ def _channel_notes(layout: Layout) -> list[str]:
         f"{r.supply_negative:g} V, V5 5 V",
         "The address names the channel whose bridge is led to the amplifier; ENABLE high turns its switch "
         "on, all others are off; with ENABLE low no gauge is warm, and the amplifier's inputs rest at EXC",
-        f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms; "
-        "the output is read between OUT and GND",
+        f"The card needs {inputs + address} digital outputs, A0 to A{address - 1} for all boards and one "
+        f"ENABLE a board; and {inputs} differential input{'s' if inputs > 1 else ''}, OUT and GND of a board",
+        f"Sample {settled} us after ENABLE or later: {r.samples} samples within {r.on_time * 1e3:g} ms",
         "All other channels are alike: next sheets; inputs of channels that are not used are on GND",
     ]
 

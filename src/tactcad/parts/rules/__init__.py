@@ -15,8 +15,10 @@ from tactcad.design.tree import Design
 
 from ..finding import Finding
 from ..layout import Layout
+from .readout_blame import blamed
 from .rule import Rule
 
+READOUT = ("readout_rules",)
 # Files in the order in which their rules are tried. Those of the rigs load no numpy: which scenes a design
 # has is known without.
 ARRAY = (
@@ -26,7 +28,7 @@ ARRAY = (
     "clamp_rules",
     "pressed_rules",
     "slot_gauge_rules",
-    "readout_rules",
+    *READOUT,
 )
 RIGS = (
     "cart_rules",
@@ -55,11 +57,15 @@ def _rules(subjects: tuple[str, ...]) -> dict[str, Rule]:
 
 def broken_rules(design: Design) -> list[Finding]:
     """The first finding of every rule that the design breaks, in the order of the rules."""
+    return _broken(design, design_rules())
+
+
+def _broken(design: Design, rules: dict[str, Rule]) -> list[Finding]:
     layout = Layout(design)
     broken: list[Finding] = []
-    kept: dict[str, bool] = {}  # rule -> it and all before it are kept
-    for name, rule in design_rules().items():
-        if not rule.after or kept[rule.after]:
+    kept: dict[str, bool] = {}  # rule -> it and all before it are kept, as those are that are not tried
+    for name, rule in rules.items():
+        if kept.get(rule.after, True):
             broken += rule(layout)
         kept[name] = not broken
     return broken
@@ -69,7 +75,9 @@ def refuse_broken(design: Design) -> None:
     """Raise InputError for the first rule that the design breaks, naming the others."""
     broken = broken_rules(design)
     if broken:
-        first = broken[0]
+        first, on_readout = broken[0], _rules(READOUT)
+        if first.check in on_readout:
+            first = blamed(design, first, lambda d: _broken(d, on_readout))
         others = f" (and {', '.join(b.check for b in broken[1:])})" if broken[1:] else ""
         raise InputError(
             first.part,

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
 
-from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES
-from tactcad.design.sensing import Readout, StrainGauge
+from tactcad.design.electronics import AMPLIFIERS, MULTIPLEXERS, SWITCHES, WIRES
+from tactcad.design.sensing import Readout, StrainGauge, Wiring
 from tactcad.design.tree import Design
 
 from ..boards import boards
@@ -28,9 +28,9 @@ RELIEF = 10
 @rule()
 def reading_within_period(layout: Layout) -> Iterator[Finding]:
     r = layout.design.readout
-    yield from at_most(
-        "readout.on_time", "longer than readout.period", r.on_time, r.period, f"at most {r.period:g} s"
-    )
+    if r.on_time > r.period:
+        what = f"readout.on_time = {r.on_time:g} is longer than readout.period = {r.period:g}"
+        yield wrong("readout.on_time", what, r.on_time, f"at most {r.period:g} s")
 
 
 @rule()
@@ -111,9 +111,7 @@ def bridge_stays_in_range(layout: Layout) -> Iterator[Finding]:
         f"{chain.lowest:.3g} to {chain.highest:.3g}"
     )
     if not chain.lowest < 0.0 < chain.highest:
-        r = d.readout
-        legal = f"less than either supply: {min(r.supply_positive, -r.supply_negative):g} V"
-        yield wrong("readout.headroom", said, r.headroom, legal)
+        yield wrong("readout.headroom", said, d.readout.headroom, "both supplies further than this from 0 V")
         return
 
     def bearable(reach: Callable[[float], tuple[float, float]]) -> float:
@@ -254,7 +252,8 @@ def switching_settles(layout: Layout) -> Iterator[Finding]:
     if r.on_time < least:
         yield wrong(
             "readout.on_time",
-            f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s",
+            f"settling takes {settling:.3g} s and {r.samples} samples {sampling:.3g} s, more than "
+            f"readout.on_time = {r.on_time:g} of each readout.period = {r.period:g}",
             r.on_time,
             f"at least {least * 1.005:.3g} s",
         )
@@ -270,6 +269,13 @@ def leads_are_relieved(layout: Layout) -> Iterator[Finding]:
     if d.bonding and room < least - SAME <= behind_wall:
         legal = f"at most {behind_wall - least:g} mm, or a longer element.rear_length"
         yield wrong("bonding.terminal_length", "no room to bond leads behind it", terminals, legal)
+        return
+    w, came = d.wiring, Wiring()
+    if bonded < least - SAME and w.wire != came.wire and bonded == came.bonded:  # the wire alone was set
+        fitting = [name for name, wire in WIRES.items() if RELIEF * wire.outer <= bonded + SAME]
+        legal = f"{', '.join(fitting)}, or wiring.bonded from {least:g} mm"
+        what = f"a lead needs {RELIEF} of its diameters, {least:g} mm, bonded for its strain relief"
+        yield wrong("wiring.wire", f"{what}; wiring.bonded is {bonded:g}", w.wire, legal)
         return
     legal = f"from {least:g} mm, {RELIEF} diameters of the lead, to {room:g} mm, behind the terminals"
     yield from at_least("wiring.bonded", "leads without strain relief", bonded, least, legal)
