@@ -49,6 +49,7 @@ NEED_SOLIDS = {
     "tactcad.drawing.picture",
     "tactcad.export.step_file",
     "tactcad.export.step_pmi",
+    "tactcad.export.stl",
 }
 
 # Scripts that other programs run, or that show what they do without tactcad: no module, never imported.
