@@ -9,7 +9,6 @@ import os
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib import metadata
@@ -136,7 +135,7 @@ def cluster(
     loads
         Modules that these start with; never the CAD kernel, which bears no fork.
     prepare
-        What is to be done here while they do, and while Dask starts.
+        What is to be done here while they do.
     say
         Receives the dashboard's address.
 
@@ -151,7 +150,7 @@ def cluster(
         if address is None:
             stack.enter_context(_environment(ENVIRONMENT))
             _load_ahead(loads)  # in a process of its own
-        prepared = stack.enter_context(ThreadPoolExecutor(1)).submit(prepare)
+        prepare()  # in no thread: Dask's own would wait for the interpreter's lock, in all for longer
         logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
         quiet = {"logging": dict.fromkeys(logs, "critical")}
         with dask.config.set(quiet):  # read when it is loaded, which is when Dask gets its other settings
@@ -169,7 +168,6 @@ def cluster(
                 Client(stack.enter_context(_started(LocalCluster, workers, scratch)))
             )
             say(f"dashboard: {client.dashboard_link}")
-        prepared.result()
         yield client
 
 

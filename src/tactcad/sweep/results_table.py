@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 PARQUET, CSV = "results.parquet", "results.csv"
 ROWS_A_GROUP = 1 << 16  # of Parquet: a row group is what a reader takes at once
 SELDOM = 16  # rows a value from which on a column repeats; chosen: with fewer, a dictionary saves little
+LOOKED_AT = 1 << 13  # first rows that tell; chosen: counting values takes longer than writing them
 MOST_REASONS = 1000  # that are counted; of more, the rest counts as one
 
 
@@ -83,8 +84,8 @@ def _encoded(first: pa.Table) -> dict[str, Any]:
     import pyarrow as pa
     import pyarrow.compute as pc
 
-    names = first.column_names
-    repeat = [n for n in names if SELDOM * pc.count_distinct(first[n]).as_py() <= first.num_rows]
+    names, head = first.column_names, first.slice(0, LOOKED_AT)
+    repeat = [n for n in names if SELDOM * pc.count_distinct(head[n]).as_py() <= head.num_rows]
     return {
         "use_dictionary": repeat,
         "column_encoding": {"number": "DELTA_BINARY_PACKED"},
