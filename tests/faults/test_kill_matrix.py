@@ -15,6 +15,7 @@ import secrets
 import shutil
 import signal
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -110,7 +111,8 @@ def ended(case: Case, name: str, sent: str, seconds: float) -> bool:
     while not takes_signals(process.pid) and not process.ended(0.002):
         pass  # until it is tactcad's turn, Python answers
     if not process.ended(began + seconds - time.monotonic()):
-        os.kill(process.pid, getattr(signal, sent))
+        with suppress(ProcessLookupError):  # it has ended since
+            os.kill(process.pid, getattr(signal, sent))
     done = process.result()
     text = done.stderr.decode()
     assert done.returncode in (0, STATUS[sent]), text
