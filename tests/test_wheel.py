@@ -104,7 +104,7 @@ def test_the_base_install_has_no_kernel(installed, empty):
         ("schema", "[element]"),
         ("export --help", "examples:"),
         ("size --stiffness 10 --load-arm 6", "N/mm"),
-        ("diff macro-array double-sample", "sample"),
+        pytest.param("diff macro-array double-sample", "sample", marks=pytest.mark.nightly),
     ],
 )
 def test_what_needs_no_kernel_works_in_an_empty_folder(installed, empty, command, said):

@@ -197,6 +197,7 @@ def assert_offline(text: str) -> None:
     assert "url(" not in text and "@import" not in text
 
 
+@pytest.mark.nightly
 def test_a_page_of_designs_whose_names_are_no_text(tmp_path):
     """Names of files are bytes: what is no UTF-8 in them is shown as escapes."""
     mine = Path(os.fsdecode(bytes(tmp_path) + b"/a\xff.toml"))

@@ -361,6 +361,7 @@ def _without_call(tree: ast.Module, name: str, n: int, wanted: str) -> ast.Modul
     return _Replaced(statement, _uncalled(statement, wanted)).visit(tree)
 
 
+@cache
 def every() -> list[Mutant]:
     """All mutants, those of one label numbered."""
     found, seen = [], {}

@@ -182,6 +182,7 @@ def test_a_rig_has_its_parts_and_moves(fresh, macro):
     moves_and_comes_back(fresh, "#motion-0", 0)
 
 
+@pytest.mark.nightly
 def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
     """The viewer alone moves its light after each picture: the next one differed."""
     fresh.page.click("#views button >> nth=1")

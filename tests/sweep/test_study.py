@@ -9,6 +9,7 @@ from small_study import SMALL, written
 
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
+from tactcad.sweep import on_dask
 from tactcad.sweep.study import read_study, study_schema
 
 THICKNESS = '[vary."element.hinge_thickness"]'
@@ -71,6 +72,7 @@ def test_lists_are_of_one_length(tmp_path):
 )
 def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(on_dask, "ANSWER", "1s")
     path = written(tmp_path)
     words = arguments.format(study=path, folder=tmp_path).split()
     assert main(["sweep", *words]) == 2
