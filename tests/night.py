@@ -32,17 +32,20 @@ from tactcad.export.contents import sha256_of  # noqa: E402
 from tactcad.export.inputs import digest  # noqa: E402
 from tactcad.sweep.on_dask import all_done, cluster, cores  # noqa: E402
 
-KINDS = ("design", "mutant", "kill")
+KINDS = ("design", "whole", "mutant", "kill")
 DOCUMENT = ROOT / "docs" / "checks.md"
 BEGIN, END = "<!-- table night -->\n", "<!-- end -->\n"
 
 
 def sources() -> str:
-    """Digest of all that a night's outcome depends on in this repository."""
+    """Digest of what all outcomes depend on: tests and fixtures count where they are run."""
     files = [
         p for name in ("src", "tests", "hardware") for p in sorted((ROOT / name).rglob("*")) if p.is_file()
     ]
-    return digest({str(p.relative_to(ROOT)): sha256_of(p.read_bytes()) for p in files if p.suffix != ".pyc"})
+    other = re.compile(r"test_.*\.py|conftest\.py|.*\.pyc")
+    return digest(
+        {str(p.relative_to(ROOT)): sha256_of(p.read_bytes()) for p in files if not other.fullmatch(p.name)}
+    )
 
 
 def this_night(folder: Path) -> Night:
@@ -58,9 +61,11 @@ def this_night(folder: Path) -> Night:
 
 def items(night: Night, kinds: list[str], designs: int) -> list[Item]:
     """Long ones first, so that none of them is waited for alone."""
+    every = mutants.every()
     whats = {
         "kill": KILLS,
-        "mutant": tuple(m.label for m in mutants.every()),
+        "whole": tuple(dict.fromkeys(" ".join(mutants.tests_of(m)) for m in every)),
+        "mutant": tuple(m.label for m in every),
         "design": tuple(map(str, range(designs))),
     }
     chosen = [(kind, what) for kind in whats if kind in kinds for what in whats[kind]]
@@ -95,6 +100,7 @@ def counts(orders: list[Item]) -> tuple[list[str], list[str]]:
             lines.append(f"| designs drawn by chance, seed {mine[0][0].night.seed} | {designs} |")
         elif mine:
             said = {
+                "whole": "sets of tests, nothing broken: passed",
                 "mutant": "checks broken, one at a time: a test failed for",
                 "kill": "tests of killed commands, twenty kills or more each: passed",
             }[kind]

@@ -1,5 +1,5 @@
 """What a night tries, one thing at a time, each in whatever process it is handed to and kept when it has
-ended."""
+ended, under the digest of what it depends on."""
 
 from __future__ import annotations
 
@@ -14,9 +14,12 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import mutants
 from random_designs import judged, raw_table
 
 from tactcad.export.cache import Cache
+from tactcad.export.contents import sha256_of
+from tactcad.export.inputs import digest
 from tactcad.sweep.on_dask import Done
 
 ROOT = Path(__file__).parents[1]
@@ -32,7 +35,8 @@ KILLS = (
 
 @dataclass(frozen=True)
 class Night:
-    """Folder, seed, and digest of the sources: what has ended under them is not tried again."""
+    """Folder, seed, and digest of the sources that all depends on: what has ended under them is not tried
+    again."""
 
     folder: str
     seed: int
@@ -45,7 +49,8 @@ class Night:
 
 @dataclass(frozen=True)
 class Item:
-    """The `number`-th thing: `what` of a kind, "design", "mutant" or "kill"."""
+    """The `number`-th thing: `what` of a kind, "design", "kill", "mutant", or "whole": files of tests that
+    mutants are tried on, where nothing is broken."""
 
     night: Night
     number: int
@@ -54,14 +59,22 @@ class Item:
 
     @property
     def key(self) -> str:
-        return f"{self.night.seed} {self.night.sources} {self.kind} {self.what}"
+        tests = [] if self.kind == "design" else self.tests
+        return f"{self.night.seed} {self.night.sources} {self.kind} {self.what} {_tests_digest(*tests)}"
+
+    @property
+    def tests(self) -> list[str]:
+        """Files of tests that it runs."""
+        if self.kind == "kill":
+            return [self.what.partition("::")[0]]
+        return self.what.split() if self.kind == "whole" else mutants.tests_of(_mutants()[self.what])
 
     def carry_out(self) -> Done:
         store = self.night.store
         if store.get(self.key) is not None:
             return Done(self.number, 1, False)
         start = time.process_time()
-        found = {"design": _design, "mutant": _mutant, "kill": _kill}[self.kind](self)
+        found = {"design": _design, "kill": _kill, "mutant": _mutant, "whole": _whole}[self.kind](self)
         store.put(self.key, json.dumps(found).encode())
         return Done(self.number, 1, True, seconds=time.process_time() - start)
 
@@ -76,9 +89,18 @@ def _design(item: Item) -> dict[str, Any]:
     return asdict(judged(raw_table(number, ROW_LENGTHS, RIGS))) | {"draw": number}
 
 
+def _whole(item: Item) -> dict[str, Any]:
+    failed = _first_failed(item, None)
+    return {"failed": [f"with nothing broken: {failed}"] if failed else []}
+
+
 def _mutant(item: Item) -> dict[str, Any]:
-    failed = _runner().run(_mutants()[item.what]).failed
+    failed = _first_failed(item, _mutants()[item.what])
     return {"by": failed, "failed": [] if failed else ["survived: no test failed"]}
+
+
+def _first_failed(item: Item, mutant: mutants.Mutant | None) -> str:
+    return _runner().failed_test(item.tests, mutant)
 
 
 def _kill(item: Item) -> dict[str, Any]:
@@ -89,14 +111,18 @@ def _kill(item: Item) -> dict[str, Any]:
 
 
 @cache
-def _mutants() -> dict[str, Any]:
-    import mutants
+def _tests_digest(*tests: str) -> str:
+    """Of these files and the fixtures above them; other tests may change."""
+    files = {ROOT / name for name in tests}
+    files |= {c for f in files for folder in f.parents if (c := folder / "conftest.py").is_file()}
+    return digest({str(f.relative_to(ROOT)): sha256_of(f.read_bytes()) for f in sorted(files)})
 
+
+@cache
+def _mutants() -> dict[str, mutants.Mutant]:
     return {m.label: m for m in mutants.every()}
 
 
 @cache
-def _runner() -> Any:
-    import mutants
-
+def _runner() -> mutants.Runner:
     return mutants.Runner()

@@ -473,12 +473,12 @@ class Runner:
         """
         files = tests_of(mutant)
         if tuple(files) not in _GREEN:
-            failed = self._failed(files, None)
+            failed = self.failed_test(files, None)
             assert not failed, f"{failed} fails in a copy of the source with nothing broken"
             _GREEN.add(tuple(files))
-        return Outcome(mutant, self._failed(files, mutant))
+        return Outcome(mutant, self.failed_test(files, mutant))
 
-    def _failed(self, files: list[str], mutant: Mutant | None) -> str:
+    def failed_test(self, files: list[str], mutant: Mutant | None) -> str:
         """The first of the tests that fails, "" where none does."""
         with tempfile.TemporaryDirectory(prefix="mutant-") as name:
             Path(name).chmod(0o755)  # a test goes on as nobody
