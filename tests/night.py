@@ -64,7 +64,7 @@ def items(night: Night, kinds: list[str], designs: int) -> list[Item]:
     every = mutants.every()
     whats = {
         "kill": KILLS,
-        "whole": tuple(dict.fromkeys(" ".join(mutants.tests_of(m)) for m in every)),
+        "whole": tuple(dict.fromkeys(name for m in every for name in mutants.tests_of(m))),
         "mutant": tuple(m.label for m in every),
         "design": tuple(map(str, range(designs))),
     }
@@ -100,7 +100,7 @@ def counts(orders: list[Item]) -> tuple[list[str], list[str]]:
             lines.append(f"| designs drawn by chance, seed {mine[0][0].night.seed} | {designs} |")
         elif mine:
             said = {
-                "whole": "sets of tests, nothing broken: passed",
+                "whole": "files of tests, nothing broken: passed",
                 "mutant": "checks broken, one at a time: a test failed for",
                 "kill": "tests of killed commands, twenty kills or more each: passed",
             }[kind]

@@ -49,7 +49,7 @@ class Night:
 
 @dataclass(frozen=True)
 class Item:
-    """The `number`-th thing: `what` of a kind, "design", "kill", "mutant", or "whole": files of tests that
+    """The `number`-th thing: `what` of a kind, "design", "kill", "mutant", or "whole": a file of tests that
     mutants are tried on, where nothing is broken."""
 
     night: Night
@@ -67,7 +67,7 @@ class Item:
         """Files of tests that it runs."""
         if self.kind == "kill":
             return [self.what.partition("::")[0]]
-        return self.what.split() if self.kind == "whole" else mutants.tests_of(_mutants()[self.what])
+        return [self.what] if self.kind == "whole" else mutants.tests_of(_mutants()[self.what])
 
     def carry_out(self) -> Done:
         store = self.night.store

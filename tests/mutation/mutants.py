@@ -394,8 +394,8 @@ def _test_files() -> dict[Path, str]:
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most, those that name it most first: they import its module, or stand in
-    ALSO; for a rule, those that name it.
+    """The test files that concern it most: those of ALSO, then those that name it most among those that import
+    its module; for a rule, those that name it.
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
@@ -415,7 +415,8 @@ def tests_of(mutant: Mutant) -> list[str]:
         if path.parent == Path(__file__).parent or not concerns:
             continue
         chosen[path.relative_to(ROOT).as_posix()] = text.count(word)
-    return sorted(chosen, key=lambda name: -chosen[name])[:MOST_FILES]
+    also = ALSO.get(mutant.module, ())
+    return sorted(chosen, key=lambda name: (name not in also, -chosen[name]))[:MOST_FILES]
 
 
 # --- running ---
