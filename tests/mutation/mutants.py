@@ -394,8 +394,8 @@ def _test_files() -> dict[Path, str]:
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most: those of ALSO, then those that name it most among those that import
-    its module; for a rule, those that name it.
+    """The test files that concern it most: those of ALSO, then those that name it most among those that
+    import its module; for a rule, those that name it.
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
