@@ -22,7 +22,7 @@ import tactcad
 from tactcad.cli.main import main
 from tactcad.drawing.gate import pdf_runs
 from tactcad.parts.designs import load
-from tactcad.release.archive import archive_bytes
+from tactcad.release.archive import MODE, archive_bytes
 from tactcad.release.owner import owned
 from tactcad.release.readme import DRAFT, SAMPLE
 from tactcad.release.release_contents import ReleaseContents
@@ -247,12 +247,107 @@ TAMPERED = {
 }
 
 
+SAYS = {  # what is then among the faults; several gates may see one change
+    "cut file of another size": "area of the outline is",
+    "cut file in inches": "are not metric millimetres",
+    "cut file of another part": "box of the outline is",
+    "cut file missing": f"dxf/{ELEMENT}.dxf: missing",
+    "cut file of nothing": "no part cut from sheet or plate has this name",
+    "cut file of another revision": f"its name does not end in revision {REVISION}",
+    "header of another revision": f"step/{ELEMENT}.step: its header does not name revision",
+    "assembly of another revision": f"step/tiny-array_{REVISION}.step: its header does not name revision",
+    "solid missing": f"step/{ELEMENT}.step: missing",
+    "assembly in a part's file": "instances instead of one solid part",
+    "model with limits missing": f"step/{ELEMENT}-ap242.step: missing",
+    "model with limits of another revision": "-ap242.step: its header does not name revision",
+    "instance missing": "21 solids, bom.csv has 22",
+    "bill of another revision": "bom.csv: tiny-stop-plate is of revision 'ZZ'",
+    "bill with another quantity": "22 solids, bom.csv has 23",
+    "bill with another file": "is not here as it stands there",
+    "bill missing": "or bom.csv: missing",
+    "drawing missing": "0 pages instead of 1",
+    "drawing of another part": "'tiny-element-a5mm' is missing",
+    "drawing cut off": "0 pages instead of 1",
+    "drawing of a draft": "sheet 1: with PRELIMINARY",
+    "assembly drawing missing": f"pdf/tiny-array_{REVISION}.pdf: missing",
+    "cut file changed with everything that names it but the drawing": "does not have the SHA-256 of dxf/",
+    "inspection sheet of another revision": "inspection.csv: not of tiny revision",
+    "strength summary of another design": "strength.csv: not of tiny revision",
+    "README of another revision": "README.txt: does not name tiny revision",
+    "README of a sample": "README.txt: says that it is a sample",
+    "guide missing": "guide/array.html: missing",
+    "guide's picture missing": "its picture array-exploded.svg is missing",
+    "guide of another revision": "guide/array.html: does not name revision",
+    "README of a draft": "README.txt: says that it is a draft",
+}
+
+
 @pytest.mark.parametrize("fault", [None, *TAMPERED])
 def test_a_fault_in_the_zip_is_found(fault, files, contents, tmp_path):
     own = {n: d for n, d in files.items() if n != "MANIFEST.sha256"}
     path = tmp_path / "a.zip"
     path.write_bytes(archive_bytes(TAMPERED[fault](own) if fault else own, "2026-11-21"))
-    assert bool(check_archive(path, contents)) == bool(fault)
+    faults = check_archive(path, contents)
+    assert any(SAYS[fault] in one for one in faults) if fault else faults == []
+
+
+def _entry(**other: object) -> tuple[zipfile.ZipInfo, bytes]:
+    entry = zipfile.ZipInfo("more.txt", (2026, 11, 21, 0, 0, 0))
+    entry.external_attr = MODE << 16
+    for name, value in other.items():
+        setattr(entry, name, value)
+    return entry, b"more"
+
+
+BY_FORM = {  # entries beside those of a release, with everything in its manifest that has a name of its own
+    "more.txt: stands twice": [_entry(), _entry()],
+    "../more.txt: leads out of the folder": [_entry(filename="../more.txt")],
+    "/more.txt: leads out of the folder": [_entry(filename="/more.txt")],
+    "more.txt: another date": [_entry(date_time=(2026, 11, 22, 0, 0, 0))],
+    "more.txt: another date or other permissions": [_entry(external_attr=0o755 << 16)],
+}
+DIGEST = hashlib.sha256(b"more").hexdigest()
+BY_MANIFEST = {
+    "no MANIFEST.sha256": lambda lines: None,
+    "more.txt: not in MANIFEST.sha256": lambda lines: lines,
+    "more.txt: not as MANIFEST.sha256 has it": lambda lines: [*lines, f"{'0' * 64}  more.txt"],
+    "less.txt: not as MANIFEST.sha256 has it": lambda lines: [
+        *lines,
+        f"{DIGEST}  more.txt",
+        f"{DIGEST}  less.txt",
+    ],
+}
+
+
+def _zipped(path: Path, files: dict[str, bytes], lines: list[str] | None, entries: list) -> None:
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in files.items():
+            if name != "MANIFEST.sha256":
+                archive.writestr(_entry(filename=name)[0], data)
+        if lines is not None:
+            archive.writestr(_entry(filename="MANIFEST.sha256")[0], "\n".join(lines) + "\n")
+        for entry, data in entries:
+            archive.writestr(entry, data)
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize("fault", [*BY_FORM, *BY_MANIFEST])
+def test_a_fault_of_the_zip_itself_is_found(fault, files, contents, tmp_path):
+    entries = BY_FORM.get(fault, [_entry()])
+    lines = files["MANIFEST.sha256"].decode().splitlines()
+    if fault in BY_FORM:
+        lines.append(f"{DIGEST}  {entries[0][0].filename}")
+    else:
+        lines = BY_MANIFEST[fault](lines)
+    _zipped(tmp_path / "a.zip", files, lines, entries)
+    (found,) = check_archive(tmp_path / "a.zip", contents)
+    assert fault in found
+
+
+def test_a_zip_that_was_written_by_hand_is_whole(files, contents, tmp_path):
+    """The faults above are found by what is wrong alone."""
+    _zipped(tmp_path / "a.zip", files, files["MANIFEST.sha256"].decode().splitlines(), [])
+    assert check_archive(tmp_path / "a.zip", contents) == []
 
 
 def test_damage_is_found_anywhere(released, contents, tmp_path):
@@ -264,11 +359,16 @@ def test_damage_is_found_anywhere(released, contents, tmp_path):
             (e.filename, e.header_offset + 30 + len(e.filename) + e.compress_size // 2)
             for e in archive.infolist()
         ]
+    named = 0
     for name, at in places:
         path.write_bytes(data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :])
-        assert check_archive(path, contents), name
+        (found,) = check_archive(path, contents)
+        assert found == f"{name}: damaged" or found.startswith("not readable as a zip"), name
+        named += "damaged" in found
+    assert named
     path.write_bytes(data[: len(data) // 2])
-    assert check_archive(path, contents)
+    (found,) = check_archive(path, contents)
+    assert found.startswith("not readable as a zip")
 
 
 # when nothing is released
