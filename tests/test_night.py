@@ -93,3 +93,28 @@ def test_every_item_is_there_once(request):
         path, _, name = test.partition("::")
         assert "@pytest.mark.night\n" in (text := (night_items.ROOT / path).read_text())
         assert f"def {name.partition('[')[0]}(" in text.partition("@pytest.mark.night\n")[2]
+
+
+def test_what_is_mended_is_tried_again_and_no_more(tmp_path, monkeypatch):
+    """A test counts for what runs it, fixtures for the tests below them, all else for everything."""
+    monkeypatch.setattr(night, "ROOT", tmp_path)
+    monkeypatch.setattr(night_items, "ROOT", tmp_path)
+    names = ("tests/a/test_a.py", "tests/b/test_b.py", "tests/a/conftest.py", "tests/help.py", "src/x.py")
+    for name in names:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+
+    def keys() -> list[str]:
+        night_items._tests_digest.cache_clear()
+        now = Night("nowhere", 1, night.sources())
+        kinds = ("whole", names[0]), ("kill", f"{names[1]}::test"), ("design", "7")
+        return [Item(now, n, *one).key for n, one in enumerate(kinds)]
+
+    changed = {}
+    for name in names:
+        before = keys()
+        (tmp_path / name).write_text("other")
+        changed[name] = [old != new for old, new in zip(before, keys(), strict=True)]
+    only_a, only_b, everything = [True, False, False], [False, True, False], [True] * 3
+    assert list(changed.values()) == [only_a, only_b, only_a, everything, everything]
+    night_items._tests_digest.cache_clear()
