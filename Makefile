@@ -1,6 +1,6 @@
 # `make help` lists what there is. Every target first sees to it that .venv is there and up to date.
 .DEFAULT_GOAL := help
-.PHONY: help environment export test check golden review release bench docs reference nightly clean
+.PHONY: help environment export test slow check golden review release bench docs reference nightly clean
 
 BIN := .venv/bin
 DESIGNS := $(sort $(wildcard hardware/*.toml))
@@ -23,8 +23,11 @@ export: environment ## write the files of every design in hardware/ to exports/<
 	for design in $(DESIGNS); do $(BIN)/tactcad export $$design --guide --drawings || status=1; done; \
 	exit $$status
 
-test: environment ## every test but the long ones
-	$(BIN)/python -m pytest -m "not nightly" -n $(WORKERS) --dist worksteal
+test: environment ## every test but the slow and the nightly ones
+	$(BIN)/python -m pytest -m "not slow and not nightly" -n $(WORKERS) --dist worksteal
+
+slow: environment ## tests that start browsers, clusters and installs, or make whole releases and exports again
+	$(BIN)/python -m pytest -m "slow and not nightly" -n $(WORKERS) --dist worksteal
 
 check: environment ## style, types, and every check of every design: all failures are printed, then it fails
 	@status=0; \

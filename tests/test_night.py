@@ -9,6 +9,8 @@ import night_items
 import pytest
 from night_items import Item, Night
 
+pytestmark = pytest.mark.slow  # starts test runs
+
 STOPPED_AFTER = 3
 
 

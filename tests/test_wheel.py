@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
+pytestmark = pytest.mark.slow  # builds and installs a wheel
+
 ROOT = Path(__file__).parents[1]
 BASE = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
 
@@ -104,7 +106,7 @@ def test_the_base_install_has_no_kernel(installed, empty):
         ("schema", "[element]"),
         ("export --help", "examples:"),
         ("size --stiffness 10 --load-arm 6", "N/mm"),
-        pytest.param("diff macro-array double-sample", "sample", marks=pytest.mark.nightly),
+        ("diff macro-array double-sample", "sample"),
     ],
 )
 def test_what_needs_no_kernel_works_in_an_empty_folder(installed, empty, command, said):

@@ -128,6 +128,7 @@ def two_exports(tmp_path_factory):
     return folders
 
 
+@pytest.mark.slow
 def test_two_processes_write_equal_bytes_in_every_file_of_the_array(two_exports):
     """But for those that speak of all scenes together, which test_surroundings.py compares."""
     first, second = (contents(home / f"out-{seed}") for home, seed in zip(two_exports, ("1", "4242")))

@@ -355,8 +355,8 @@ def settle(out: Path, noted: bool) -> None:
     [
         ("exchange", True),
         ("two-renames", False),
-        pytest.param("exchange", False, marks=pytest.mark.nightly),
-        pytest.param("two-renames", True, marks=pytest.mark.nightly),
+        pytest.param("exchange", False, marks=pytest.mark.slow),
+        pytest.param("two-renames", True, marks=pytest.mark.slow),
     ],
 )
 def test_killed_before_every_single_file_operation(tmp_path, how, meddled):

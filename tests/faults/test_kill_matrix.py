@@ -22,6 +22,8 @@ from pathlib import Path
 import pytest
 from command_line import ROOT, Started, contents, environment, tactcad_runs
 
+pytestmark = pytest.mark.slow  # kills commands
+
 SEED = int(os.environ.get("TACTCAD_SEED") or secrets.randbelow(10**9))
 # SIGKILL last: it alone may leave something behind, which the run after it sweeps
 STATUS = {"SIGTERM": 143, "SIGINT": 130, "SIGHUP": 129, "SIGKILL": -9}

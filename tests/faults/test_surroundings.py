@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from command_line import ROOT, assert_tidy, contents, environment, tactcad_forked, tactcad_run
 
+pytestmark = pytest.mark.slow  # exports again and again
+
 # The command with the user's locale switched on, as an application around it would, and another clock where
 # asked for.
 INSIDE = """

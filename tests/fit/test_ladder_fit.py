@@ -19,7 +19,7 @@ def shipped():
     return fit_samples.shipped()
 
 
-@pytest.mark.nightly
+@pytest.mark.slow
 def test_command_gives_the_shipped_constants_again(tmp_path, capsys):
     assert main(["fit", "--out", str(tmp_path), "--shipped-samples"]) == 0
     again, data = json.loads((tmp_path / "ladder.json").read_text()), ladder_data()

@@ -438,7 +438,7 @@ def test_designs_that_once_were_let_pass_and_did_not_build(changes):
     "rows",
     [
         *([1], [3], [5, 5], [1, 7], [7, 1], [20, 20], [50, 50], [500]),
-        pytest.param([500, 500], marks=pytest.mark.nightly),
+        pytest.param([500, 500], marks=pytest.mark.slow),
     ],
 )
 def test_the_shipped_hinge_in_rows_of_any_length(rows):

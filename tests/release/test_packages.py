@@ -26,7 +26,7 @@ from tactcad.release.verify_packages import check_packages
 from tactcad.release.wire_time import wire_time
 from tactcad.scenes import make_scene, scene_names
 
-pytestmark = pytest.mark.cad
+pytestmark = [pytest.mark.cad, pytest.mark.slow]  # releases again and again
 
 TEXT = TINY_TEXT.replace(
     'name = "tiny"', 'name = "tiny"\norganisation = "Tiny lab"\ncontact = "tiny@lab.example"'

@@ -29,7 +29,7 @@ from tactcad.release.release_contents import ReleaseContents
 from tactcad.release.verify import check_archive
 from tactcad.scenes import make_scene
 
-pytestmark = pytest.mark.cad
+pytestmark = [pytest.mark.cad, pytest.mark.slow]  # releases again and again
 
 REVISION = re.search(r'revision = "(\w+)"', TINY_TEXT).group(1)
 NAME = f"tiny-{REVISION}.zip"

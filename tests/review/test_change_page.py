@@ -13,7 +13,7 @@ from tactcad.cli.main import main
 from tactcad.design.load import read
 from tactcad.scenes import make_scene
 
-pytestmark = pytest.mark.cad
+pytestmark = [pytest.mark.cad, pytest.mark.slow]  # starts a browser
 GREEN, RED = 1, 0  # the channel that stands above the others
 MARKUP = "<img src=x onerror=alert(1)>"
 SHOWN = """() => [...document.querySelectorAll('#tree [data-designator]')]
@@ -236,7 +236,6 @@ def test_a_place_that_cannot_be_written_is_refused_before_any_work(
     assert said in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
-@pytest.mark.nightly
 def test_material_told_apart_by_meshes_is_labelled(running, files, scenes, cache, tmp_path, monkeypatch):
     import tactcad.solids.changed as module
 

@@ -18,6 +18,8 @@ from faults.command_line import environment, one_by_one
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 
+pytestmark = pytest.mark.slow  # starts a browser
+
 TEXT = one_by_one(6, "A")
 HINGE = "hinge_thickness = 0.25"
 THICKER = TEXT.replace(HINGE, "hinge_thickness = 0.3", 1)

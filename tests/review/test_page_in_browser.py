@@ -12,6 +12,8 @@ from browser import Opened, chromium
 
 from tactcad.scenes import make_scene
 
+pytestmark = pytest.mark.slow  # starts a browser
+
 SCENES = ("array", "sample-stiffness", "calibration")
 EACH = """() => [...document.querySelectorAll('#tree [data-designator]')].map((leaf) => {
   leaf.querySelector('b').click();
@@ -182,7 +184,6 @@ def test_a_rig_has_its_parts_and_moves(fresh, macro):
     moves_and_comes_back(fresh, "#motion-0", 0)
 
 
-@pytest.mark.nightly
 def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
     """The viewer alone moves its light after each picture: the next one differed."""
     fresh.page.click("#views button >> nth=1")
@@ -193,7 +194,6 @@ def test_the_light_comes_from_the_eye_in_the_first_picture(fresh):
     assert np.abs(fresh.picture() - first).max() <= 1
 
 
-@pytest.mark.nightly
 def test_each_element_is_brought_under_the_sensor(fresh):
     fresh.page.click("[data-scene=calibration]")
     at_rest = fresh.picture()

@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from faults.command_line import environment, one_by_one, refused, tactcad_forked, tactcad_run
 
+pytestmark = pytest.mark.slow  # makes whole pages
+
 MOST_ARRAY, MOST_ALL = 6_000_000, 12_000_000
 
 

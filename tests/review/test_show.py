@@ -29,6 +29,8 @@ from tactcad.parts.designs import load
 from tactcad.review import show as showing
 from tactcad.review.scene_facts import scene_facts
 
+pytestmark = pytest.mark.slow  # starts a browser
+
 NOTEBOOK = Path(__file__).parents[2] / "docs" / "notebooks" / "review.ipynb"
 
 
@@ -58,7 +60,6 @@ def test_the_notebook_is_committed_as_it_was_written():
 
 
 @pytest.mark.cad
-@pytest.mark.nightly
 def test_the_notebook_runs_and_shows_what_it_tells(tmp_path):
     """Whole, where nothing lies: both designs, what 5 um do to K, what changed, and a refusal."""
     notebook = nbformat.read(NOTEBOOK, 4)
@@ -160,7 +161,6 @@ def _with_a_viewer(act, design) -> None:
         act(design)
 
 
-@pytest.mark.nightly
 @pytest.mark.cad
 def test_the_page_draws_in_its_frame_and_reaches_nothing_outside(one, running, tmp_path):
     """A notebook's page around it, from a file, with the network off."""

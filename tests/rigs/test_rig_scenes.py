@@ -63,7 +63,7 @@ def test_every_rig_part_is_the_solid_that_its_description_says(name):
         _compare_box(part, facts["box"])
 
 
-@pytest.mark.nightly  # by day the array's: tests/cli/test_profile.py
+@pytest.mark.slow  # by day the array's: tests/cli/test_profile.py
 @pytest.mark.parametrize("scene", RIGS)
 def test_an_export_of_one_scene_builds_its_parts_once_each_and_no_others(scene, tmp_path, monkeypatch):
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))

@@ -33,7 +33,7 @@ def test_chance_explains_nothing():
     assert first_order_share(rng.random(500), rng.random(500)) < 0.05
 
 
-@pytest.mark.nightly
+@pytest.mark.slow
 def test_the_page_stands_alone(tmp_path, scheduler):
     path = written(tmp_path, count="128")
     assert swept(path, "--out", tmp_path / "out", "--scheduler", scheduler).returncode == 0

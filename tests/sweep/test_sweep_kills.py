@@ -13,6 +13,8 @@ import psutil
 import pytest
 from small_study import ELEMENTS, SMALL, TACTCAD, cluster, computing, entries, started, swept, tables, written
 
+pytestmark = pytest.mark.slow  # starts clusters
+
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):

@@ -34,6 +34,8 @@ from tactcad.synthesis.search import search
 from tactcad.synthesis.shares import half_space_shares
 from tactcad.synthesis.target import Target, parse_target
 
+pytestmark = pytest.mark.slow  # draws many labs
+
 SEED = 20261122
 
 
