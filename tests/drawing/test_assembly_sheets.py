@@ -332,7 +332,7 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     design, scene, rows, _, sheets = assembly
     number, revision = f"{design.name}-{scene.name}", design.design.revision
 
-    def faults(sheets, rows=rows, r=revision):
+    def faults(sheets, rows=rows, r=revision, number=number):
         return assembly_faults(pdf_bytes(sheets, "x", "y", "2026-11-21"), number, r, rows)
 
     page = next(
@@ -346,6 +346,8 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     assert any("has 2 balloons" in f for f in faults([*sheets, sheets[page]]))
     assert any("missing" in f for f in faults(sheets[:-1]))
     assert any("missing" in f for f in faults(sheets, r="ZZ"))
+    said = [f for f in faults(sheets, number="other-array") if "is missing" in f]
+    assert said == [f"sheet {n}: 'other-array' is missing" for n in range(1, len(sheets) + 1)]
     assert any("parts list" in f for f in faults(sheets, [replace(rows[0], qty=rows[0].qty + 1), *rows[1:]]))
     assert any("parts list" in f for f in faults(sheets, [*rows, replace(rows[-1], item=99, part_no="NEW")]))
 

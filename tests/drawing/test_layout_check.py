@@ -1,4 +1,4 @@
-"""The layout check sees every kind of fault: one bad sheet each, and its good neighbour."""
+"""`layout_faults` sees every kind of fault: one bad sheet each, and its good neighbour."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """Geometric tolerances, datums and basic dimensions: each once, where the part has it, as ISO 1101 and 5459
-draw it; a sheet that lacks one is refused."""
+draw it; a sheet that lacks one is refused (`gate.geometric_faults`)."""
 
 from __future__ import annotations
 

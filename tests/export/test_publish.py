@@ -20,6 +20,7 @@ import publish_child
 import pytest
 
 from tactcad.design.messages import CheckFailure, InputError
+from tactcad.export import contents
 from tactcad.export import publication as publish
 from tactcad.export.publication import DISCARD, KEEP, REFUSE, turn
 
@@ -240,6 +241,15 @@ def test_what_somebody_did_in_the_folder_is_refused_named_kept_or_discarded(tmp_
     export(out, "new", DISCARD)
     assert whole(out) == "new" and MEDDLINGS[meddle] in capsys.readouterr().err
     assert "ex-kept-1" not in names(out.parent)
+
+
+def test_what_is_larger_than_anything_of_ours_is_somebodys(tmp_path, monkeypatch):
+    """Although it has its listed digest, which nobody waits for."""
+    out = tmp_path / "ex"
+    export(out, "old" * 5000)
+    monkeypatch.setattr(contents, "MOST_BYTES", (out / "manifest.json").stat().st_size)
+    with pytest.raises(InputError, match=r"a\.step \(changed\)"):
+        export(out, "new")
 
 
 def copied(source: str, target: str) -> None:
