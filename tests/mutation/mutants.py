@@ -394,8 +394,8 @@ def _test_files() -> dict[Path, str]:
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most: those of ALSO, then those that name it most among those that
-    import its module; for a rule, those that name it.
+    """The test files that concern it most, those that name it most first: of those that import its module, or,
+    for a rule, name it, and before all others those of ALSO.
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
@@ -416,7 +416,8 @@ def tests_of(mutant: Mutant) -> list[str]:
             continue
         chosen[path.relative_to(ROOT).as_posix()] = text.count(word)
     also = ALSO.get(mutant.module, ())
-    return sorted(chosen, key=lambda name: (name not in also, -chosen[name]))[:MOST_FILES]
+    few = sorted(chosen, key=lambda name: (name not in also, -chosen[name]))[:MOST_FILES]
+    return sorted(few, key=lambda name: -chosen[name])
 
 
 # --- running ---
