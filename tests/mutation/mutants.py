@@ -394,8 +394,8 @@ def _test_files() -> dict[Path, str]:
 
 
 def tests_of(mutant: Mutant) -> list[str]:
-    """The test files that concern it most, those that name it most first: of those that import its module, or,
-    for a rule, name it, and before all others those of ALSO.
+    """The test files that concern it most, those that name it most first: of those that import its module,
+    or, for a rule, name it, and before all others those of ALSO.
     """
     dotted = "tactcad." + mutant.module.removesuffix(".py").replace("/", ".")
     package, _, last = dotted.rpartition(".")
