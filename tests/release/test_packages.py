@@ -21,6 +21,7 @@ from tactcad.release import make
 from tactcad.release.archive import archive_bytes
 from tactcad.release.ordered import ordered
 from tactcad.release.packages import packed
+from tactcad.release.readme import DRAFT
 from tactcad.release.release_contents import ReleaseContents
 from tactcad.release.verify_packages import check_packages
 from tactcad.release.wire_time import wire_time
@@ -243,11 +244,27 @@ def swapped(files: dict[str, bytes], name: str, old: bytes, new: bytes) -> dict[
     return {**files, name: files[name].replace(old, new, 1)}
 
 
+def recut(files: dict[str, bytes]) -> dict[str, bytes]:
+    """Another cut file, as the order says."""
+    name, other = f"dxf/{ELEMENT}.dxf", b"0\nEOF\n"
+    old, new = (hashlib.sha256(data).hexdigest().encode() for data in (files[name], other))
+    return {**swapped(files, ORDER, old, new), name: other}
+
+
+def ordered_too(files: dict[str, bytes]) -> dict[str, bytes]:
+    """A line of the order again, of a part of another name."""
+    line = next(line for line in files[ORDER].splitlines(True) if b"COATING" in line)
+    return {**files, ORDER: files[ORDER] + line.replace(b"COATING", b"GILDING", 1)}
+
+
 ELEMENT = f"tiny-element-a5mm_{REVISION}"
 FAULTS = {
     "another cut file": ("wire-cutting", lambda f: {**f, f"dxf/{ELEMENT}.dxf": b"0\nEOF\n"}),
+    "another cut file, as its order says": ("wire-cutting", recut),
     "a cut file less": ("wire-cutting", lambda f: {n: d for n, d in f.items() if n != f"dxf/{ELEMENT}.dxf"}),
     "a file that nobody asked for": ("sheet", lambda f: {**f, "step/other.step": b""}),
+    "a line of a part in no bill": ("purchase-electronic", ordered_too),
+    "a draft's README": ("sheet", lambda f: {**f, README: f[README] + DRAFT.encode() + b"\r\n"}),
     "a quantity": ("purchase-mechanical", lambda f: swapped(f, ORDER, b",2,6,", b",2,7,")),
     "an element less": ("wire-cutting", lambda f: swapped(f, ORDER, b",1,1,2,", b",0,1,1,")),
     "a line less": (
@@ -271,6 +288,24 @@ FAULTS = {
 }
 
 
+SAYS = {  # what is then among the faults
+    "another cut file": f"dxf/{ELEMENT}.dxf: not here as order.csv has it",
+    "another cut file, as its order says": f"dxf/{ELEMENT}.dxf: not as in the whole zip",
+    "a cut file less": f"dxf/{ELEMENT}.dxf: not here as order.csv has it",
+    "a file that nobody asked for": "step/other.step: no line of order.csv names it",
+    "a line of a part in no bill": "GILDING of an order stands in no bill",
+    "a draft's README": "README.txt: says that it is a draft",
+    "a quantity": "7 with spares, not 4 and 2",
+    "an element less": "tiny-element-a5mm: 0 ordered, 1 needed",
+    "a line less": "COATING of the bills is in 0 packages",
+    "a line twice": "STRAIN-GAUGE of the bills is in 2 packages",
+    "no order": "no line of order.csv names it",
+    "another revision": "README.txt: its first line is not",
+    "an altered inspection sheet": "inspection.csv: not as in the whole zip",
+    "an altered limit": "inspection-parts.csv: tiny-stop-plate: not as in the whole zip",
+}
+
+
 @pytest.mark.parametrize("fault", [None, *FAULTS])
 def test_a_fault_in_a_package_is_found(fault, folder, zips, parts, tmp_path):
     contents, packages = parts
@@ -281,7 +316,8 @@ def test_a_fault_in_a_package_is_found(fault, folder, zips, parts, tmp_path):
             files = FAULTS[fault][1](files)
         paths.append(tmp_path / f"{one.package.name}.zip")
         paths[-1].write_bytes(archive_bytes(files, "2026-11-21"))
-    assert bool(check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)) == bool(fault)
+    faults = check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    assert any(SAYS[fault] in one for one in faults) if fault else faults == []
 
 
 def test_damage_of_a_package_is_found(folder, parts, tmp_path):
@@ -293,6 +329,9 @@ def test_damage_of_a_package_is_found(folder, parts, tmp_path):
     damaged[len(damaged) // 3] ^= 4
     paths[0].write_bytes(damaged)
     assert check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    paths[0].write_bytes(damaged[: len(damaged) // 2])
+    (found,) = check_packages(paths, packages, folder / "out" / f"{STEM}.zip", contents)
+    assert found.startswith(f"{packages[0].package.name}: not readable as a zip")
 
 
 # all or nothing

@@ -21,6 +21,7 @@ from variants import TINY_TEXT
 import tactcad
 from tactcad.cli.main import main
 from tactcad.drawing.gate import pdf_runs
+from tactcad.drawing.title import SAMPLE as STATUS
 from tactcad.parts.designs import load
 from tactcad.release.archive import MODE, archive_bytes
 from tactcad.release.owner import owned
@@ -162,8 +163,8 @@ def _swap(files: dict[str, bytes], name: str, old: bytes, new: bytes) -> dict[st
     return {**files, name: files[name].replace(old, new)}
 
 
-def _sheets(files: dict[str, bytes], mark: str) -> bytes:
-    """The element's sheet with a word on it."""
+def _marked(files: dict[str, bytes], name: str, mark: str) -> dict[str, bytes]:
+    """A word on the first sheet of that drawing."""
     from pypdf import PdfReader, PdfWriter
     from reportlab.pdfgen.canvas import Canvas
 
@@ -171,11 +172,11 @@ def _sheets(files: dict[str, bytes], mark: str) -> bytes:
     canvas = Canvas(over)
     canvas.drawString(100, 100, mark)
     canvas.save()
-    writer = PdfWriter(clone_from=io.BytesIO(files[f"pdf/{ELEMENT}.pdf"]))
+    writer = PdfWriter(clone_from=io.BytesIO(files[name]))
     writer.pages[0].merge_page(PdfReader(over).pages[0])
     out = io.BytesIO()
     writer.write(out)
-    return out.getvalue()
+    return {**files, name: out.getvalue()}
 
 
 def _recut(files: dict[str, bytes]) -> dict[str, bytes]:
@@ -229,7 +230,10 @@ TAMPERED = {
     "drawing missing": lambda f: {n: d for n, d in f.items() if n != f"pdf/{ELEMENT}.pdf"},
     "drawing of another part": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/tiny-blank_{REVISION}.pdf"]},
     "drawing cut off": lambda f: {**f, f"pdf/{ELEMENT}.pdf": f[f"pdf/{ELEMENT}.pdf"][:2000]},
-    "drawing of a draft": lambda f: {**f, f"pdf/{ELEMENT}.pdf": _sheets(f, "PRELIMINARY")},
+    "drawing of a draft": lambda f: _marked(f, f"pdf/{ELEMENT}.pdf", "PRELIMINARY"),
+    "drawing of a sample": lambda f: _marked(f, f"pdf/{ELEMENT}.pdf", STATUS),
+    "drawing with a key characteristic twice": lambda f: _marked(f, f"pdf/{ELEMENT}.pdf", "K1"),
+    "assembly drawing of a draft": lambda f: _marked(f, f"pdf/tiny-array_{REVISION}.pdf", "PRELIMINARY"),
     "assembly drawing missing": lambda f: {
         n: d for n, d in f.items() if n != f"pdf/tiny-array_{REVISION}.pdf"
     },
@@ -268,7 +272,10 @@ SAYS = {  # what is then among the faults; several gates may see one change
     "drawing missing": "0 pages instead of 1",
     "drawing of another part": "'tiny-element-a5mm' is missing",
     "drawing cut off": "0 pages instead of 1",
-    "drawing of a draft": "sheet 1: with PRELIMINARY",
+    "drawing of a draft": f"pdf/{ELEMENT}.pdf, sheet 1: with PRELIMINARY",
+    "drawing of a sample": f"sheet 1: with {STATUS!r}",
+    "drawing with a key characteristic twice": "key characteristic K1 (hinge thickness) stands 2 times",
+    "assembly drawing of a draft": f"pdf/tiny-array_{REVISION}.pdf, sheet 1: with PRELIMINARY",
     "assembly drawing missing": f"pdf/tiny-array_{REVISION}.pdf: missing",
     "cut file changed with everything that names it but the drawing": "does not have the SHA-256 of dxf/",
     "inspection sheet of another revision": "inspection.csv: not of tiny revision",
