@@ -477,6 +477,33 @@ def test_a_file_that_does_not_read_back_leaves_the_earlier_export(mine, monkeypa
     assert contents(mine) == good and not list(mine.parent.glob(".out.*"))
 
 
+def test_what_is_written_wrong_leaves_the_earlier_export(mine, monkeypatch):
+    """A picture of nothing, a bill with a row less, and a manifest with another digest, in the order in which
+    an export comes to them."""
+    from tactcad.drawing import picture
+    from tactcad.export import manifest
+    from tactcad.scenes import bom
+
+    good = contents(mine)
+    wrong = {
+        (picture, "svg"): (lambda data: re.sub(rb' d="[^"]*"', b' d=""', data), "nothing is drawn"),
+        (bom, "csv_bytes"): (
+            lambda data: b"".join(data.splitlines(keepends=True)[:-1]),
+            "bill of materials of array",
+        ),
+        (manifest, "manifest_bytes"): (
+            lambda data: re.sub(rb'"sha256": "\w{64}', b'"sha256": "' + b"0" * 64, data, count=1),
+            "the finished export does not hold",
+        ),
+    }
+    for (module, name), (damage, said) in wrong.items():
+        write = getattr(module, name)
+        with monkeypatch.context() as patch, pytest.raises(CheckFailure, match=said):
+            patch.setattr(module, name, lambda *a, write=write, damage=damage: damage(write(*a)))
+            exported(variant({"array.row_arms": [[4.7, 6.0]]}), mine)
+    assert contents(mine) == good and not list(mine.parent.glob(".out.*"))
+
+
 def test_a_measured_part_must_agree_with_its_description(mine, monkeypatch):
     """Centre of mass and box from the kernel are compared with the closed forms."""
     made = variant({"array.row_arms": [[4.7, 6.0]]})
