@@ -12,7 +12,8 @@ import pytest
 from scipy.spatial import cKDTree
 from variants import variant
 
-from tactcad.drawing import parts_list
+from tactcad.design.messages import CheckFailure
+from tactcad.drawing import assembly_file, parts_list
 from tactcad.drawing.assembly import assembly_sheets
 from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
 from tactcad.drawing.extent import placed
@@ -350,6 +351,17 @@ def test_what_is_wrong_in_a_written_drawing_is_found(assembly):
     assert said == [f"sheet {n}: 'other-array' is missing" for n in range(1, len(sheets) + 1)]
     assert any("parts list" in f for f in faults(sheets, [replace(rows[0], qty=rows[0].qty + 1), *rows[1:]]))
     assert any("parts list" in f for f in faults(sheets, [*rows, replace(rows[-1], item=99, part_no="NEW")]))
+
+
+@pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)
+def test_a_drawing_that_lacks_a_sheet_is_not_written(assembly, monkeypatch):
+    design, scene, rows, _, sheets = assembly
+    order = assembly_file.AssemblyOrder(design, scene, tuple(rows), {})
+    monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets)
+    assert pdf_runs(assembly_file.assembly_written(order).pdf)
+    monkeypatch.setattr(assembly_file, "assembly_sheets", lambda *_: sheets[:-1])
+    with pytest.raises(CheckFailure, match="no drawing was written"):
+        assembly_file.assembly_written(order)
 
 
 @pytest.mark.parametrize("assembly", SCENES[:1], ids=["array"], indirect=True)

@@ -173,6 +173,18 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
     )
 
 
+def test_a_sheet_written_without_a_text_is_not_let_out(orders, finished, monkeypatch):
+    from tactcad.drawing import pdf
+
+    sheet = finished[ELEMENT]
+    lost = next(t for t in sheet.texts if t.text == "K1")
+    without = replace(sheet, items=tuple(item for item in sheet.items if item is not lost))
+    monkeypatch.setattr(pdf, "pdf_bytes", lambda sheets, *more: pdf_bytes([without], *more))
+    monkeypatch.setattr(sheets, "part_sheet", lambda order: sheet)
+    with pytest.raises(CheckFailure, match=r"K1 .*stands 0 times.*; no drawing was written"):
+        written(orders[ELEMENT])
+
+
 def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     """Three sheets from two processes of this one, and two of them from a fresh process with another hash
     seed."""
