@@ -292,7 +292,7 @@ def _clamp(d: Draw) -> None:
 
     # the carrier; a set screw through it reaches down to the stop plate
     fixing = min(n for n in CAP_LENGTHS if n - 1.5 * m.d - 0.8 >= 2 - 1e-9)
-    least = max(fixing - 1.5 * m.d - 0.8 + m.head_height, 1.5 * mounted.d, 1.5 * m.d + 1)
+    least = max(fixing - 1.5 * m.d - 0.8 + m.head_height + 0.2, 1.5 * mounted.d, 1.5 * m.d + 1)
     thickness = d.number("clamp.carrier_thickness", least, min(TAP_REACH * m.d, d.across_mount / 5))
     longest = SET_SCREW_LENGTHS[d.table["clamp.screw"]][-1]
     reach = longest - thickness + 1

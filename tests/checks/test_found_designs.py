@@ -38,6 +38,10 @@ REFUSED = {
         },
     ),
     "an M3 tap through 9.1 mm of carrier": ("carrier_can_be_screwed", {"clamp.carrier_thickness": 9.1}),
+    "heads of the carrier's screws flush under what lies on it": (
+        "carrier_can_be_screwed",
+        {"clamp.carrier_thickness": 5.7},
+    ),
     "a 3 mm reamer through 30.5 mm of end plate": (
         "end_plate_takes_holes",
         {"clamp.end_plate_thickness": 30.5},

@@ -427,7 +427,12 @@ def test_many_such_designs_build_and_pass_every_check(design):
         # set screws over the outermost of thin elements would stand in the end plates
         {"array.row_arms": [[4] * 8], **THIN},
         {"array.row_arms": [[50.0, 4.0]]},  # beyond the estimator's fit
-        {**TWO_SIDED, "clamp.screw": "M2.5", "clamp.stop_plate_thickness": 5.0},
+        {
+            **TWO_SIDED,
+            "clamp.screw": "M2.5",
+            "clamp.carrier_thickness": 6.2,
+            "clamp.stop_plate_thickness": 5.0,
+        },
     ],
 )
 def test_designs_that_once_were_let_pass_and_did_not_build(changes):

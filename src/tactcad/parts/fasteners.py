@@ -15,6 +15,9 @@ from .library.screws import CAP_SCREW_LENGTHS, METRIC, TAP_REACH, engagement
 LEAST_UNDER_HEAD = 2.5
 LEAST_GRIP = 3.0
 LEAST_UNDER_CARRIER_HEAD = 2.0
+# mm that heads stay below the carrier's face, on which foot and array mount lie: chosen, twice what
+# ISO 2768-m leaves a counterbore 3 to 6 mm deep.
+SUNK = 0.2
 
 
 # mm, plus and minus: spacers are as thick as the pitch leaves beside the measured sheet, so that the stack is
@@ -107,7 +110,7 @@ def carrier_screw(layout: Layout) -> CarrierScrew | None:
 
 def thinnest_carrier(thread: str) -> float:
     """Least carrier thickness that sinks the head of its screws, mm."""
-    return round(_shortest_carrier_screw(thread).under_head + METRIC[thread].head_height, 9)
+    return round(_shortest_carrier_screw(thread).under_head + METRIC[thread].head_height + SUNK, 9)
 
 
 def _shortest_carrier_screw(thread: str) -> CarrierScrew:
