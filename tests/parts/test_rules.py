@@ -431,7 +431,7 @@ def test_many_such_designs_build_and_pass_every_check(design):
             **TWO_SIDED,
             "clamp.screw": "M2.5",
             "clamp.carrier_thickness": 6.2,
-            "clamp.stop_plate_thickness": 5.0,
+            "clamp.stop_plate_thickness": 5.5,
         },
     ],
 )
