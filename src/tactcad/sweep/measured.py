@@ -69,7 +69,7 @@ def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
     Returns
     -------
     pyarrow.Table
-        Every varied field, results (empty where unknown), valid, and reason, null where all are valid.
+        Results (empty where unknown), valid, and reason, null where all are valid.
     """
     import pyarrow as pa
 
@@ -86,8 +86,7 @@ def measured(study: Study, start: int, stop: int, folder: Path) -> pa.Table:
             for name, value in found.items():
                 (texts if name in texts else numbers)[name][i] = value
     closed_forms(study, columns, refused, numbers)
-    table = {path: _field(column) for path, column in columns.items()}
-    table |= {name: pa.array(column, from_pandas=True) for name, column in numbers.items()}
+    table = {name: pa.array(column, from_pandas=True) for name, column in numbers.items()}
     table |= {name: pa.array(column, pa.string()) for name, column in texts.items()}
     table["valid"] = pa.array(refused.valid)
     table["reason"] = pa.nulls(count) if refused.valid.all() else pa.array(refused.reason, pa.string())
@@ -98,11 +97,15 @@ def as_rows(study: Study, start: int, found: pa.Table) -> pa.Table:
     """Rows of the study's table: what was found, and what is known of designs from `start` without it."""
     import pyarrow as pa
 
-    count, fields = found.num_rows, len(study.vary)
+    count = found.num_rows
+    fields = designs_taken(study, start, start + count)
+    table = {"number": pa.array(np.arange(start + 1, start + count + 1))}
+    table |= {path: _field(column) for path, column in fields.items()}
+    table["rung"] = pa.repeat(" ".join(study.measure.rungs), count)
+    table |= zip(found.column_names, found.columns)
     if pa.types.is_null(found["reason"].type):
-        found = found.set_column(found.num_columns - 1, "reason", pa.repeat("", count))
-    found = found.add_column(fields, "rung", pa.repeat(" ".join(study.measure.rungs), count))
-    return found.add_column(0, "number", pa.array(np.arange(start + 1, start + count + 1)))
+        table["reason"] = pa.repeat("", count)
+    return pa.table(table)
 
 
 def _field(column: Column) -> pa.Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 from collections import Counter
 from collections.abc import Iterable
 from contextlib import ExitStack
@@ -23,11 +25,12 @@ MOST_REASONS = 1000  # that are counted; of more, the rest counts as one
 
 @dataclass
 class Tally:
-    """What a table holds: rows, those that are refused, and why, most frequent first."""
+    """What a table holds: rows, those that are refused, and why, most frequent first; its files' SHA-256."""
 
     rows: int = 0
     refused: int = 0
     reasons: Counter[str] = field(default_factory=Counter)
+    sha256: dict[str, str] = field(default_factory=dict)
 
     def add(self, table: pa.Table) -> None:
         import pyarrow.compute as pc
@@ -38,6 +41,18 @@ class Tally:
         for entry in refused["reason"].value_counts().to_pylist():
             known = entry["values"] in self.reasons or len(self.reasons) < MOST_REASONS
             self.reasons[entry["values"] if known else "other reasons"] += entry["counts"]
+
+
+class _Digested(io.BufferedWriter):
+    """A file whose digest is known when it is written: reading it back takes as long again."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(io.FileIO(path, "wb"))
+        self.sha256 = hashlib.sha256()
+
+    def write(self, data: Any) -> int:
+        self.sha256.update(data)
+        return super().write(data)
 
 
 def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Tally:
@@ -62,18 +77,21 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Ta
 
     tally = Tally()
     with ExitStack() as stack:
+        files: dict[str, _Digested] = {}
         writers: list = []
         for table in _grouped(chunks):
             if not writers:
-                place = stack.enter_context(whole_file(folder / PARQUET))
-                parquet = pq.ParquetWriter(place, table.schema, **_encoded(table))
+                for name in (PARQUET, *([CSV] if with_csv else [])):
+                    place = stack.enter_context(whole_file(folder / name))
+                    files[name] = stack.enter_context(_Digested(place))
+                parquet = pq.ParquetWriter(files[PARQUET], table.schema, **_encoded(table))
                 writers.append(stack.enter_context(parquet))
                 if with_csv:
-                    place = stack.enter_context(whole_file(folder / CSV))
-                    writers.append(stack.enter_context(pyarrow.csv.CSVWriter(place, table.schema)))
+                    writers.append(stack.enter_context(pyarrow.csv.CSVWriter(files[CSV], table.schema)))
             for writer in writers:
                 writer.write_table(table)
             tally.add(table)
+    tally.sha256 = {name: file.sha256.hexdigest() for name, file in files.items()}
     return tally
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import time
 from collections.abc import Callable, Generator, Iterator
@@ -19,7 +18,7 @@ from .designs_taken import prepared
 from .kept import SCHEMA, Kept, claimed
 from .measured import as_rows, designs_a_task, loaded_first, made_by
 from .on_dask import Done, SweepTask, all_done, cluster
-from .results_table import CSV, PARQUET, Tally, write_tables
+from .results_table import Tally, write_tables
 from .study import Study
 
 if TYPE_CHECKING:
@@ -95,12 +94,10 @@ def sweep(
     clusters = cluster(address, min(workers, len(missing)), loaded_first(study), lambda: prepared(study), say)
     with closing(work.done_on(clusters, orders)) as done:
         tally = write_tables(folder, _chunks(kept, tasks, orders, done), with_csv)
-    files = (PARQUET, *([CSV] if with_csv else []))
-    write_whole(folder / MANIFEST, _manifest(study, folder, files, tally))
+    write_whole(folder / MANIFEST, _manifest(study, folder, tally))
     work.lap("writing")
-    return Swept(
-        folder, (*files, MANIFEST), tally, work.computed, count - work.computed, work.seconds, work.in_workers
-    )
+    files, computed = (*tally.sha256, MANIFEST), work.computed
+    return Swept(folder, files, tally, computed, count - computed, work.seconds, work.in_workers)
 
 
 def _chunks(
@@ -162,7 +159,7 @@ class _Work:
         return f"designs, {rate:.3g} a second, {units if left < 7200 else f'{left / 3600:.1f} h'} left"
 
 
-def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) -> bytes:
+def _manifest(study: Study, folder: Path, tally: Tally) -> bytes:
     inputs = made_by(study.measure.what)
     record = {
         "schema": SCHEMA,
@@ -178,7 +175,10 @@ def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) 
         "refused": tally.refused,
         "versions": {"tactcad": __version__, **inputs.libraries},
         "sources": dict(inputs.sources),
-        "files": [_file(folder, name) for name in files],
+        "files": [
+            {"path": name, "sha256": sha256, "bytes": (folder / name).stat().st_size}
+            for name, sha256 in tally.sha256.items()
+        ],
     }
     return (json.dumps(record, indent=1) + "\n").encode()
 
@@ -186,9 +186,3 @@ def _manifest(study: Study, folder: Path, files: tuple[str, ...], tally: Tally) 
 def _plain(table: object) -> dict:
     """A table of the study as its file has it."""
     return {name: value for name, value in vars(table).items() if value is not None}
-
-
-def _file(folder: Path, name: str) -> dict:
-    with open(folder / name, "rb") as file:
-        sha256 = hashlib.file_digest(file, "sha256").hexdigest()
-    return {"path": name, "sha256": sha256, "bytes": (folder / name).stat().st_size}
