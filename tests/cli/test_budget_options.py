@@ -94,6 +94,21 @@ def test_a_table_gets_each_row_its_rung_and_one_budget(tmp_path, capsys):
     assert rows(tmp_path, [], "--in", "2") == []
 
 
+def test_a_table_of_which_no_row_can_be_answered_promises_nothing(tmp_path, capsys):
+    """What no rung keeps is refused; rows that no errors were measured for say so each."""
+    source, target = tmp_path / "in.csv", tmp_path / "out.csv"
+    source.write_text(f"{HEADER}\n{ROW}\n{DEEP}\n")
+    for asked in (["--within", "1e-9"], ["--within", "1e-9", "--in", "0.001"]):
+        assert main(["estimate", "--batch", str(source), "--out", str(target), *asked]) == 1
+        said = capsys.readouterr()
+        assert said.err.startswith("tactcad: nothing keeps K within 1e-07 %: the best is fem-solid, mesh 3")
+        assert said.out == "" and said.err.count("\n") == 1 and not target.exists()
+    for asked in (["--within", "1%"], ["--in", "0.001"]):
+        (row,) = rows(tmp_path, [ROW.replace("0.33", "0.1")], *asked)
+        assert row["valid"] == "false" and row["reason"]
+        assert "budget" not in capsys.readouterr().out
+
+
 def test_costs_follow_the_work(monkeypatch):
     many = REFERENCE.with_(load_arm=[5.0, 6.0, 7.0])
     one, three = rung_costs.rung_grades(REFERENCE), rung_costs.rung_grades(many)

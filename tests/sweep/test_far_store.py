@@ -6,8 +6,9 @@ import json
 import pickle
 
 import fsspec
+import pyarrow.parquet as pq
 import pytest
-from small_study import swept, tables, written
+from small_study import ELEMENTS, swept, tables, written
 
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure
@@ -15,6 +16,8 @@ from tactcad.sweep.far_store import FarStore
 from tactcad.sweep.measured import made_by
 from tactcad.sweep.on_dask import SweepTask
 from tactcad.sweep.study import read_study
+
+GRID = ELEMENTS.replace(', "fem-plane"', "").replace("steps = 4", "steps = 2")
 
 
 @pytest.fixture
@@ -62,17 +65,26 @@ def test_what_ends_while_it_is_written_leaves_nothing(store, monkeypatch):
 
 @pytest.mark.parametrize(
     "address, said",
-    [("nosuch://x/y", "Protocol not known"), ("s3://b/x", "s3fs"), ("memory://x", "workers are others")],
+    [
+        ("nosuch://x/y", "Protocol not known"),
+        ("s3://b/x", "s3fs"),
+        ("memory://x", "workers are others"),
+        ("study.toml", "File exists; found 'study.toml'; legal: a folder"),
+        ("file:///proc/nope", "No such file or directory; found 'file:///proc/nope'"),
+    ],
 )
-def test_an_address_that_cannot_be_is_one_line(tmp_path, capsys, address, said):
+def test_an_address_that_cannot_be_is_one_line(tmp_path, capsys, monkeypatch, address, said):
+    monkeypatch.chdir(tmp_path)
     assert main(["sweep", str(written(tmp_path)), "--out", str(tmp_path / "out"), "--store", address]) == 2
     err = capsys.readouterr().err
     assert err.startswith("tactcad: --store: ") and said in err and err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_place_that_refuses_is_one_line(tmp_path):
-    (tmp_path / "file").write_text("no folder")
-    store = FarStore(f"local://{tmp_path}/file/store")
+    store = FarStore(f"local://{tmp_path}/store")
+    (tmp_path / "store").rmdir()
+    (tmp_path / "store").write_text("no folder")
     with pytest.raises(CheckFailure) as refused:
         store.put("a", b"result")
     assert "\n" not in str(refused.value) and "--store local://" in str(refused.value)
@@ -85,6 +97,27 @@ def test_a_workers_refusal_reaches_the_client(tmp_path):
     assert (
         done.unable.startswith("cannot go on: --store") and "s3fs" in pickle.loads(pickle.dumps(done)).unable
     )
+
+
+def test_fields_in_another_order_share_nothing(tmp_path):
+    """Both studies hold the same designs, in another order: each row is its own design's."""
+    head, thickness, rest = GRID.partition('[vary."element.hinge_thickness"]')
+    fields, measure = rest.split("[measure]")
+    field, arm = fields.split("[vary.")
+    swapped = f"{head}[vary.{arm}{thickness}{field}[measure]{measure}"
+    found = []
+    for n, text in enumerate((GRID, swapped)):
+        folder = tmp_path / str(n)
+        folder.mkdir()
+        done = swept(written(folder, text), "--out", folder / "out", "--store", tmp_path / "far", "--json")
+        assert json.loads(done.stdout)["computed"] == 4
+        rows = pq.read_table(folder / "out" / "results.parquet").to_pylist()
+        found.append({(r["element.hinge_thickness"], r["array.row_arms[0][3]"]): r for r in rows})
+        assert [r["number"] for r in rows] == [1, 2, 3, 4]
+    one, other = found
+    assert len(one) == 4 and one.keys() == other.keys()
+    assert all(one[k]["solid.E4.stiffness"] == other[k]["solid.E4.stiffness"] for k in one)
+    assert [r["number"] for r in one.values()] != [other[k]["number"] for k in one]
 
 
 def test_a_study_kept_there_goes_on_from_any_folder(tmp_path):

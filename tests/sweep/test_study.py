@@ -37,6 +37,15 @@ BAD = {
     "an element twice": (SMALL.replace("[4, 9]", "[4, 4]"), "an element twice"),
     "unknown design": (SMALL.replace('"macro-array"', '"macro-aray"'), "did you mean macro-array?"),
     "nothing varies": (SMALL.partition("[vary")[0] + '[measure]\nwhat = ["solid"]\n', "vary: missing table"),
+    "a list and a place in it": (
+        SMALL.replace("[measure]", '[vary."array.row_arms"]\nvalues = [[[5, 5], [5, 5]]]\n[measure]'),
+        "vary: array.row_arms and array.row_arms[0][3] vary the same value; legal: one of the two",
+    ),
+    "a place by another name": (SMALL.replace("[0][3]", "[0][03]"), "array.row_arms[0][03]: unknown field"),
+    "override of no element": (
+        SMALL.replace('"element.hinge', '"element.override.11.hinge'),
+        "vary.element.override.11.hinge_thickness: no such element; found 11; legal: 1 to 10",
+    ),
     "not TOML": ("[study\n", "is not TOML"),
 }
 
@@ -67,6 +76,10 @@ def test_lists_are_of_one_length(tmp_path):
         ("{study} --out o --scheduler nobody:1", "nobody answers there; found 'nobody:1'"),
         ("{study} --out {folder}", "holds files that are no study's, such as study.toml"),
         ("plot", "takes one folder"),
+        ("plot o --workers 2", "--workers: belongs to a study, not to its plot; found 2"),
+        ("plot o --in abc", "--in: belongs to a study, not to its plot; found 'abc'"),
+        ("{study} --out o --within -1%", "--within: not an accuracy; found '-1%'"),
+        ("{study} --out o --in -1e-3", "--in: no time; found '-1e-3'"),
         ("plot {folder}", "is not the folder of a study"),
     ],
 )
@@ -77,7 +90,7 @@ def test_bad_arguments(tmp_path, capsys, monkeypatch, arguments, said):
     words = arguments.format(study=path, folder=tmp_path).split()
     assert main(["sweep", *words]) == 2
     last = capsys.readouterr().err.splitlines()[-1]
-    assert said in last
+    assert said in last and not (tmp_path / "o").exists()
 
 
 def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
@@ -107,3 +120,17 @@ def test_a_tomls_own_date_is_no_hindrance(tmp_path):
     (tmp_path / "own.toml").write_text(text.replace(f'date = "{day}"', f"date = {day}"))
     study = read_study(written(tmp_path, design='"own.toml"'))
     assert study.design.design.date == day and study.count == 24
+    text = SMALL.replace("[measure]", f'[vary."design.date"]\nvalues = [{day}]\n[measure]')
+    study = read_study(written(tmp_path, text))
+    assert study.vary["design.date"].values == (day,) and study.identity
+
+
+def test_the_order_in_which_fields_run_makes_another_study(tmp_path):
+    """In a grid the last field runs fastest, and draws go by their order: their results are told apart."""
+    head, thickness, rest = SMALL.partition(THICKNESS)
+    fields, measure = rest.split("[measure]")
+    field, arm, more = fields.partition("[vary.")
+    swapped = f"{head}{arm}{more}{thickness}{field}[measure]{measure}"
+    one, other = read_study(written(tmp_path)), read_study(written(tmp_path, swapped))
+    assert one.vary == other.vary and list(one.vary) == list(other.vary)[::-1]
+    assert one.identity != other.identity

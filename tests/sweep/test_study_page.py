@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from scipy.stats import qmc
-from small_study import swept, written
+from small_study import SMALL, swept, written
 
 from tactcad.cli.main import main
 from tactcad.sweep.study_page import first_order_share
@@ -42,3 +43,23 @@ def test_the_page_stands_alone(tmp_path, scheduler):
     assert "element.hinge_thickness" in page and "solid.E4.stiffness" in page and page.count("<svg") == 2
     assert not re.findall(r"(?:src|href)=[\"'](?!#|data:image)", page)
     assert "solid.E9.stiffness: most by element.hinge_thickness" in page
+
+
+@pytest.mark.slow
+def test_words_have_shares_too(tmp_path, scheduler):
+    """Two forms of hinge, and a thickness that hardly varies: the form decides all."""
+    words = '[vary."element.sides"]\nvalues = ["one", "two"]\n[vary."design.title"]\nvalues = ["A"]\n'
+    text = SMALL.replace("[0.2, 0.4]", "[0.3, 0.3002]").replace("[6, 9]", "[8, 8.001]")
+    path = written(tmp_path, text.replace("[measure]", words + "[measure]"), count="128")
+    assert swept(path, "--out", tmp_path / "out", "--scheduler", scheduler).returncode == 0
+    table = pq.read_table(tmp_path / "out" / "results.parquet")
+    stiffness = {
+        w: [r["solid.E4.stiffness"] for r in table.to_pylist() if r["element.sides"] == w]
+        for w in ("one", "two")
+    }
+    apart = np.mean(stiffness["two"]) - np.mean(stiffness["one"])
+    assert apart > 50 * max(map(np.ptp, stiffness.values()))  # so its share is 1 within 1e-3
+    assert main(["sweep", "plot", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "plot.html").read_text()
+    assert "solid.E4.stiffness: most by element.sides, 100 %" in page
+    assert "so few designs: design.title." in page

@@ -54,6 +54,11 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
         Many designs in a row; those where errors were not measured are left out.
     within
         The error asked for; designs that no candidate answers to it are left out, too.
+
+    Returns
+    -------
+    list of Grade
+        Empty where all designs are left out.
     """
     inside = np.flatnonzero(reasons(s, MEASURED_FOR).ravel() == "")
     zone = zones(s).ravel()[inside]
@@ -63,19 +68,19 @@ def row_grades(s: HingeSection, within: float | None = None) -> list[Grade]:
     counts = {z: int((zone == z).sum()) for z in promised}
     each = {z: seconds_each(s.rows(inside[zone == z])) for z in promised}
     least = max((min(errors) for errors in promised.values()), default=0.0)
-    levels = sorted({e for errors in promised.values() for e in errors if e >= least}, reverse=True) or [0.0]
+    levels = sorted({e for errors in promised.values() for e in errors if e >= least}, reverse=True)
     grades = []
     for level in levels:
         taken = {z: next(i for i, e in enumerate(errors) if e <= level) for z, errors in promised.items()}
         by = {c: sum(counts[z] for z, i in taken.items() if CANDIDATES[i] == c) for c in CANDIDATES}
         seconds = sum(counts[z] * each[z][CANDIDATES[i]] for z, i in taken.items())
-        start = max((_start(c) for c, n in by.items() if n), default=published()["start"]["numpy"])
+        start = max(_start(c) for c, n in by.items() if n)
         names = [
             f"{c.name} for {n}" if len(taken) > 1 and n < len(zone) else c.name for c, n in by.items() if n
         ]
-        error = max((promised[z][i] for z, i in taken.items()), default=0.0)
+        error = max(promised[z][i] for z, i in taken.items())
         rows = published()["row"] * int(np.prod(s.shape))
-        grades.append(Grade(" and ".join(names) or "nothing", error, here(start + rows + seconds)))
+        grades.append(Grade(" and ".join(names), error, here(start + rows + seconds)))
     return grades
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
@@ -20,6 +21,7 @@ class Parser(argparse.ArgumentParser):
         super().__init__(*args, **kwargs)
         self.register("type", float, as_number)
         self.register("type", int, as_whole)
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # argparse's takes -1% and -1e-3 for options
 
     def parse(self, args: Sequence[str]) -> argparse.Namespace:
         """The parsed arguments; ends the program with exit status 2 where they are wrong."""

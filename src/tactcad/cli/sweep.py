@@ -152,5 +152,9 @@ def _plot(args: argparse.Namespace) -> int:
 
     if len(args.study) != 2:
         raise InputError("plot", "takes one folder", legal="tactcad sweep plot DIR")
+    for name in ("out", "scheduler", "store", "workers", "csv", "within", "seconds", "json"):
+        if given := getattr(args, name):
+            option = "--in" if name == "seconds" else f"--{name}"
+            raise InputError(option, "belongs to a study, not to its plot", value=given, legal="left out")
     print(f"{write_page(args.study[1])}: written")
     return 0

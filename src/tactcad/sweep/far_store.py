@@ -21,9 +21,10 @@ class FarStore:
     Raises
     ------
     InputError
-        Where fsspec does not know such addresses, or what it needs for them is not installed.
+        Where fsspec does not know such addresses, what it needs for them is not installed, or there can be no
+        store.
     CheckFailure
-        Here and later, where the place does not answer or refuses.
+        Later, where the place does not answer or refuses.
     """
 
     def __init__(self, address: str) -> None:
@@ -32,11 +33,10 @@ class FarStore:
         self.address = address
         try:
             self._files, self._root = fsspec.url_to_fs(address)
-        except (ValueError, ImportError) as error:
-            legal = "a folder, or an address such as s3://bucket/path"
-            raise InputError("--store", str(error), value=address, legal=legal) from error
+            self._files.makedirs(self._root, exist_ok=True)
         except Exception as error:  # each kind of place has its own
-            raise self._refusal(error) from error
+            legal = "a folder, or an address such as s3://bucket/path"
+            raise InputError("--store", _why(error), value=address, legal=legal) from error
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
@@ -57,7 +57,6 @@ class FarStore:
         """Keep the bytes under the key."""
 
         def write() -> None:
-            self._files.makedirs(self._root, exist_ok=True)
             with self._files.transaction, self._files.open(self._path(key), "wb") as file:
                 file.write(_header(key, data) + b"\n")
                 file.write(data)
@@ -78,8 +77,13 @@ class FarStore:
             raise self._refusal(error) from error
 
     def _refusal(self, error: Exception) -> CheckFailure:
-        why = " ".join(str(error).split()) or type(error).__name__
-        return CheckFailure(f"--store {self.address}: {why}; what was finished is kept")
+        return CheckFailure(f"--store {self.address}: {_why(error)}; what was finished is kept")
+
+
+def _why(error: Exception) -> str:
+    """In one line."""
+    text = getattr(error, "strerror", None) or str(error)
+    return " ".join(text.split()) or type(error).__name__
 
 
 def _header(key: str, data: bytes) -> bytes:

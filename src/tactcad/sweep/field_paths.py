@@ -10,7 +10,7 @@ from tactcad.design.fields import NumberRows, Numbers, Spec
 from tactcad.design.load import SECTION_TYPES, paths
 from tactcad.design.tree import Design, Hinge
 
-_PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[[0-9]{1,4}\])*)")
+_PLACE = re.compile(r"(?P<field>[^\[\]]+)(?P<places>(?:\[(?:0|[1-9][0-9]{0,3})\])*)")
 
 
 def spec_at(design: Design, path: str) -> Spec | None:

@@ -63,7 +63,8 @@ class Kept:
         self._said.clear()
         self._store.put(key, as_bytes(table))
         if self._said or not self._store.has(key):
-            raise CheckFailure(f"{self.folder}: a result cannot be kept: {' '.join(self._said[-1:])}")
+            why = " ".join(self._said[-1:]).removesuffix("; going on without")
+            raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
 
     def _key(self, start: int, stop: int) -> str:
         return f"{self._prefix} {start} {stop}"

@@ -205,6 +205,14 @@ def _started(local: type[LocalCluster], workers: int, scratch: Path) -> LocalClu
         raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
 
 
+def refuse_unanswered(address: str) -> None:
+    """Raise InputError where no scheduler answers, or a worker of its has no tactcad."""
+    from distributed import Client
+
+    with _connected(Client, address) as client:
+        _refuse_without_tactcad(client)
+
+
 def _connected(client: type[Client], address: str) -> Client:
     try:
         return client(address, timeout=ANSWER)

@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad import __version__
-from tactcad.design.files import write_whole
+from tactcad.design.files import absolute, write_whole
 from tactcad.design.messages import CheckFailure
 
 from .designs_taken import prepared
-from .kept import SCHEMA, Kept, claimed
+from .far_store import FarStore
+from .kept import MARK, SCHEMA, Kept, claimed
 from .measured import as_rows, designs_a_task, loaded_first, made_by
-from .on_dask import Done, SweepTask, all_done, cluster
+from .on_dask import Done, SweepTask, all_done, cluster, refuse_unanswered
 from .results_table import Tally, write_tables
 from .study import Study
 
@@ -81,6 +82,10 @@ def sweep(
     CheckFailure
         Workers died of a task, or the scheduler is gone; what was finished stays.
     """
+    if store is not None:
+        FarStore(store)
+    if address is not None and not (absolute(out) / MARK).exists():
+        refuse_unanswered(address)
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
     kept = Kept(study, folder, inputs.key, store)

@@ -127,8 +127,9 @@ class Study:
 
     @cached_property
     def identity(self) -> str:
-        """Digest of what is asked: equal for equal tables, whatever their comments and order."""
-        return digest([self.study, self.vary, self.measure, self.base])
+        """Digest of what is asked: equal for equal tables, whatever their comments. The order of the varied
+        fields counts: in it they run, and are drawn."""
+        return digest([self.study, list(self.vary.items()), self.measure, self.base])
 
     @cached_property
     def sobol(self) -> Points:
@@ -183,7 +184,7 @@ def read_study(path: str | Path) -> Study:
     InputError
         The file is missing or no study, a value is not legal, or two contradict each other.
     """
-    table = parse_toml(read_text(path, MOST_BYTES, "a study file (TOML)"), str(path))
+    table = _plain_toml(path, "a study file (TOML)")
     for name, value in table.items():
         if name not in TABLES:
             raise unknown_field(name, list(TABLES))
@@ -197,20 +198,26 @@ def read_study(path: str | Path) -> Study:
     study = Study(head, _varied(table["vary"], base), read_table(Measures, table["measure"], "measure"), base)
     for name, one in study.vary.items():
         _refuse_contradiction(study, name, one)
+        _refuse_overlap(study, name)
     _refuse_count(study)
     _refuse_measures(study)
     return study
 
 
+def _plain_toml(path: str | Path, kind: str) -> dict[str, Any]:
+    """A file's table, as JSON holds it: TOML's dates become text, which the fields take too."""
+    table = parse_toml(read_text(path, MOST_BYTES, kind), str(path))
+    return json.loads(json.dumps(table, default=str))
+
+
 def _base(name: str, folder: Path) -> dict[str, Any]:
-    """The design's table, as JSON holds it: TOML's dates become text, which the fields take too."""
     try:
         source = find(folder / name if "/" in name or name.endswith(".toml") else name)
-        table = parse_toml(read_text(source, MOST_BYTES, "a design file (TOML)"), str(source))
+        table = _plain_toml(source, "a design file (TOML)")
         from_table(table)
     except InputError as error:
         raise InputError("study.design", str(error), value=name) from error
-    return json.loads(json.dumps(table, default=str))
+    return table
 
 
 def _varied(table: dict[str, Any], base: dict[str, Any]) -> dict[str, Varied]:
@@ -265,6 +272,12 @@ def _refuse_contradiction(study: Study, path: str, one: Varied) -> None:
         raise InputError(where, f"{given_[0]} cannot be taken as a {sampling}", legal=legal)
 
 
+def _refuse_overlap(study: Study, path: str) -> None:
+    """A list and a place in it: one of them would undo the other."""
+    if whole := next((other for other in study.vary if path.startswith(f"{other}[")), None):
+        raise InputError("vary", f"{whole} and {path} vary the same value", legal="one of the two")
+
+
 def _refuse_count(study: Study) -> None:
     head = study.study
     if head.sampling in DRAWN and head.count is None:
@@ -293,11 +306,15 @@ def _refuse_measures(study: Study) -> None:
         raise InputError("measure.what", "strength goes with a rung", legal='what = ["solid", "strength"]')
     if study.measure.elements is not None and not study.measure.rungs:
         raise InputError("measure.elements", "belongs to a rung", legal="left out")
-    there = len(Layout(study.design).elements)
-    numbers = [len(rows) for rows in _row_arms(study)]
-    if study.elements and max(study.elements) > max([there, *numbers]):
-        legal = f"1 to {max([there, *numbers])}"
-        raise InputError("measure.elements", "no such element", value=max(study.elements), legal=legal)
+    most = max([len(Layout(study.design).elements), *map(len, _row_arms(study))])
+    for path in study.vary:
+        override = path.startswith("element.override.") and int(path.split(".")[2])
+        if override and override > most:
+            raise InputError(f"vary.{path}", "no such element", value=override, legal=f"1 to {most}")
+    if study.elements and max(study.elements) > most:
+        raise InputError(
+            "measure.elements", "no such element", value=max(study.elements), legal=f"1 to {most}"
+        )
     if len(set(study.elements)) < len(study.elements):
         raise InputError("measure.elements", "an element twice", legal="each once")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,15 @@ from tactcad.paper.report import ReportSection, ReportTable, ValidationReport, p
 from .kept import mark_of
 from .results_table import PARQUET
 
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+
 PAGE = "plot.html"
 MOST_BYTES = 10_000_000  # of a manifest
 MOST_ROWS = 200_000  # that the page is made of, of a longer table by chance
 MOST_RESULTS = 6  # on the page: the first that vary
+FAINT = BLUE + "26"  # 15 %
+MOST_LETTERS = 16  # of a word below an axis
 MOST_PAIRED, MOST_POINTS = 7, 1500  # columns and rows of the pairs' figure
 LEAST_IN_BIN, MOST_BINS = 10, 24
 
@@ -34,17 +40,17 @@ def write_page(out: str | Path) -> Path:
     InputError
         The folder is no study's, or its table is not there.
     CheckFailure
-        Fewer than two numbers vary, or hardly any design was measured.
+        No field or no result varies, or hardly any design was measured.
     """
     folder = Path(out)
     mark_of(folder)
     manifest = read_json(folder / "manifest.json", MOST_BYTES, "a study's manifest")
     vary = list(manifest["study"]["vary"])
-    columns = _columns(folder)
+    columns, words = _columns(folder, vary)
     fields = [name for name in vary if name in columns]
     results = _results(columns, fields)
     if not fields or not results:
-        raise CheckFailure(f"{out}: nothing to plot: it needs a varied number and a result that varies")
+        raise CheckFailure(f"{out}: nothing to plot: it needs a field and a result that vary")
     shown = results[:MOST_RESULTS]
     report = ValidationReport(
         title=f"Study {manifest['study']['name']}",
@@ -52,9 +58,9 @@ def write_page(out: str | Path) -> Path:
         f"{manifest['refused']} refused",
         summary=tuple(_summary(columns, fields, shown)),
         sections=(
-            _shares_section(columns, fields, shown),
-            _effects_section(columns, fields, shown),
-            _pairs_section(columns, fields, shown),
+            _shares_section(columns, fields, shown, [name for name in vary if name not in columns]),
+            _effects_section(columns, fields, shown, words),
+            _pairs_section(columns, fields, shown, words),
         ),
         colophon=f"Made of {PARQUET}, SHA-256 {manifest['files'][0]['sha256']}; results shown: "
         f"{len(shown)} of {len(results)} that vary.",
@@ -63,8 +69,9 @@ def write_page(out: str | Path) -> Path:
     return folder / PAGE
 
 
-def _columns(folder: Path) -> dict[str, Floats]:
-    """Numbers that vary among the designs that were measured, in the order of the table."""
+def _columns(folder: Path, vary: Sequence[str]) -> tuple[dict[str, Floats], dict[str, list[str]]]:
+    """What varies among the designs that were measured, in the order of the table: numbers, and of varied
+    fields that hold words or lists which of these; and those words."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -80,7 +87,13 @@ def _columns(folder: Path) -> dict[str, Floats]:
     table = table.filter(table["valid"])
     numbers = [f.name for f in table.schema if pa.types.is_floating(f.type)]
     columns = {name: table[name].to_numpy() for name in numbers if table.num_rows > LEAST_IN_BIN}
-    return {name: v for name, v in columns.items() if np.isfinite(v).all() and np.ptp(v) > 0}
+    columns = {name: v for name, v in columns.items() if np.isfinite(v).all() and np.ptp(v) > 0}
+    words = {}
+    for name in (n for n in vary if n not in numbers):
+        found, which = np.unique(table[name].to_numpy(zero_copy_only=False).astype(str), return_inverse=True)
+        if 1 < len(found) <= most_bins(table.num_rows):
+            words[name], columns[name] = found.tolist(), which.astype(float)
+    return columns, words
 
 
 def _some(count: int, share: float) -> NDArray[np.int64]:
@@ -98,12 +111,17 @@ def _results(columns: dict[str, Floats], fields: Sequence[str]) -> list[str]:
     return sorted(first.values(), key=lambda name: not name.endswith(".stiffness"))
 
 
+def most_bins(designs: int) -> int:
+    """Into which a field is divided."""
+    return max(2, min(MOST_BINS, designs // LEAST_IN_BIN))
+
+
 def binned(field: Floats, result: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """Middles of the field's bins, and in each the result's count, mean and variance.
 
     Bins hold as many designs each; a field of few values has a bin for each.
     """
-    most = max(2, min(MOST_BINS, len(field) // LEAST_IN_BIN))
+    most = most_bins(len(field))
     values = np.unique(field)
     if len(values) <= most:
         index = np.searchsorted(values, field)
@@ -144,7 +162,7 @@ def _summary(columns: dict[str, Floats], fields: Sequence[str], results: Sequenc
 
 
 def _shares_section(
-    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str], absent: Sequence[str]
 ) -> ReportSection:
     rows = []
     for result in results:
@@ -156,31 +174,39 @@ def _shares_section(
         tuple(rows),
         "What is left to fields together, and to chance.",
     )
-    findings = ("A share says by how much the result's variance would fall if that field alone were known.",)
-    return ReportSection("shares", "Sobol shares", "Which field decides?", findings, (table,))
+    findings = ["A share says by how much the result's variance would fall if that field alone were known."]
+    if absent:
+        why = "it took one value, or too many words or lists for so few designs"
+        findings.append(f"Not shown, as {why}: {', '.join(absent)}.")
+    return ReportSection("shares", "Sobol shares", "Which field decides?", tuple(findings), (table,))
 
 
 def _effects_section(
-    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str], words: dict[str, list[str]]
 ) -> ReportSection:
     size = (2.6 * len(fields) + 1.2, 2.1 * len(results) + 0.4)
     with panels(len(results), len(fields), size, squeeze=False, sharey="row", sharex="col") as (figure, axes):
         for row, result in zip(axes, results):
             for ax, field in zip(row, fields):
                 middle, _, mean, variance = binned(columns[field], columns[result])
+                ax.tick_params(labelsize=8)
                 deviation = np.sqrt(variance)
-                ax.fill_between(middle, mean - deviation, mean + deviation, color=BLUE, alpha=0.15, lw=0)
+                if field in words:
+                    ax.errorbar(middle, mean, deviation, fmt="o", color=BLUE, ecolor=FAINT, elinewidth=6)
+                    continue
+                ax.fill_between(middle, mean - deviation, mean + deviation, color=FAINT, lw=0)
                 ax.plot(middle, mean, color=BLUE)
             row[0].set_ylabel(_short(result), fontsize=9)
         for ax, field in zip(axes[-1], fields):
             ax.set_xlabel(_short(field), fontsize=9)
+            _name_words(ax.xaxis, words.get(field), 30)
         picture = drawn(figure, "effects", "Line: mean. Band: one standard deviation to either side.")
     finding = "A field that moves the mean acts by itself; where the band is wide, the other fields act."
     return ReportSection("effects", "Main effects", "What does each field do?", (finding,), (), (picture,))
 
 
 def _pairs_section(
-    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str]
+    columns: dict[str, Floats], fields: Sequence[str], results: Sequence[str], words: dict[str, list[str]]
 ) -> ReportSection:
     names = [*fields, *results][: max(MOST_PAIRED, len(fields) + 1)]
     count = len(columns[names[0]])
@@ -199,11 +225,21 @@ def _pairs_section(
                 ax.grid(False)
             axes[i, 0].set_ylabel(_short(y), fontsize=8)
             axes[-1, i].set_xlabel(_short(y), fontsize=8)
+            _name_words(axes[-1, i].xaxis, words.get(y), 30)
+            if i:  # the first row's scale is of how often
+                _name_words(axes[i, 0].yaxis, words.get(y), 0)
         picture = drawn(
             figure, "pairs", f"{len(rows)} designs; on the diagonal, how often each value occurs."
         )
     finding = "Fields were taken as the upper left shows; results that go together lie on one line."
     return ReportSection("pairs", "Pairs", "Which go together?", (finding,), (), (picture,))
+
+
+def _name_words(axis: Axis, words: list[str] | None, rotation: float) -> None:
+    """Words instead of their places, where the axis is of words."""
+    if words:
+        short = [w if len(w) <= MOST_LETTERS else w[:MOST_LETTERS] + "..." for w in words]
+        axis.set_ticks(range(len(words)), short, rotation=rotation, fontsize=7)
 
 
 def _short(name: str) -> str:
