@@ -82,7 +82,7 @@ def sweep(
     CheckFailure
         Workers died of a task, or the scheduler is gone; what was finished stays.
     """
-    if store is not None:
+    if store is not None:  # what cannot be used is refused before the folder is this study's
         FarStore(store)
     if address is not None and not (absolute(out) / MARK).exists():
         refuse_unanswered(address)
