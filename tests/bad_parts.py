@@ -303,6 +303,12 @@ BAD: dict[str, Bad] = {
     "rated-force": Bad(
         "strength", "the shipped arms of 6 mm and more", strength, "tests/checks/test_strength_check.py"
     ),
+    "stop-below-rated": Bad(
+        "strength",
+        "a gap of 0.03 mm over the 8 mm arm",
+        lambda: strength(stop__gaps={"8": 0.03}),
+        "tests/checks/test_strength_check.py",
+    ),
     "strength": Bad(
         "strength",
         "a hinge 3 mm long and 0.02 mm thin",

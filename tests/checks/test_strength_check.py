@@ -61,6 +61,20 @@ def test_a_gap_that_closes_too_late_is_seen_at_its_element():
     assert failed[0].place[0] == 5.0  # pads begin 1 mm from the middle, and the arm is 4 mm long
 
 
+def test_a_stop_that_closes_below_the_rated_force_is_flagged_at_its_elements():
+    """What ships has none; in series K d of the widest gap is what the pad bears, less the arm's own bending
+    beyond the load line."""
+    assert not [f for name in names() for f in check_strength(load(name)) if f.check == "stop-below-rated"]
+    design = variant({"stop.gaps": {"8": 0.03}})
+    found = [f for f in check_strength(design) if f.check == "stop-below-rated"]
+    assert {f.part.split()[0] for f in found} == {"E4", "E6"} and {f.severity for f in found} == {"flag"}
+    K = float(ladder.stiffness(hinge_section(Layout(design), Layout(design).elements))[3])
+    gap = 0.03 + design.stop.tolerance + seat(Layout(design))
+    for f in found:
+        assert f.value == pytest.approx(K * gap * 7 / 8, rel=0.06) and f.value < f.limit
+        assert f.limit == pytest.approx(1.207, rel=1e-3)
+
+
 def test_the_rated_deflection_is_that_at_yield_over_its_factor():
     """Force and deflection at yield as `tactcad estimate` gives them."""
     from tactcad.lab.array_estimate import estimate

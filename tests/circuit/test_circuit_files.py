@@ -10,6 +10,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 from variants import variant
@@ -104,6 +105,14 @@ def test_table_and_kicads_file_say_the_same():
     circuit = netlist(Layout(design))
     kicad = circuit_files.nets_in_kicad(circuit_files.kicad_file(design, circuit))
     assert kicad == circuit_files.nets_in_table(circuit_files.table_file(design, circuit))
+
+
+def test_the_owner_stands_in_kicads_title_block():
+    design = read("macro-array")
+    owned = replace(design, design=replace(design.design, organisation='Our "lab"'))
+    block = circuit_files.kicad_file(owned, netlist(Layout(owned))).decode()
+    assert block.count('(company "Our \\"lab\\"")') == 1
+    assert "(company)" in circuit_files.kicad_file(design, netlist(Layout(design))).decode()
 
 
 def test_a_damaged_netlist_is_refused(monkeypatch):

@@ -117,6 +117,15 @@ def test_batch_defaults_to_two_sided_and_takes_friction(tmp_path):
     assert stiff[0] / stiff[1] == pytest.approx(6 / (6 - 0.2 * 2.125))
 
 
+def test_batch_refuses_a_known_column_written_otherwise(tmp_path, capsys):
+    """`Sides` would be copied, and every row taken for two-sided."""
+    (tmp_path / "in.csv").write_text(f"{HEADER},Sides\n{ROW},one\n")
+    assert main(["estimate", "--batch", str(tmp_path / "in.csv"), "--out", str(tmp_path / "out.csv")]) == 2
+    said = capsys.readouterr().err
+    assert "in.csv:1:11: column is written otherwise; found 'Sides'; legal: sides" in said
+    assert said.count("\n") == 1 and not (tmp_path / "out.csv").exists()
+
+
 def test_batch_row_out_of_range_has_no_stiffness_but_a_reason(tmp_path):
     bad = ROW.replace("0.25,", "-0.25,", 1)
     status, rows = batch(tmp_path, f"{HEADER}\n{bad}\n{ROW}\n{ROW.replace(',6,', ',0.3,')}\n")

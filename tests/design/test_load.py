@@ -23,6 +23,14 @@ BAD_VALUES = {
     ),
     "unknown table": ({"elements.x": 1}, "elements", "unknown", "element"),
     "unknown field of a rig": ({"sample.stifness": 1}, "sample.stifness", "unknown", "sample.stiffness"),
+    "a target": ({"target.base": "x"}, "target", "no design", "a target is for `tactcad design`"),
+    "a study": ({"study.name": "x"}, "study", "no design", "a study is for `tactcad sweep`"),
+    "another table's field in an override": (
+        {"element.override.3.width": 1},
+        "element.override.3.width",
+        "unknown",
+        "see `tactcad schema`",
+    ),
     "unknown field of an override": (
         {"element.override.3.hinge": 1},
         "element.override.3.hinge",

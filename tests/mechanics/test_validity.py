@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import friction, ladder, validity
+from tactcad.mechanics import friction, ladder, strain, validity
 from tactcad.mechanics.section import OPTIONAL, REFERENCE, REQUIRED
 
 BREAKS = {
@@ -104,6 +104,17 @@ def test_moments_about_the_hinge_give_the_friction_formula():
     K, H, L = float(ladder.stiffness(REFERENCE)), 2.0 + 0.125, 6.0
     apparent = float(ladder.stiffness(s))
     assert apparent * (1 - 0.15 * H / L) == pytest.approx(K, rel=1e-12)
+
+
+def test_friction_takes_as_much_of_the_signal_as_it_adds_to_the_stiffness():
+    """Moments about the hinge: F L - mu F H bends it, so its strain stays what its turn is; the stress that
+    strength is taken from is a slippery object's."""
+    rough, smooth = (REFERENCE.with_(pad_height=2.0, friction=mu) for mu in (0.15, 0.0))
+    bent = [float(strain.gauge(s, 1.0, 0.3)) for s in (rough, smooth)]
+    assert bent[0] / bent[1] == pytest.approx(1 - 0.15 * 2.125 / 6.0, rel=1e-12)
+    turned = [b * float(ladder.stiffness(s)) for b, s in zip(bent, (rough, smooth))]
+    assert turned[0] == pytest.approx(turned[1], rel=1e-12)
+    assert strain.peak_stress(rough, 1.0) == strain.peak_stress(smooth, 1.0)
 
 
 @pytest.mark.parametrize("start", [*BREAKS, *FITTED_BREAKS])

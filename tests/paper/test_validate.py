@@ -126,6 +126,12 @@ def test_calibration_as_json_serves_as_well(tmp_path, capsys):
     assert "sample 1: K_obj = 3.8" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("level, said", [("0.95", "95%"), ("0.975", "97.5%"), ("0.999", "99.9%")])
+def test_an_interval_is_called_by_its_level(capsys, level, said):
+    assert main(["calibrate", str(CALIBRATION), "--level", level]) == 0
+    assert f" {said} interval" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     "arguments, named",
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from io import StringIO
@@ -329,8 +330,11 @@ def test_set_screws_of_a_long_array_do_not_bow_it():
 
 def test_the_array_guide_says_how_pads_become_coplanar_and_how_that_is_measured():
     (step,) = (s for s in make_scene(load("macro-array"), "array").steps if s.title == "Coplanar pads")
-    for word in ("surface plate", "feelers, 2 mm nominal", "lever indicator", "20 um"):
+    for word in ("surface plate", "feelers, 2 mm nominal", "lever indicator", "20 um", "calibration set-up"):
         assert word in step.text
+    rigs = dict.fromkeys(("cart", "holder", "sample", "calibration", "grasping"))
+    alone = dataclasses.replace(load("macro-array"), **rigs)
+    assert not any("calibration" in s.text for s in make_scene(alone, "array").steps)
 
 
 def test_an_exploded_view_pulls_every_part_out_along_its_step():

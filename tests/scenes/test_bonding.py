@@ -206,6 +206,8 @@ def test_limits_of_a_bonded_gauge_by_hand():
     layout = Layout(variant())
     c = gauge_checks(layout)
     assert c.resistance == pytest.approx((119.4, 120.6))
+    wide = gauge_checks(Layout(variant({"gauge.resistance_tolerance": 0.01})))
+    assert wide.resistance == pytest.approx((118.8, 121.2))  # what may be bought is not hurt
     assert c.leak == pytest.approx(120 / 1.1e-5)  # R/(R + leak) of its resistance, to 1e-5 of it
     assert c.creep == pytest.approx(0.001 * np.log10(60))
     # 6 F L/(E b t^2) at 2 N and arm 8, times 2.1 and the reading over the composite's own axis

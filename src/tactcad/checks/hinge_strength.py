@@ -68,6 +68,19 @@ def _about(layout: Layout, state: Overload) -> list[Finding]:
                 f"{stress:.4g}",
             )
         )
+    if state.closing_force < state.rated_force * (1 - ROUNDING):
+        findings.append(
+            Finding(
+                "stop-below-rated",
+                "flag",
+                who,
+                at_hinge,
+                state.closing_force,
+                state.rated_force,
+                f"the stop closes at {state.closing_force:.3g} N at most, its gap {state.gap:g} mm with its "
+                f"tolerance: the hinge never bends as at the {state.rated_force:.3g} N that it is rated for",
+            )
+        )
     if state.rated_force < design.rating.force:
         findings.append(
             Finding(

@@ -10,11 +10,17 @@ PASSIVE = ("lead", "terminal", "gauge", "resistor", "capacitor", "connector")
 Expression = str | tuple
 
 
-def kicad_bytes(netlist: Netlist, title: str, date: str, revision: str) -> bytes:
+def kicad_bytes(netlist: Netlist, title: str, company: str | None, date: str, revision: str) -> bytes:
     """The file (UTF-8); `date` of issue, so that equal designs give equal bytes."""
     # with all that eeschema writes there: readers ask for it
     comments = (("comment", ("number", str(i)), ("value", "")) for i in range(1, 10))
-    texts = (("title", title), ("company",), ("rev", revision), ("date", date), ("source", netlist.name))
+    texts = (
+        ("title", title),
+        ("company", *([company] if company else [])),
+        ("rev", revision),
+        ("date", date),
+        ("source", netlist.name),
+    )
     block = ("title_block", *texts, *comments)
     sheet = ("sheet", ("number", "1"), ("name", "/"), ("tstamps", "/"), block)
     head = ("design", ("source", netlist.name), ("date", date), ("tool", "tactcad"), sheet)

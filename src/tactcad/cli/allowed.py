@@ -22,7 +22,7 @@ def add_allowance(parser: argparse.ArgumentParser, of: str, chosen: str) -> None
         dest="seconds",
         metavar="SECONDS",
         help=f"time it may take: the {chosen} of least error in it; with --within both must hold; a time too "
-        "short is refused before anything is begun, with the time needed: nothing is left out for it",
+        "short is refused before anything is begun, with the time needed: no check is left out for it",
     )
 
 

@@ -35,7 +35,7 @@ EXAMPLES = """\
 
 COLUMNS = (  # heading, unit, field, format
     ("no.", "", "number", "d"),
-    ("arm", "mm", "arm", ".3g"),
+    ("arm", "mm", "arm", "g"),
     ("K", "N/mm", "stiffness", ".4g"),
     ("K_r/K_m", "", "stiffness_ratio", ".3g"),
     ("deflection", "um", "deflection_um", ".4g"),
@@ -67,7 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--json", action="store_true", help="write JSON")
     parser.add_argument(
-        "--batch", metavar="IN.csv", help="a table of designs, one a line (see docs/mechanics.md)"
+        "--batch", metavar="IN.csv", help="a table of designs, one a line (columns: docs/howto.md)"
     )
     parser.add_argument("--out", metavar="OUT.csv", help="where --batch writes its table")
     parser.add_argument(

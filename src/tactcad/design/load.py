@@ -80,6 +80,8 @@ def from_table(table: dict[str, Any]) -> Design:
     sections = {f.name: f for f in dataclasses.fields(Design)}
     for name, value in table.items():
         if name not in sections:
+            if name in OTHER_FILES:
+                raise InputError(name, "is a table of no design file", legal=f"a design; {OTHER_FILES[name]}")
             raise unknown_field(name, list(sections))
         if not isinstance(value, dict):
             raise InputError(name, "not a table", value=value, legal=f"a table [{name}]")
@@ -101,6 +103,8 @@ def from_table(table: dict[str, Any]) -> Design:
     return design
 
 
+SCHEMA = "tactcad schema"  # prints every field
+OTHER_FILES = {"target": "a target is for `tactcad design`", "study": "a study is for `tactcad sweep`"}
 SECTION_TYPES = {
     # a rig's table is `Kind | None`; the kind is its first argument
     name: (typing.get_args(hint) or (hint,))[0]
@@ -215,15 +219,16 @@ def paths(design: Design) -> dict[str, Any]:
     return flat
 
 
-def unknown_field(path: str, known: list[str]) -> InputError:
-    """The refusal of a name that is no field of the file; `known` are those of its table."""
+def unknown_field(path: str, known: list[str], schema: str = SCHEMA) -> InputError:
+    """The refusal of a name that is no field of the file; `known` are those of its table, and `schema` prints
+    all."""
     table, _, name = path.rpartition(".")
     own = {k.removeprefix(f"{table}."): k for k in known}  # a common table's name makes no two names alike
-    begins = next((k for word, k in own.items() if word.startswith(f"{name}_")), "") or _elsewhere(name)
+    begins = next((k for word, k in own.items() if word.startswith(f"{name}_")), "")
+    if schema == SCHEMA and not begins and ".override." not in path:
+        begins = _elsewhere(name)
     likely = begins or own.get(nearest(name, own), "")
-    return InputError(
-        path, "unknown field", legal=f"did you mean {likely}?" if likely else "see `tactcad schema`"
-    )
+    return InputError(path, "unknown field", legal=f"did you mean {likely}?" if likely else f"see `{schema}`")
 
 
 def _elsewhere(name: str) -> str:

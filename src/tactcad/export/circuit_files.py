@@ -23,7 +23,7 @@ Nets = dict[str, frozenset[tuple[str, str]]]  # designators and pins by net
 def kicad_file(design: Design, circuit: Netlist) -> bytes:
     """KiCad's netlist. Raises CheckFailure where it does not read back as the circuit."""
     d = design.design
-    data = kicad_bytes(circuit, d.title, d.date, d.revision)
+    data = kicad_bytes(circuit, d.title, d.organisation, d.date, d.revision)
     check_nets("KiCad's netlist", nets_in_kicad(data), circuit)
     return data
 

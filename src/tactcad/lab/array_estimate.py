@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.design.messages import CheckFailure
-from tactcad.mechanics import ladder, strain, strain_errors, strength
+from tactcad.mechanics import friction, ladder, strain, strain_errors, strength
 from tactcad.mechanics.accuracy import Choice, choose, expected_error_of
 from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.strain_errors import StrainErrors
@@ -186,7 +186,7 @@ def _by_elements(
     read, flat = [r.readings for r in solutions], [r.flat for r in solutions]
     share = strain.peak_share(section) if rung == "fem-plane" else 1.0
     return np.array([r.stiffness for r in solutions]), _PerNewton(
-        np.array([float(r.gauge) for r in read]),
+        np.array([float(r.gauge) for r in read]) / friction.factor(section),
         np.array([r.fillet_strain for r in read]),
         # at mid-width, but no less than the width's mean; in plane stress there is nothing but the mean
         share * np.array([max(a.fillet_stress, b.fillet_stress) for a, b in zip(read, flat)]),

@@ -39,7 +39,7 @@ def report(design: Design, rung: str, rows: Sequence[AsMade]) -> str:
     widths = [max(len(line[i]) for line in cells) for i in range(len(HEADINGS))]
     lines = [
         f"{design.name} {design.design.revision} as made, {design.material.alloy}, rung {rung}, "
-        f"{rows[0].made.force:g} N on each pad; from and to: 95 %, of the dimensions alone",
+        f"{rows[0].made.force:g} N on each pad; from and to: 95 %, without the model's error",
         *("  ".join(cell.rjust(width) for cell, width in zip(line, widths)).rstrip() for line in cells),
     ]
     lines += material_text.lines(design, [row.made.stiffness for row in rows])
@@ -56,7 +56,7 @@ def _cells(row: AsMade) -> list[str]:
     micro = lambda value: "invalid" if value is None else f"{1e6 * value:.0f}"  # noqa: E731
     return [
         str(row.number),
-        f"{made.arm:.3g}",
+        f"{made.arm:g}",
         "blank" if t.measured is None else f"{t.measured:g}",
         *(f"{value:.4g}" for value in (made.stiffness, *present(intervals["stiffness"]), nominal.stiffness)),
         f"{made.stiffness / nominal.stiffness - 1:+.1%}".removesuffix("%"),

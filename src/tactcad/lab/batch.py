@@ -22,6 +22,7 @@ from tactcad.mechanics.section import OPTIONAL, REQUIRED, HingeSection
 SIDES = {"one": False, "two": True}
 DEFAULT_SIDES = "two"
 MOST_BYTES = 200_000_000  # a million designs and more
+KNOWN = (*REQUIRED, *OPTIONAL, "sides")
 ADDED = ("stiffness", "model", "valid", "reason", "expected_error")
 ADDED_BY_ACCURACY = ("mesh",)
 
@@ -127,10 +128,13 @@ def read_table(path: Path) -> tuple[list[str], list[list[str]], HingeSection]:
     Raises InputError where the table is malformed.
     """
     table = csv_table.read_table(path, "a table of designs (CSV)", MOST_BYTES, comments=False)
-    for name in ADDED:
-        if name in table.header:
-            where = table.where(table.header_line, name)
+    for name in table.header:
+        where = table.where(table.header_line, name)
+        if name in ADDED:
             raise InputError(where, "column is one that this command adds", value=name)
+        plain = name.lower().replace(" ", "_")
+        if name not in KNOWN and plain in KNOWN:
+            raise InputError(where, "column is written otherwise", value=name, legal=plain)
     require_columns(table, REQUIRED)
     return table.header, [row for _, row in table.records], _section(table)
 

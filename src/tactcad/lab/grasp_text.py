@@ -20,17 +20,17 @@ def to_text(samples: list[Grasp], level: float, per_modulus: float | None = None
     for g in samples:
         c = g.combined
         lines += [
-            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {level:.0%} interval {_interval(c)} "
-            f"({c.verdict})",
+            f"sample {g.sample}: K_obj = {_number(c.estimate)} N/mm, {100 * level:.10g}% interval "
+            f"{_interval(c)} ({c.verdict})",
             "",
         ]
         head = (
             "measuring",
             "reference",
             "R",
-            f"{level:.0%} interval",
+            f"{100 * level:.10g}% interval",
             "K_obj N/mm",
-            f"{level:.0%} interval",
+            f"{100 * level:.10g}% interval",
             "condition",
             "verdict",
         )

@@ -13,7 +13,7 @@ import numpy as np
 
 from tactcad.design.messages import CheckFailure
 
-from . import ladder, plane, validity
+from . import friction, ladder, plane, validity
 from .constants import by_sides, strain_data
 from .register import BY_NAME
 from .section import Array, HingeSection
@@ -32,7 +32,9 @@ def nominal(s: HingeSection, force: Array | float) -> Array:
 def gauge(
     s: HingeSection, force: Array | float, grid_length: Array | float, rung: str = ladder.DEFAULT_RUNG
 ) -> Array:
-    """Mean strain at mid-width under a grid on the gauge face, centred on the hinge.
+    """Mean strain at mid-width under a grid on the gauge face, centred on the hinge, less what friction at
+    the pad takes of the bending moment. (`peak` and the stresses are those without friction, which may be
+    less than stated.)
 
     Parameters
     ----------
@@ -51,7 +53,8 @@ def gauge(
         Where a design is out of the rung's range, or a two-sided hinge's flat part is too short for the grid.
     """
     ladder.require_range(s, rung)
-    return nominal(s, force) * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
+    bent = nominal(s, force) / friction.factor(s)
+    return bent * grid_factor(s, grid_length, rung) * width_reduction(s, rung, "grid")
 
 
 def peak(s: HingeSection, force: Array | float, rung: str = ladder.DEFAULT_RUNG) -> Array:

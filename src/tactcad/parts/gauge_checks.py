@@ -15,7 +15,8 @@ from tactcad.mechanics.section import Array, HingeSection
 from .hinge_section import design_gauge, design_readout, hinge_section
 from .layout import Layout
 
-# Relative change of resistance by bonding that says that the grid is hurt; chosen: with a gauge factor near 2
+# Relative change of resistance by bonding that says that the grid is hurt, where the gauge's own tolerance is
+# less; chosen: with a gauge factor near 2
 # it is as much as 2500 microstrain, more than curing strains a foil.
 HURT = 0.005
 # ohm: least insulation of a fresh installation under laboratory conditions (Micro-Measurements, Gage
@@ -29,6 +30,7 @@ PUSH = 0.2  # N on the pad for sign and size of the signal, or rating.force; cho
 class GaugeChecks:
     """Limits of one gauge.
 
+    hurt         relative change of resistance by bonding that says that the grid is hurt
     resistance   ohm, least and most after bonding
     insulation   ohm, least when fresh; leak: below this in use, the leak alone reads as the bridge's drift
     zero         dR/R, most of the bonded gauge against its bridge, so that no reading leaves amplifier or
@@ -37,6 +39,7 @@ class GaugeChecks:
     push, rise   N on the pad, away from the object, and by arm length (mm) dR/R under it, about
     """
 
+    hurt: float
     resistance: tuple[float, float]
     insulation: float
     leak: float
@@ -54,6 +57,7 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     """
     d = layout.design
     R, factor = d.gauge.resistance, d.gauge.factor
+    hurt = max(HURT, d.gauge.resistance_tolerance)
     s = hinge_section(layout, layout.elements)
     gauge, electronics = design_gauge(d), design_readout(d)
     per_newton = _per_newton(s, gauge)
@@ -63,7 +67,8 @@ def gauge_checks(layout: Layout) -> GaugeChecks:
     push = min(PUSH, d.rating.force)
     arms = dict(zip((p.arm for p in layout.elements), factor * per_newton * push, strict=True))
     return GaugeChecks(
-        (R * (1 - HURT), R * (1 + HURT)),
+        hurt,
+        (R * (1 - hurt), R * (1 + hurt)),
         FRESH_INSULATION,
         R / d.tolerance.zero_drift if d.tolerance.zero_drift else FRESH_INSULATION,
         max(0.0, room - float(np.max(signal))),

@@ -31,8 +31,9 @@ BOARDS = (
     "No layout comes with this order: who makes the boards lays them out by the netlist, which names no "
     "footprints, and by the circuit sheets. The netlist holds the circuits of all boards: U, J and C of a "
     "board begin with its number, Q and R with that of the element that it reads. All boards are alike, with "
-    "room for every channel of the multiplexer; leads W, gauges B and terminals X are not on them. Keep the "
-    "lines between lead header, resistors and multiplexer short, and those of + and - alike."
+    "room for every channel of the multiplexer, and for a link from each of its inputs to GND, which the "
+    "netlist has where no element is read: there Q and R stay off. Leads W, gauges B and terminals X are not "
+    "on them. Keep the lines between lead header, resistors and multiplexer short, those of + and - alike."
 )
 
 

@@ -55,7 +55,7 @@ def readme_bytes(contents: ReleaseContents, paths: Sequence[str]) -> bytes:
         ("HOW TO MAKE IT", how(contents, made)),
         ("WHICH FILE IS WHAT", _files(paths)),
         ("WITH YOUR QUOTATION PLEASE TELL US", numbered([*wire_questions(contents), *QUOTE])),
-        ("WHAT OUR OWN CHECKS FLAGGED", _flags(contents)),
+        ("WHAT OUR CHECKS OF CUTTING AND MACHINING FLAGGED", _flags(contents)),
         ("CONTACT", contact(contents)),
     ):
         lines += [*heading(head), *body]

@@ -182,6 +182,10 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
         if len(d.array.row_arms) == ABREAST
         else ""
     )
+    same = (
+        "; in the calibration set-up the heights at which the force gauge first reads 0.01 N show the same "
+        "to a micrometre"
+    )
     return (
         "Turn the stack over and set its pads down on a surface plate (grade 1 or better). Press the rear "
         "bodies down with a bar of rubber so that every pad stands on the plate, then tighten "
@@ -189,10 +193,9 @@ def _coplanar(layout: Layout, c: Clamping) -> str:
         "tap the head end plate until its upper edge is as high over the surface plate as the other's, at "
         f"both ends within {LEVEL:g} mm. {gap}"
         f"No pad may let a {2 * tolerance * 1e3:g} um feeler pass. Then turn the array on its back and read "
-        f"each pad with a lever indicator against the surface plate: all within {2 * tolerance * 1e3:g} um; "
-        "in the calibration set-up the heights at which the force gauge first reads 0.01 N show the same to "
-        "a micrometre. Record them; loosen and repeat if one is off, and repeat it all whenever the clamping "
-        "was loosened."
+        f"each pad with a lever indicator against the surface plate: all within {2 * tolerance * 1e3:g} um"
+        f"{same if d.calibration else ''}. Record them; loosen and repeat if one is off, and repeat it all "
+        "whenever the clamping was loosened."
     )
 
 

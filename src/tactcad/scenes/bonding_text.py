@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import floor
 
 from tactcad.design.messages import CheckFailure
-from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, HURT, allowed_places, gauge_checks, volts
+from tactcad.parts.gauge_checks import CREEP_FROM, CREEP_TO, allowed_places, gauge_checks, volts
 from tactcad.parts.lead_route import AHEAD_OF_LEADS, leads
 from tactcad.parts.rigs.bonding_layout import BondingLayout
 from tactcad.parts.rigs.frame import STANDARD_GRAVITY
@@ -153,7 +153,7 @@ def resistance(rig: BondingLayout) -> str:
     low, high = c.resistance
     return (
         f"Record for every element, before it is coated. Resistance at the terminals: {low:g} to {high:g} "
-        f"ohm, which is the gauge's own within {100 * HURT:g} %; more says that the grid was hurt. "
+        f"ohm, which is the gauge's own within {100 * c.hurt:g} %; more says that the grid was hurt. "
         f"Insulation from grid to element: at least {c.insulation / 1e9:g} Gohm, the least that gauge makers "
         f"let pass in a laboratory; flux or moisture is below. Never use one below {c.leak / 1e6:.2g} Mohm: "
         "a leak of that, which comes and goes, reads as all of tolerance.zero_drift."
