@@ -70,7 +70,7 @@ def test_what_ends_while_it_is_written_leaves_nothing(store, monkeypatch):
         ("s3://b/x", "s3fs"),
         ("memory://x", "workers are others"),
         ("study.toml", "File exists; found 'study.toml'; legal: a folder"),
-        ("file:///proc/nope", "No such file or directory; found 'file:///proc/nope'"),
+        ("local:///proc/nope", "No such file or directory; found 'local:///proc/nope'"),
     ],
 )
 def test_an_address_that_cannot_be_is_one_line(tmp_path, capsys, monkeypatch, address, said):
