@@ -15,6 +15,7 @@ from importlib import metadata
 from itertools import islice
 from multiprocessing import forkserver
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
 from tactcad.account import KERNEL
@@ -44,6 +45,10 @@ ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
 }
+
+# Dask's own account of what this module says in a line.
+LOGS = ("distributed", "distributed.client", "tornado.application", "asyncio")
+QUIET = {"logging": dict.fromkeys(LOGS, "critical")}
 
 NO_HELPERS = "may start no processes, which an export needs; it wants DASK_DISTRIBUTED__WORKER__DAEMON=False"
 
@@ -151,22 +156,17 @@ def cluster(
             stack.enter_context(_environment(ENVIRONMENT))
             _load_ahead(loads)  # in a process of its own
         prepare()  # in no thread: Dask's own would wait for the interpreter's lock, in all for longer
-        logs = ("distributed", "distributed.client", "tornado.application", "asyncio")
-        quiet = {"logging": dict.fromkeys(logs, "critical")}
-        with dask.config.set(quiet):  # read when it is loaded, which is when Dask gets its other settings
-            from distributed import Client, LocalCluster
-
+        loaded = _distributed()
         ours = {"distributed.worker.daemon": False, "distributed.worker.multiprocessing-method": "forkserver"}
-        stack.enter_context(dask.config.set({**quiet, **ours}))
+        stack.enter_context(dask.config.set({**QUIET, **ours}))
         if address is not None:
-            client = stack.enter_context(_connected(Client, address))
+            client = stack.enter_context(_connected(loaded.Client, address))
             _refuse_without_tactcad(client)
             say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
         else:
             scratch = stack.enter_context(scratch_folder("sweep"))
-            client = stack.enter_context(
-                Client(stack.enter_context(_started(LocalCluster, workers, scratch)))
-            )
+            local = stack.enter_context(_started(loaded.LocalCluster, workers, scratch))
+            client = stack.enter_context(loaded.Client(local))
             say(f"dashboard: {client.dashboard_link}")
         yield client
 
@@ -205,11 +205,19 @@ def _started(local: type[LocalCluster], workers: int, scratch: Path) -> LocalClu
         raise CheckFailure(f"a process on this machine ended while it was started: {error}") from error
 
 
+def _distributed() -> ModuleType:
+    """Dask's `distributed`, quiet: it reads how when it is loaded, which is also when Dask gets its other
+    settings."""
+    import dask
+
+    with dask.config.set(QUIET):
+        import distributed
+    return distributed
+
+
 def refuse_unanswered(address: str) -> None:
     """Raise InputError where no scheduler answers, or a worker of its has no tactcad."""
-    from distributed import Client
-
-    with _connected(Client, address) as client:
+    with _connected(_distributed().Client, address) as client:
         _refuse_without_tactcad(client)
 
 
