@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from tactcad.cli.main import main
+from tactcad.design.load import find
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
 
@@ -115,6 +116,22 @@ def test_batch_defaults_to_two_sided_and_takes_friction(tmp_path):
     status, rows = batch(tmp_path, text)
     stiff = [float(r["stiffness"]) for r in rows]
     assert stiff[0] / stiff[1] == pytest.approx(6 / (6 - 0.2 * 2.125))
+
+
+@pytest.mark.parametrize("rung", ["solid", "fem-plane"])
+def test_friction_leaves_strain_per_deflection_as_it_is(tmp_path, capsys, rung):
+    """What rubs bends the hinge less by the newton, as much by the millimetre."""
+    text = find("macro-array").read_text()
+    (tmp_path / "rough.toml").write_text(text.replace("\nfriction = 0.0\n", "\nfriction = 0.2\n"))
+    found = [
+        estimate_json(capsys, name, "--model", rung, "--force", "0.5")["elements"]
+        for name in (str(tmp_path / "rough.toml"), "macro-array")
+    ]
+    for rough, smooth in zip(*found, strict=True):
+        assert rough["stiffness"] > 1.05 * smooth["stiffness"]
+        bent = [r["gauge_strain"] / r["deflection"] for r in (rough, smooth)]
+        assert bent[0] == pytest.approx(bent[1], rel=1e-9)
+        assert rough["stress"] == pytest.approx(smooth["stress"], rel=1e-9)
 
 
 def test_batch_refuses_a_known_column_written_otherwise(tmp_path, capsys):

@@ -111,9 +111,9 @@ def test_another_study_is_refused_and_what_is_there_stays(done, capsys):
     other = folder / "other"
     other.mkdir()
     path = written(other, seed="4")
-    assert main(["sweep", str(path), "--out", str(folder / "out")]) == 2
+    assert main(["sweep", str(path), "--out", str(folder / "out"), "--store", str(other / "far")]) == 2
     err = capsys.readouterr().err
-    assert "holds another study" in err and err.count("\n") == 1
+    assert "holds another study" in err and err.count("\n") == 1 and not (other / "far").exists()
     assert tables(folder / "out") == before
 
 

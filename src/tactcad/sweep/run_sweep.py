@@ -82,10 +82,13 @@ def sweep(
     CheckFailure
         Workers died of a task, or the scheduler is gone; what was finished stays.
     """
-    if store is not None:  # what cannot be used is refused before the folder is this study's
-        FarStore(store)
-    if address is not None and not (absolute(out) / MARK).exists():
-        refuse_unanswered(address)
+    if not (
+        absolute(out) / MARK
+    ).exists():  # what cannot be used is refused before the folder is this study's
+        if store is not None:
+            FarStore(store)
+        if address is not None:
+            refuse_unanswered(address)
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
     kept = Kept(study, folder, inputs.key, store)
