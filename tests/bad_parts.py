@@ -50,9 +50,9 @@ def tool() -> list[Finding]:
 
 
 def calibration() -> list[Finding]:
-    from tactcad.checks.calibration_travel import check_calibration
+    from tactcad.scenes.rigs.calibration import check_travel
 
-    return check_calibration(variant({"calibration.travel": 0.2}))
+    return check_travel(variant({"calibration.travel": 0.2}), None)
 
 
 def rigidity() -> list[Finding]:
@@ -227,8 +227,8 @@ def motion() -> list[Finding]:
 
 
 def moving_weight() -> list[Finding]:
-    from tactcad.checks.moving_weight import check_moving_weight
     from tactcad.scenes import make_scene
+    from tactcad.scenes.rigs.grasping import check_moving_weight
 
     light = variant({"grasping.moving_weight": 2.0})
     return check_moving_weight(light, make_scene(light, "grasping"))

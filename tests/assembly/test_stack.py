@@ -7,12 +7,13 @@ import pytest
 
 from tactcad.assembly.contacts import nearest_pose
 from tactcad.assembly.mechanic import Assembled
-from tactcad.assembly.rig_requirements import AXLE_HEIGHT, BORES, SHANKS, WHEEL, loose_wheel
 from tactcad.assembly.stack import stack
-from tactcad.assembly.variables import STACK_LENGTH, DimensionLimits
+from tactcad.assembly.variables import STACK_LENGTH
 from tactcad.assembly.virtual_build import sensor
 from tactcad.assembly.virtual_shop import made
 from tactcad.parts.designs import load
+from tactcad.scenes.requirement import DimensionLimits
+from tactcad.scenes.rig_requirements import AXLE_HEIGHT, BORES, SHANKS, WHEEL, loose_wheel
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from variants import variant
 
 from tactcad.assembly.mechanic import PAD, Assembled
-from tactcad.assembly.variables import STACK_LENGTH, variable
+from tactcad.assembly.variables import STACK_LENGTH
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
 from tactcad.assembly.virtual_shop import made
 from tactcad.checks.goes_together import check_assembly
@@ -21,6 +21,7 @@ from tactcad.parts.hinge_section import design_alloy, hinge_section
 from tactcad.parts.overload import overloads
 from tactcad.parts.rules import refuse_broken
 from tactcad.parts.stop_gap import seat
+from tactcad.scenes.requirement import variable
 
 UNITS = np.array([1e3, 1e4, 1e4])  # um and tenths of a milliradian, so that all numbers are near one
 SHIPPED = ("macro-array", "soft-tissue", "double-sample", "smallest-bearing")

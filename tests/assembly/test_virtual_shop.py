@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tactcad.assembly.variables import DimensionLimits, variable
 from tactcad.assembly.virtual_shop import OFFSET_SHARE, made
+from tactcad.scenes.requirement import DimensionLimits, variable
 
 WIDE = {
     "a": variable("a", -0.02, 0.01, 6),

@@ -205,7 +205,7 @@ def test_the_peers_know_nothing_of_tactcad():
 def test_baseline_and_export_write_the_same_number_of_solids(tmp_path):
     from tactcad.bench import arrays
     from tactcad.bench.export_times import PLAIN_SCRIPT
-    from tactcad.scenes.array import array
+    from tactcad.scenes.rigs.array import array
 
     run = measured(python(str(PLAIN_SCRIPT), "10", str(tmp_path / "plain")))
     scene = array(arrays.of(10))

@@ -17,7 +17,7 @@ from random_designs import raw_table
 from variants import variant
 
 from tactcad.checks.check_report import Report, as_record
-from tactcad.checks.rigidity import check_rigidity
+from tactcad.checks.rigidity import check_rigidity, deflections
 from tactcad.design.load import from_table, names
 from tactcad.design.messages import InputError
 from tactcad.parts import seating
@@ -27,9 +27,9 @@ from tactcad.parts.library.screws import seating_force
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rules import broken_rules
 from tactcad.parts.stiffness_remedy import remedy
-from tactcad.parts.stiffness_table import deflections
 from tactcad.parts.stop_give import carrier_beam, carrier_opens
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.rig import all_rigs
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "rigs.md"
 RIGS = ("array", "calibration", "sample-stiffness", "grasping", "bonding")
@@ -84,7 +84,7 @@ def test_what_is_thin_or_loaded_is_found(changes, wrong):
 )
 def test_what_is_said_to_help_helps_and_less_does_not(changes, scene, path, words):
     line = next(s for s in deflections(variant(changes), [scene]) if s.too_much)
-    named, value, legal = remedy(variant(changes), line)
+    named, value, legal = remedy(variant(changes), line, all_rigs()[scene].deflections)
     assert (named, value) == (path, attrgetter(path)(variant(changes)))
     said = re.fullmatch(rf"{words} ([\d.]+)( mm| degree)?", legal)
     enough = type(value)(said[1])
@@ -96,13 +96,19 @@ def test_what_is_said_to_help_helps_and_less_does_not(changes, scene, path, word
 def test_what_no_field_helps_says_so():
     line = next(s for s in deflections(load("macro-array"), ["array"]) if s.part == "end plate")
     stuck = replace(line, fields=("clamp.carrier_margin",), gives=line.allowed * 2)
-    assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck)[2].startswith("no value alone")
+    assert remedy(variant({"tolerance.pad_height": 0.0001}), stuck, all_rigs()["array"].deflections)[
+        2
+    ].startswith("no value alone")
 
 
 def test_what_helps_is_looked_for_where_no_stop_would_help_too():
     """A row of 500: the whole range of the overload force is tried, up to where no gap protects the hinge."""
     design = variant({"array.row_arms": [[4] * 500] * 2})
-    said = [remedy(design, line) for line in deflections(design, ["array"]) if line.too_much]
+    said = [
+        remedy(design, line, all_rigs()["array"].deflections)
+        for line in deflections(design, ["array"])
+        if line.too_much
+    ]
     assert said and all(
         path.split(".")[0] in ("clamp", "rating", "element", "tolerance") for path, _, _ in said
     )

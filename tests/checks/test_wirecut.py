@@ -168,7 +168,7 @@ def test_corner_and_slot_rules_are_what_the_wires_path_says(slot, radius):
 def test_the_shipped_designs_can_be_cut():
     from tactcad.design.load import names
     from tactcad.parts.designs import load
-    from tactcad.scenes.array import array
+    from tactcad.scenes.rigs.array import array
 
     for name in names():
         for made in array(load(name)).parts:

@@ -120,6 +120,7 @@ for _name, _function in list(globals().items()):
 def findings() -> Iterator[Mutant]:
     for path in [
         *sorted((SOURCE / "tactcad" / "checks").glob("*.py")),
+        *sorted((SOURCE / "tactcad" / "scenes").glob("*.py")),  # rigs' own checks
         SOURCE / "tactcad" / "export" / "golden_file.py",
     ]:
         module = path.relative_to(SOURCE / "tactcad").as_posix()
@@ -172,7 +173,7 @@ def rules() -> Iterator[Mutant]:
     for path in sorted((SOURCE / "tactcad").glob("*/**/*.py")):
         module = path.relative_to(SOURCE / "tactcad").as_posix()
         for function in _functions(ast.parse(path.read_text(encoding="utf-8"))):
-            if any(ast.unparse(d).startswith(("rule(", "fits(")) for d in function.decorator_list):
+            if any(re.match(r"rule\(|fits$", ast.unparse(d)) for d in function.decorator_list):
                 name = function.name
                 yield Mutant("rule", module, name, lambda tree, name=name: _silent(tree, name))
 

@@ -18,10 +18,10 @@ def test_every_check_is_in_the_table():
     assert not mutants.unknown_gates()
 
     from tactcad.parts.rules import design_rules
-    from tactcad.scenes import NEEDS, fitting_rules
+    from tactcad.scenes.rig import all_rigs
 
     in_table = {m.name for m in every if m.kind == "rule"}
-    assert in_table == {*design_rules(), *(name for scene in NEEDS for name in fitting_rules(scene))}
+    assert in_table == {*design_rules(), *(r.name for rig in all_rigs().values() for r in rig.rules)}
     modules = {m.module for m in every if m.kind == "finding"}
     for path in (mutants.SOURCE / "tactcad" / "checks").glob("*.py"):
         text = path.read_text(encoding="utf-8")

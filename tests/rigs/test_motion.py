@@ -115,7 +115,7 @@ def test_a_pressed_element_meets_the_stop_only_beyond_its_gap():
     from tactcad.parts.deflected import deflected_element
     from tactcad.parts.layout import Layout
     from tactcad.parts.stop_gap import stop_gap
-    from tactcad.scenes.array import array
+    from tactcad.scenes.rigs.array import array
 
     design = load("macro-array")
     layout = Layout(design)

@@ -11,7 +11,8 @@ from tactcad.design.messages import InputError
 from tactcad.parts.designs import load
 from tactcad.parts.layout import Layout
 from tactcad.parts.rules import broken_rules, design_rules
-from tactcad.scenes import NEEDS, chosen_scenes, fitting_rules, left_out, scene_names
+from tactcad.scenes import chosen_scenes, left_out, scene_names
+from tactcad.scenes.rig import all_rigs
 
 WITNESSES = {
     "axles_fit_plate": {"cart.clearance": 3.0},
@@ -67,7 +68,7 @@ MISFITS = {
 def test_there_is_a_witness_for_every_rule():
     of_rigs = ("cart_rules", "holder_rules", "calibration_rules", "grasping_rules")
     assert set(WITNESSES) == {n for n, r in design_rules().items() if r.find.__module__.endswith(of_rigs)}
-    assert set(MISFITS) == {name for scene in NEEDS for name in fitting_rules(scene)}
+    assert set(MISFITS) == {r.name for rig in all_rigs().values() for r in rig.rules}
 
 
 @pytest.mark.parametrize("rule", WITNESSES)
@@ -83,9 +84,9 @@ def test_a_design_that_breaks_it_is_refused(rule):
 def test_an_array_that_does_not_fit_costs_the_scene_and_says_why(rule):
     scene, changes = MISFITS[rule]
     design = variant(changes)
-    assert fitting_rules(scene)[rule](Layout(design))
+    assert next(r for r in all_rigs()[scene].rules if r.name == rule)(Layout(design))
     assert scene not in scene_names(design)
-    assert any(line.startswith(f"scene {scene} left out: rule ") for line in left_out(design))
+    assert any(str(left).startswith(f"scene {scene} left out: rule ") for left in left_out(design))
     with pytest.raises(InputError, match="left out"):
         chosen_scenes(design, [scene])
     assert "array" in chosen_scenes(design, None)

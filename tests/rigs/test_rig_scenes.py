@@ -11,7 +11,6 @@ from math import cos, hypot, sin
 import pytest
 from variants import variant
 
-from tactcad.checks.calibration_travel import check_calibration
 from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
@@ -28,6 +27,7 @@ from tactcad.parts.rigs.frame import pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
 from tactcad.scenes import make_scene, scene_names
 from tactcad.scenes.poses import pose_of, poses
+from tactcad.scenes.rigs.calibration import check_travel
 from tactcad.scenes.scene import Pose, Scene
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
@@ -238,7 +238,7 @@ def test_the_calibration_has_no_stop_plate_and_the_array_s_guide_says_when_it_co
     ],
 )
 def test_a_calibration_beyond_the_rated_deflection_is_seen(changes, severity):
-    found = check_calibration(variant(changes))
+    found = check_travel(variant(changes), None)
     assert (found == []) is (severity is None)
     assert not found or found[0].severity == severity
     for f in found:
@@ -376,6 +376,6 @@ def test_an_array_beyond_the_estimator_still_has_a_calibration():
         }
     )
     assert all(one.refused for one in calibration_loads(odd))
-    assert check_calibration(odd) == []
+    assert check_travel(odd, None) == []
     assert {p.deflection for p in poses(odd, "calibration")} == {odd.calibration.travel}
     assert "yield" not in make_scene(odd, "calibration").steps[-1].text

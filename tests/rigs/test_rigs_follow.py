@@ -23,8 +23,9 @@ from tactcad.parts.rigs.frame import POST_Y, pad_middles
 from tactcad.parts.rigs.guide_layout import guide_layout
 from tactcad.parts.rigs.stage_choice import calibration_stage
 from tactcad.parts.rules import broken_rules
-from tactcad.scenes import NEEDS, left_out, make_scene, scene_names
+from tactcad.scenes import left_out, make_scene, scene_names
 from tactcad.scenes.moving_axis import ballast_range, moving_weight
+from tactcad.scenes.rig import all_rigs
 
 ARMS = ((4, 7, 6, 8, 6), (8, 5, 4, 5, 7))
 LINE = re.compile(r"scene ([\w-]+) left out: rule \w+: .+ \((\S+) = (.+); legal: (.+)\)")
@@ -45,10 +46,10 @@ def test_every_rig_is_there_or_a_line_names_the_field(count, sheet):
     design = array(count, sheet)
     broken = [b for b in broken_rules(design) if b.part.split(".")[0] in ("cart", "holder", "sample")]
     assert broken == []  # what follows the array breaks no rule of its own
-    there, lines = scene_names(design), left_out(design)
+    there, lines = scene_names(design), [str(left) for left in left_out(design)]
     said = [LINE.fullmatch(line) for line in lines]
     assert all(said), lines
-    assert sorted([*there, *(m[1] for m in said)]) == sorted(NEEDS)
+    assert sorted([*there, *(m[1] for m in said)]) == sorted(all_rigs())
     for m in said:
         assert m[2] in paths(design) and m[3] and m[4]
     assert not [f for f in check_rigidity(design, there, []) if f.severity == "fail"]
@@ -62,13 +63,13 @@ def test_how_many_have_which_rig():
         reach = (n - 1) * (t + 1.0) / 2
         fits = any(reach <= s.travel and s.size / 2 + reach <= POST_Y - 0.5 for s in STAGES)
         assert ("calibration" in scenes) == fits, (n, t)
-    assert set(NEEDS) == set(there[7, 3]) == set(there[5, 5])
+    assert set(all_rigs()) == set(there[7, 3]) == set(there[5, 5])
 
 
 @pytest.mark.parametrize("count, sheet", [(10, 3), (7, 5), (12, 6)])
 def test_what_the_line_says_would_do_does(count, sheet):
     for scene in ("calibration", "grasping"):
-        line = next((x for x in left_out(array(count, sheet)) if x.startswith(f"scene {scene} ")), None)
+        line = next((str(x) for x in left_out(array(count, sheet)) if x.scene == scene), None)
         if line is None:
             continue
         path, most = re.search(r"\((array\.row_arms) = \d+; legal: at most (\d+) elements", line).groups()
@@ -117,8 +118,8 @@ def test_what_the_design_says_stays():
 
 def test_a_stage_s_travel_is_at_least_what_the_design_asks_for():
     assert calibration_stage(Layout(variant({"calibration.stage_travel": 20.0}))).travel == 25.0
-    (line,) = left_out(variant({"calibration.stage_travel": 26.0}))
-    assert "calibration.stage_travel = 26.0; legal: at most 25 mm" in line
+    (left,) = left_out(variant({"calibration.stage_travel": 26.0}))
+    assert "calibration.stage_travel = 26.0; legal: at most 25 mm" in str(left)
     assert calibration_stage(Layout(variant({"calibration.stage_travel": DROP}))) == STAGES[0]
 
 

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from variants import DROP, IN_SLOT, variant
 
-from tactcad.assembly.bonding_requirements import PLACE_ON_HINGE
 from tactcad.assembly.virtual_build import sensor
 from tactcad.checks.goes_together import check_assembly
 from tactcad.checks.interference import check_interference
@@ -25,6 +24,7 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.rigs.bonding_layout import bonding_rigs
 from tactcad.parts.rules import broken_rules
 from tactcad.scenes import left_out, make_scene, scene_names
+from tactcad.scenes.bonding_requirements import PLACE_ON_HINGE
 from tactcad.solids.build import build
 from tactcad.solids.measure import measure
 
@@ -168,7 +168,7 @@ def test_hinges_of_other_sizes_have_a_fixture_in_which_nothing_overlaps(hinge):
     ],
 )
 def test_where_no_fixture_can_be_had_one_line_names_the_field(changes, field):
-    (line,) = left_out(variant({**ALONE, **changes}))
+    (line,) = map(str, left_out(variant({**ALONE, **changes})))
     assert line.startswith("scene bonding left out: rule ") and f"({field}" in line and "legal: " in line
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
 
-from .variables import Array
+from tactcad.mechanics.section import Array
 
 BLOCK = 2000  # rows of one program: below that a call's own cost, above it the solver's growth, tells
 

@@ -14,24 +14,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tactcad.mechanics import ladder, strain
-from tactcad.mechanics.section import HingeSection
+from tactcad.mechanics.section import Array, HingeSection
 from tactcad.mechanics.stop import back_share, stress_share, tip_compliance
+from tactcad.parts.element import PAD_HEIGHT
 from tactcad.parts.end_plate import SQUARE, lean
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.stop_gap import stop_gap
+from tactcad.scenes.requirement import Deviations, DimensionLimits
 
 from .contacts import nearest_pose, resting_plane
-from .variables import Array, Deviations
+from .variables import IN_PLAY, MODULUS, SHEET
 
 CUT = 100.0  # stress over yield strength, at most; chosen: whatever is beyond it is gone
+PAD = f"element: {PAD_HEIGHT}"
 # Variables of elements, by the field of HingeSection that each sets.
 HINGE = {
     "element: hinge thickness": "hinge_thickness",
     "element: slot length": "hinge_length",
     "element: fillet radius": "fillet_radius",
     "element: arm height": "arm_height",
-    "sheet: thickness": "width",
+    SHEET: "width",
 }
 
 
@@ -46,13 +49,13 @@ class Assembled:
     layout: Layout
     made: Deviations
 
-    def with_new(self, name: str, deviations: Array) -> Assembled:
+    def with_new(self, of: DimensionLimits, deviations: Array) -> Assembled:
         """The same arrays with other parts in one dimension; contacts that it does not enter are not solved
         anew."""
-        changed = Assembled(self.layout, {**self.made, name: deviations})
-        if not name.startswith(UNDER_THE_PADS):
+        changed = Assembled(self.layout, {**self.made, of.name: deviations})
+        if of.matters != "pads":
             changed.__dict__["pose"] = self.pose
-            if not name.startswith(UNDER_THE_PLATE):
+            if of.matters != "plate":
                 changed.__dict__["plate"] = self.plate
         return changed
 
@@ -191,7 +194,7 @@ class Assembled:
     @cached_property
     def tips(self) -> Array:
         """How far each tip is off along x, away from the middle, mm."""
-        place = self.made["element: place in its dowel hole's play, share"] * self.play / 2
+        place = self.made[IN_PLAY] * self.play / 2
         return self.side * self._pin_at_elements("x") + place - self.made["element: tip from dowel hole"]
 
     @property
@@ -245,7 +248,7 @@ class Assembled:
         zero = np.zeros(1)  # a full round has no fillet of its own
         changed = {f: getattr(drawn, f) + m.get(name, zero) for name, f in HINGE.items()}
         arm = m["element: arm length"] - m["element: pad length"] / 2
-        modulus = drawn.youngs_modulus * (1.0 + m["sheet: Young's modulus, relative"])
+        modulus = drawn.youngs_modulus * (1.0 + m[MODULUS])
         # nor does a fillet reach higher than the arm
         deep = (changed["arm_height"] - changed["hinge_thickness"]) / drawn.notch_sides
         full = np.minimum(np.minimum(changed["fillet_radius"], changed["hinge_length"] / 2), deep)
@@ -280,9 +283,3 @@ class Assembled:
             stress = strain.stress_beyond_the_fit(s, np.maximum(forwards, backwards))
         share = stress / d.material.yield_strength
         return np.where(share < CUT, share, CUT)  # not a number where there is no hinge
-
-
-PAD = "element: pad height over the dowel hole's centre"
-# First words of what enters the pose on the surface plate, and of what enters the stop plate's beside.
-UNDER_THE_PADS = (PAD, "element: dowel hole", "dowel pin", "end plates: dowel", "end plate, tapped: dowel")
-UNDER_THE_PLATE = ("element: ledge", "blank: ledge")

@@ -16,14 +16,13 @@ from tactcad.parts.library.fits import deviations, general
 from tactcad.parts.library.screws import METRIC
 from tactcad.parts.plate import PLACE
 from tactcad.parts.stop_gap import stop_limit
+from tactcad.scenes.requirement import LEAST_PRESS, DimensionLimits, Requirement, summed, variable
+from tactcad.scenes.rig import all_rigs
 from tactcad.scenes.scene import Scene
 
-from .bonding_requirements import bonding_requirements
-from .requirement import LEAST_PRESS, Requirement, summed
-from .rig_requirements import rig_requirements
 from .screw_patterns import patterns
 from .screwed_joints import LENGTH, ScrewedJoint, joints, screwed, thickness
-from .variables import STACK_LENGTH, DimensionLimits, array_variables, variable
+from .variables import STACK_LENGTH, array_variables
 
 # Least engaged thread at any limits, in diameters: the torques of data/screws.csv are half of what the screw
 # bears, for which 1.5 d of aluminium are usual; bought parts have threads in steel.
@@ -38,7 +37,9 @@ def requirements(
     """Requirements on an array, on the screwed joints of its scenes and on its rigs, and the variables they
     depend on."""
     known, name = array_variables(layout), layout.design.name
-    wanted = _array_requirements(layout, known) + rig_requirements(layout.design, scenes, known)
+    wanted = _array_requirements(layout, known)
+    of_rigs, apart = _rig_requirements(layout, scenes, known)
+    wanted += of_rigs
     entered: dict[tuple, Requirement] = {}
     seen: dict[tuple, ScrewedJoint] = {}
     for scene in scenes:
@@ -52,9 +53,30 @@ def requirements(
     for joint in seen.values():
         which = f", {joint.engaged:g} mm engaged" if names[joint.name] > 1 else ""
         wanted += _joint_requirements(joint, f"{joint.name}{which}")
-    if any(scene.name == "bonding" for scene in scenes):
-        wanted += bonding_requirements(layout, known)
-    return known, wanted
+    known |= apart[0]
+    return known, wanted + apart[1]
+
+
+Of = tuple[dict[str, DimensionLimits], list[Requirement]]
+
+
+def _rig_requirements(
+    layout: Layout, scenes: Sequence[Scene], known: dict[str, DimensionLimits]
+) -> tuple[list[Requirement], Of]:
+    """Requirements of the rigs that these scenes show, each once; apart, with their variables, those of rigs
+    that no array depends on. Backwards through the rigs: the order in which stack.csv has always been."""
+    wanted: dict[str, Requirement] = {}
+    apart: Of = ({}, [])
+    for rig in reversed([all_rigs()[scene.name] for scene in scenes]):
+        own: dict[str, DimensionLimits] = {}
+        of_rig = rig.requirements(layout, own)
+        if own and all(v.apart for v in own.values()):
+            apart[0].update(own)
+            apart[1].extend(of_rig)
+        else:
+            wanted |= {r.name: r for r in of_rig}
+            known |= own
+    return list(wanted.values()), apart
 
 
 def _array_requirements(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:

@@ -17,11 +17,10 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.library.fits import general
 from tactcad.parts.library.screws import METRIC
+from tactcad.scenes.requirement import DimensionLimits, Requirement, summed, variable
 from tactcad.scenes.scene import Placement
 
-from .requirement import Requirement, summed
 from .screwed_joints import STACKED, Screwed, is_stacked, short
-from .variables import DimensionLimits, variable
 
 # Zone of the holes of bought parts, mm; chosen: their makers' drawings were not read, which is to be done
 # before ordering (docs/rigs.md).
@@ -77,5 +76,5 @@ def _places(who: str, part: Part, hole: Hole, known: dict[str, DimensionLimits])
     zone = g.zone if g else BOUGHT
     name = f"{who}: places of {g.name if g else 'holes'}"
     of = ((part.part_no, g.name),) if g and not name.startswith("element") else ()
-    known.setdefault(name, variable(name, -zone / 2, zone / 2, 2, of))
+    known.setdefault(name, variable(name, -zone / 2, zone / 2, 2, of, "joint"))
     return name

@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tactcad.mechanics.section import Array
 from tactcad.parts.description import Extrusion, Hole, Part
 from tactcad.parts.library.fits import deviations, general
+from tactcad.scenes.requirement import DimensionLimits, variable
 from tactcad.scenes.scene import Placement, Scene
 from tactcad.scenes.threads import COAXIAL, engaged, thread_range
 
-from .variables import STACK_LENGTH, Array, DimensionLimits, variable
+from .variables import STACK_LENGTH
 
 CAP_SCREW = re.compile(r"ISO4762-(M[\d.]+)x([\d.]+)-")
 # What is stacked between the end plates: its length is held as a whole.
@@ -199,7 +201,7 @@ def _holes(part: Part) -> Iterator[Hole]:
 
 
 def _known(known: dict[str, DimensionLimits], v: DimensionLimits) -> str:
-    known.setdefault(v.name, v)
+    known.setdefault(v.name, replace(v, matters="joint"))
     return v.name
 
 

@@ -10,11 +10,11 @@ from math import isfinite
 
 import numpy as np
 
+from tactcad.mechanics.section import Array
 from tactcad.parts.layout import Layout
+from tactcad.scenes.requirement import Deviations, DimensionLimits, Requirement
 
 from .mechanic import Assembled
-from .requirements import Requirement
-from .variables import Array, Deviations, DimensionLimits
 from .virtual_shop import made
 
 HEAD = ("requirement", "unit", "lower", "upper", "nominal", "worst_low", "worst_high", "sigma", "yield")
@@ -117,8 +117,10 @@ def _behind_contacts(
     seen = {r.name: _at(r.value(corners), instance[r.name]) for r in wanted}
     some = Assembled(layout, {name: v[:EFFECTS] for name, v in corners.made.items()})
     effect: dict[str, dict[str, float]] = {r.name: {} for r in wanted}
-    for name in (v for v in variables if v.startswith(OF_THE_ARRAY)):
-        changed = some.with_new(name, anew[name][:EFFECTS])
+    for name, v in variables.items():
+        if v.matters == "joint":
+            continue
+        changed = some.with_new(v, anew[name][:EFFECTS])
         for r in wanted:
             moved = _at(r.value(changed), instance[r.name]) - seen[r.name][:EFFECTS]
             effect[r.name][name] = float((moved**2).mean() / 2)
@@ -142,21 +144,6 @@ def _behind_contacts(
             _kept(r, r.value(built)),
             _ranked(effect[r.name]),
         )
-
-
-# First words of the variables that may matter to contacts; those of screwed joints do not.
-OF_THE_ARRAY = (
-    "element:",
-    "sheet:",
-    "blank:",
-    "spacer:",
-    "dowel",
-    "end plate",
-    "stop plate:",
-    "axle",
-    "wheel:",
-    "bonding",
-)
 
 
 def _at(value: Array, instance: int) -> Array:

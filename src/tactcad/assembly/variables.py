@@ -3,54 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tactcad.design.present import present
 from tactcad.parts.blank import blank
 from tactcad.parts.description import Part
-from tactcad.parts.element import element
+from tactcad.parts.element import DOWEL_HOLE, LEDGE, PAD_HEIGHT, element
 from tactcad.parts.end_plate import end_plate
 from tactcad.parts.fasteners import STACK
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.spacer import spacer
 from tactcad.parts.stop_plate import stop_plate
+from tactcad.scenes.requirement import DimensionLimits, Matters, variable
 
 # The stack's length once its spacers are chosen to the measured sheet.
 STACK_LENGTH = "stack: length, spacers to suit"
-Array = NDArray[np.float64]
-Deviations = dict[str, Array]  # by variable: (arrays built, pieces) deviations from nominal
-
-
-@dataclass(frozen=True)
-class DimensionLimits:
-    """One dimension of all pieces of a kind.
-
-    name          part and dimension, as stack and findings call it
-    lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
-    stated        part number and limit that it is of; empty where it is of elements, or general
-    apart         of no array: drawn by chance of its own, so that an array is the same with and without it
-    """
-
-    name: str
-    lower: Array
-    upper: Array
-    stated: tuple[tuple[str, str], ...] = ()
-    apart: bool = False
-
-    @property
-    def pieces(self) -> int:
-        return len(self.lower)
-
-
-def variable(
-    name: str, lower: float, upper: float, pieces: int = 1, stated: tuple[tuple[str, str], ...] = ()
-) -> DimensionLimits:
-    """A variable with the same limits for all its pieces."""
-    return DimensionLimits(name, np.full(pieces, lower), np.full(pieces, upper), stated)
+IN_PLAY, SHEET, MODULUS = (
+    "element: place in its dowel hole's play, share",
+    "sheet: thickness",
+    "sheet: Young's modulus, relative",
+)
+# What an element's limits matter to, by the limit; the others matter to neither contact.
+OF_ELEMENT: dict[str, Matters] = {PAD_HEIGHT: "pads", DOWEL_HOLE: "pads", LEDGE: "plate"}
 
 
 def array_variables(layout: Layout) -> dict[str, DimensionLimits]:
@@ -69,38 +45,39 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     for name in dict.fromkeys(name for each in kinds.values() for name in each):
         own = [each.get(name, (0.0, 0.0)) for each in limits]
         if name == "sheet thickness":
-            yield variable("sheet: thickness", *own[0])
+            yield variable(SHEET, *own[0])
         else:
-            yield DimensionLimits(
-                f"element: {name}", np.array([low for low, _ in own]), np.array([up for _, up in own])
-            )
-    yield variable("element: place in its dowel hole's play, share", -1.0, 1.0, len(places))
+            lower, upper = np.array(own).T
+            matters = OF_ELEMENT.get(name, "neither")
+            yield DimensionLimits(f"element: {name}", lower, upper, element=name, matters=matters)
+    yield variable(IN_PLAY, -1.0, 1.0, len(places))
     modulus = present(d.tolerance.youngs_modulus)
-    yield variable("sheet: Young's modulus, relative", -modulus, modulus)
+    yield variable(MODULUS, -modulus, modulus)
     if layout.blanks():
-        yield _zone("blank: ledge over the dowel hole", "ledge", len(layout.blanks()), blank(layout))
+        yield _zone("blank: ledge over the dowel hole", "ledge", len(layout.blanks()), "plate", blank(layout))
     yield _characteristic("spacer", spacer(layout), "thickness")
     yield variable(STACK_LENGTH, -STACK, STACK)
     pins = 2 * len(layout.dowel_x)
-    low, high = dowel_limits(d.clamp.dowel)
-    yield variable("dowel pin: diameter", low - float(d.clamp.dowel), high - float(d.clamp.dowel), pins)
+    low, high = (limit - float(d.clamp.dowel) for limit in dowel_limits(d.clamp.dowel))
+    yield variable("dowel pin: diameter", low, high, pins, matters="pads")
     pair = (end_plate(layout, False), end_plate(layout, True))
     for which, part in zip(("tapped", "head"), pair):
         name = f"end plate, {which}"
+        on: Matters = "pads" if which == "tapped" else "neither"
         if (
             part is pair[0]
         ):  # the pair is made together: what it shares lies in one zone, its difference in another
             for axis in "xz":
-                yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, *pair)
+                yield _zone(f"end plates: dowel holes along {axis}", "dowel holes", pins, "pads", *pair)
                 square = f"{name}: dowel holes' squareness along {axis}"
-                yield _zone(square, "dowel holes' squareness", pins, part)
+                yield _zone(square, "dowel holes' squareness", pins, "pads", part)
         for axis in "xz":
             against = f"{name}: dowel holes against the pair's along {axis}"
-            yield _zone(against, "dowel holes of the pair", pins, part)
+            yield _zone(against, "dowel holes of the pair", pins, on, part)
         bore = next(c for c in part.characteristics if c.name == "dowel hole diameter")
         size = float(d.clamp.dowel)  # pin and hole are both counted from it
         of = ((part.part_no, bore.name),)
-        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of)
+        yield variable(f"{name}: dowel hole diameter", bore.lower - size, bore.upper - size, pins, of, on)
     plate = stop_plate(layout)
     flat = next(g for g in plate.geometric if g.name == "flatness")
     of = ((plate.part_no, flat.name),)
@@ -108,10 +85,10 @@ def _array(layout: Layout) -> Iterable[DimensionLimits]:
     yield _characteristic("stop plate", plate, "thickness")
 
 
-def _zone(name: str, limit: str, pieces: int, *parts: Part) -> DimensionLimits:
+def _zone(name: str, limit: str, pieces: int, matters: Matters, *parts: Part) -> DimensionLimits:
     """Deviations within a zone that every one of these parts states."""
     half = next(g.zone for g in parts[0].geometric if g.name == limit) / 2
-    return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts))
+    return variable(name, -half, half, pieces, tuple((p.part_no, limit) for p in parts), matters)
 
 
 def _characteristic(who: str, part: Part, name: str, pieces: int = 1) -> DimensionLimits:

@@ -11,14 +11,15 @@ import numpy as np
 
 from tactcad.design.load import paths
 from tactcad.design.tree import Design
+from tactcad.mechanics.section import Array
 from tactcad.parts.layout import Layout
 from tactcad.scenes import make_scene, scene_names
+from tactcad.scenes.requirement import DimensionLimits, Requirement
 from tactcad.scenes.scene import Scene
 
 from .mechanic import Assembled
-from .requirements import Requirement, requirements
+from .requirements import requirements
 from .stack import ROUNDING, SEED, StackLine, stack
-from .variables import Array, DimensionLimits
 from .virtual_shop import Distribution, made
 from .yield_interval import of_share
 

@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from .variables import Array, Deviations, DimensionLimits
+from tactcad.mechanics.section import Array
+from tactcad.scenes.requirement import Deviations, DimensionLimits
 
 Distribution = Literal["normal", "uniform", "corners"]
 # Limits stand at two standard deviations, and what lies beyond them is sorted out.

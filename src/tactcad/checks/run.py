@@ -18,7 +18,6 @@ from tactcad.solids.build import SolidError, build
 from tactcad.solids.meshing import USUAL, Meshing
 
 from .brep import check_brep, check_step
-from .calibration_travel import check_calibration
 from .check_report import Report
 from .clearance import check_clearance
 from .goes_together import check_assembly
@@ -27,8 +26,7 @@ from .interference import check_interference
 from .machining import MACHINED, check_machining
 from .mesh import check_mesh
 from .motion import check_motions
-from .moving_weight import check_moving_weight
-from .rigidity import check_rigidity
+from .rigidity import check_rigidity, check_rigs
 from .shop import DEFAULT, load_shop
 from .signals import check_signals
 from .tools import check_tools
@@ -73,11 +71,10 @@ def run_checks(
     report.run("strength", check_strength, design)
     report.run("clearance", check_clearance, design)
     report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
-    if "calibration" in scene_names:
-        report.run("calibration travel", check_calibration, design)
+    scenes = [make_scene(design, name) for name in scene_names]
+    check_rigs(report, design, scenes)
     report.run("circuit", check_circuit, design)
     report.run("signals", check_signals, design)
-    scenes = [make_scene(design, name) for name in scene_names]
     report.run("assembly", check_assembly, design, scenes)
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
@@ -106,8 +103,6 @@ def run_checks(
         if scene.motions:
             _add_envelopes(scene.parts, shapes, envelopes)
             report.run("motion", check_motions, scene, shapes, envelopes)
-        if scene.name == "grasping":
-            report.run("moving weight", check_moving_weight, design, scene)
         for pose in poses(design, scene.name):
             posed = make_scene(design, scene.name, pose)
             for part in posed.parts:
@@ -121,7 +116,7 @@ def run_checks(
 
 def _left_out(design: Design, severity: Severity = "flag") -> list[Finding]:
     """A rig that cannot take this array is flagged with the reason."""
-    return [Finding("scene", severity, design.name, (), 0, 0, line) for line in left_out(design)]
+    return [Finding("scene", severity, design.name, (), 0, 0, str(left)) for left in left_out(design)]
 
 
 def _add_envelopes(

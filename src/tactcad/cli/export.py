@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
         picked = pick(export_grades(design, scenes, args.drawings, args.guide), asked, VOLUME)
         options = replace(options, meshing=meshing_of(picked.grade))
     done = export(design, options, out, say, args.others)
-    missing = [] if args.scene else left_out(design)
+    missing = [] if args.scene else [str(left) for left in left_out(design)]
     for line in missing:
         say.line(f"warning: {line}")
     if args.json:

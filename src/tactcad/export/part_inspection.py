@@ -9,10 +9,10 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 
 from tactcad.assembly.stack import StackLine
-from tactcad.assembly.variables import DimensionLimits
 from tactcad.design.tree import Design
 from tactcad.parts.description import Part
 from tactcad.parts.limits import FACES, Characteristic, Geometric
+from tactcad.scenes.requirement import DimensionLimits
 
 from .inspection import UNIT
 

@@ -78,6 +78,7 @@ def screw_places(*datums: str) -> Geometric:
 ARM_SHARE, PAD_SHARE = 0.8, 0.4
 PAD_HEIGHT = "pad height over the dowel hole's centre"
 LEDGE = "ledge over the pad face"
+DOWEL_HOLE = "dowel hole diameter"
 
 
 def _limits(
@@ -129,7 +130,7 @@ def dowel_hole_limits(design: Design) -> Characteristic:
     """Slide-fit dowel hole of elements, blanks and spacers, mm."""
     h = design.holes
     low, high = h.dowel_hole, round(h.dowel_hole + h.dowel_hole_upper, 9)
-    return Characteristic("dowel hole diameter", low, high, low, between=("dowel_hole",))
+    return Characteristic(DOWEL_HOLE, low, high, low, between=("dowel_hole",))
 
 
 def _tip_to_dowel(layout: Layout) -> float:

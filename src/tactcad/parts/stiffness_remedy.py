@@ -1,7 +1,8 @@
-"""Which field to change where a part gives way too much, and to which value."""
+"""Which field to change where a part gives way too much, and to which value; the rule that refuses it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from math import ceil, floor, log10
 from operator import attrgetter
@@ -11,14 +12,25 @@ from tactcad.design.fields import Number, Whole
 from tactcad.design.load import SECTION_TYPES
 from tactcad.design.tree import Design
 
-from .stiffness_table import Deflection, deflections
+from .finding import Finding
+from .layout import Layout
+from .rules.rule import wrong
+from .stiffness_table import Deflection, Lines
 
 STEPS = 40  # halvings of a field's range
 V = TypeVar("V", int, float)
 
 
-def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
-    """The first field that by itself brings a deflection below what is allowed.
+def too_much(layout: Layout, lines: Lines) -> Iterator[Finding]:
+    """What a rig's rule refuses of its stiffness table; lines that are only flagged refuse nothing."""
+    for line in lines(layout.design):
+        if line.too_much and line.severity == "fail":
+            path, value, legal = remedy(layout.design, line, lines)
+            yield wrong(path, str(line), value, legal)
+
+
+def remedy(design: Design, line: Deflection, lines: Lines) -> tuple[str, object, str]:
+    """The first field that by itself brings a deflection, one of `lines`, below what is allowed.
 
     Returns
     -------
@@ -28,11 +40,11 @@ def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
     for path in line.fields:
         value, spec = attrgetter(path)(design), _spec(path)
         for end, words in ((spec.high, "at least"), (spec.low, "at most")):
-            if _helps(design, line, path, end):
+            if _helps(design, line, lines, path, end):
                 return (
                     path,
                     value,
-                    f"{words} {_nearest(design, line, path, value, end):.10g} {spec.unit}".rstrip(),
+                    f"{words} {_nearest(design, line, lines, path, value, end):.10g} {spec.unit}".rstrip(),
                 )
     path = line.fields[0]
     return (
@@ -42,7 +54,7 @@ def remedy(design: Design, line: Deflection) -> tuple[str, object, str]:
     )
 
 
-def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
+def _nearest(design: Design, line: Deflection, lines: Lines, path: str, far: V, near: V) -> V:
     """The value nearest to `far` (which does not suffice) that still suffices, as `near` does; whole, or of
     four digits.
     """
@@ -51,7 +63,7 @@ def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
         middle = (good + bad) // 2 if isinstance(far, int) else (good + bad) / 2
         if middle in (good, bad):
             break
-        good, bad = (middle, bad) if _helps(design, line, path, middle) else (good, middle)
+        good, bad = (middle, bad) if _helps(design, line, lines, path, middle) else (good, middle)
     if isinstance(far, int) or good == 0.0:
         return good
     digit = 10.0 ** (floor(log10(abs(good))) - 3)
@@ -59,10 +71,10 @@ def _nearest(design: Design, line: Deflection, path: str, far: V, near: V) -> V:
     return min(away, near) if near > far else max(away, near)
 
 
-def _helps(design: Design, line: Deflection, path: str, value: float) -> bool:
+def _helps(design: Design, line: Deflection, lines: Lines, path: str, value: float) -> bool:
     section, name = path.split(".")
     changed = replace(design, **{section: replace(getattr(design, section), **{name: value})})
-    same = (d for d in deflections(changed, [line.scene]) if (d.part, d.model) == (line.part, line.model))
+    same = (d for d in lines(changed) if (d.part, d.model) == (line.part, line.model))
     return not next(same).too_much
 
 

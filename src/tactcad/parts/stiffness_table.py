@@ -7,7 +7,7 @@ otherwise; real parts mostly bend less. Bought parts are left out: their makers 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from tactcad.design.tree import Design
@@ -61,26 +61,8 @@ class Deflection:
         )
 
 
-def deflections(design: Design, scenes: Collection[str]) -> tuple[Deflection, ...]:
-    """The stiffness table of a design.
-
-    Parameters
-    ----------
-    design
-        Must keep its rules.
-    scenes
-        Names of the scenes whose lines are wanted; the design must have them.
-    """
-    from .rigs.stiffness import bonding_lines, calibration_lines, grasping_lines, sample_lines
-
-    lines = {
-        "array": array_lines,
-        "calibration": calibration_lines,
-        "sample-stiffness": sample_lines,
-        "grasping": grasping_lines,
-        "bonding": bonding_lines,
-    }
-    return tuple(line for scene, of in lines.items() if scene in scenes for line in of(design))
+# A scene's part of the stiffness table; the design must keep its rules.
+Lines = Callable[[Design], Iterator[Deflection]]
 
 
 def pads_plane(design: Design) -> tuple[float, str]:

@@ -6,12 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from tactcad.assembly.stack import StackLine
-from tactcad.assembly.variables import DimensionLimits
 from tactcad.parts.description import Extrusion, Part, Vector
 from tactcad.parts.limits import Characteristic
 from tactcad.parts.surface_pieces import Piece, pieces
-
-OF_ELEMENTS = "element: "  # what the names of the elements' variables begin with
+from tactcad.scenes.requirement import DimensionLimits
 
 
 @dataclass(frozen=True)
@@ -138,12 +136,11 @@ def _feature(name: str, piece: Piece) -> FeatureFact:
     return FeatureFact(name, kind, piece.point, piece.direction, piece.diameter, piece.middle)
 
 
-def _of_element(name: str, part: Part) -> tuple[tuple[str, str], ...]:
+def _of_element(v: DimensionLimits, part: Part) -> tuple[tuple[str, str], ...]:
     """The limit of an element that a variable is of: it names no part, being the same of every length."""
     is_element = {"pad_face", "stop_land"} <= part.feature_names
-    own = name.removeprefix(OF_ELEMENTS)
-    found = is_element and own != name and own in {c.name for c in part.characteristics}
-    return ((part.part_no, own),) if found else ()
+    found = is_element and v.element in {c.name for c in part.characteristics}
+    return ((part.part_no, v.element),) if found else ()
 
 
 def _shares(
@@ -154,7 +151,7 @@ def _shares(
     for line in lines:
         limits: dict[str, float] = {}
         for c in line.contributors:
-            for number, name in (*variables[c.name].stated, *_of_element(c.name, part)):
+            for number, name in (*variables[c.name].stated, *_of_element(variables[c.name], part)):
                 if number == part.part_no:
                     limits[name] = max(limits.get(name, 0.0), c.share)
         if limits:

@@ -11,7 +11,7 @@ from tactcad.drawing.guide import exploded
 from tactcad.parts.description import Vector, vector
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
-from tactcad.scenes.poses import under_sensor
+from tactcad.scenes.rig import all_rigs
 from tactcad.scenes.scene import Motion, Pose, Rotation, Scene
 
 
@@ -83,7 +83,7 @@ def scene_facts(design: Design, scene: Scene) -> SceneFacts:
         placed,
         tuple((step.title, step.text) for step in scene.steps),
         tuple(_motion(m, groups) for m in scene.motions),
-        tuple(_pose(design, scene, pose) for pose in under_sensor(design, scene.name)),
+        tuple(_pose(design, scene, pose) for pose in all_rigs()[scene.name].under_sensor(design)),
         tuple(sorted(scene.cover)),
         tuple(asdict(row) for row in bom_rows(scene, design.design.revision, {})),
     )

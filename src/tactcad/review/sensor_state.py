@@ -11,14 +11,12 @@ from functools import cached_property
 from typing import Any
 
 from tactcad.assembly.virtual_build import LEAST_YIELD, sensor
-from tactcad.checks.calibration_travel import check_calibration
 from tactcad.checks.check_report import Report
 from tactcad.checks.clearance import check_clearance
 from tactcad.checks.goes_together import COUNT
 from tactcad.checks.hinge_strength import check_strength
 from tactcad.checks.machining import MACHINED, check_machining
-from tactcad.checks.moving_weight import check_moving_weight
-from tactcad.checks.rigidity import check_rigidity
+from tactcad.checks.rigidity import check_rigidity, check_rigs
 from tactcad.checks.shop import DEFAULT, Shop, load_shop
 from tactcad.checks.wirecut import check_wirecut
 from tactcad.design.messages import CheckFailure
@@ -162,16 +160,12 @@ class Reviewed:
         report.run("strength", check_strength, design)
         report.run("clearance", check_clearance, design)
         report.run("rigidity", check_rigidity, design, names, [])
-        if "calibration" in names:
-            report.run("calibration travel", check_calibration, design)
-        for scene in self.scenes:
-            if scene.name == "grasping":
-                report.run("moving weight", check_moving_weight, design, scene)
+        check_rigs(report, design, self.scenes)
         shop = load_shop(DEFAULT)
         of_parts = [f for part in self.parts.values() for f in self._about(part, shop)]
         missing = [
-            Finding("scene", "flag", scene, (), 0, 0, why)
-            for scene, why in (line.split(": ", 1) for line in left_out(design))
+            Finding("scene", "flag", f"scene {left.scene} left out", (), 0, 0, left.reason)
+            for left in left_out(design)
         ]
         return [*report.findings, *of_parts, *missing]
 

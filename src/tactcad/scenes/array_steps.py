@@ -11,7 +11,8 @@ from tactcad.parts.fasteners import SPACER_TOLERANCE, Clamping, clamping, dowel_
 from tactcad.parts.fasteners import STACK as STACK_TOLERANCE
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
-from tactcad.parts.rules import misfit
+from tactcad.parts.rules.bonding_rules import FITS as BONDING_FITS
+from tactcad.parts.rules.rule import misfit
 
 from .scene import Placement, Step
 
@@ -105,7 +106,7 @@ def _gauges(layout: Layout) -> str:
     d = layout.design
     thinnest = min(place.hinge.t for place in layout.elements)
     face = "each flat face" if d.element.sides == "one" else "the floor of each slot on the pads' side"
-    bonded = d.bonding is not None and misfit(layout, "bonding") is None
+    bonded = d.bonding is not None and misfit(layout, BONDING_FITS) is None
     how = (
         f"Bond a gauge on {face} in the bonding fixture, by the guide of scene bonding, and check it as that "
         "says; lay its leads in the wire recess towards the rear end."

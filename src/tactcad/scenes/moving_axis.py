@@ -23,8 +23,8 @@ from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
 from tactcad.parts.rigs.platform import PLATFORM_UNDER_HEAD
 from tactcad.parts.rules.rule import fits, wrong
 
-from .array import array, without_gaps
 from .builder import Builder
+from .rigs.array import array, without_gaps
 from .scene import ALONG_Y, UPRIGHT, Rotation, Scene
 
 ALONG_RAIL: Rotation = ((-1, 0, 0), (0, -1, 0), (0, 0, 1))  # carriage: local y out of the rail, z along it
@@ -111,7 +111,7 @@ def ballast_range(rig: GuideLayout) -> tuple[float, float]:
     return (heavy + longest + LEAST_BALLAST * grams) * NEWTON, most * NEWTON
 
 
-@fits("grasping")
+@fits
 def ballast_trims_moving_weight(layout: Layout) -> Iterator[Finding]:
     guide = guide_layout(layout.design)
     if guide is None or carrier_screw(layout) is None or layout.hold_down.length is None:

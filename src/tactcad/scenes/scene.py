@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import floor
 from typing import Literal
 
 from tactcad.parts.description import Part, Vector, vector
@@ -103,6 +104,11 @@ class Pose:
 
 
 REST = Pose()
+
+
+def whole_um(mm: float) -> float:
+    """A length cut to whole micrometres."""
+    return floor(mm * 1e3 + 1e-6) / 1e3
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactcad.assembly.mechanic import Assembled
+from tactcad.assembly.variables import IN_PLAY, MODULUS, SHEET
 from tactcad.assembly.virtual_shop import SIGMAS, made
 from tactcad.lab.pads import INCOMPRESSIBLE, places
 from tactcad.mechanics.sample_coupling import shares_between
@@ -27,7 +28,6 @@ COUNT = 2048
 RESAMPLED = 100  # bootstrap samples for the shares' standard errors
 SLIGHT = 0.05  # of a half-space's coupling, the most that is drawn; chosen: pads well apart on thin tissue
 LEAST = 5e-4  # shares below are not listed
-OF_ELEMENTS = ("element: ", "sheet: ")
 READINGS, CONTACT, CALIBRATION, GAUGES, INSPECTION, CELL, COUPLING, LAYER, CLAMP, PADS = (
     "noise of readings",
     "contact's place along the arm",
@@ -63,8 +63,8 @@ def half_space_shares(sensor: MadeSensor) -> Array:
 def variance_shares(sensor: MadeSensor, count: int = COUNT, seed: int = SEED) -> list[Share]:
     """Every cause that matters, largest first, at the middle of the object's range."""
     rng = np.random.default_rng(seed)
-    variables = {k: v for k, v in sensor.parts.variables.items() if k.startswith(OF_ELEMENTS)}
     others = sensor.parts.variables
+    variables = {k: v for k, v in others.items() if v.element or k in (IN_PLAY, SHEET, MODULUS)}
     n = len(sensor.drawn.stiffness)
 
     def draw() -> dict[str, Array]:
@@ -107,7 +107,7 @@ def _estimator(sensor: MadeSensor, rest: dict[str, Array]) -> Callable[[dict[str
     ones = np.ones(1)
 
     def estimate(causes: dict[str, Array]) -> Array:
-        parts = {k: v for k, v in causes.items() if k.startswith(OF_ELEMENTS)}
+        parts = {k: v for k, v in causes.items() if k in rest}
         section = Assembled(sensor.layout, {**rest, **parts}).section
         true = as_made(section, sensor.design, causes[LAYER], causes[CLAMP])
         known = sensor.known(true)

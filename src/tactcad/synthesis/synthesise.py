@@ -12,7 +12,7 @@ import numpy as np
 from tactcad.design.tree import Design
 from tactcad.lab import array_estimate
 from tactcad.mechanics.section import Array
-from tactcad.scenes import left_out
+from tactcad.scenes import LeftOut, left_out
 
 from . import relax
 from .alternatives import Alternative, LeastChange, Limit
@@ -103,8 +103,8 @@ class Synthesis:
         return MadeSensor(self.target, self.target.base).cannot_bear
 
     @cached_property
-    def scenes_left_out(self) -> list[str]:
-        """Why rigs of the base design do not take the chosen array, one line for each."""
+    def scenes_left_out(self) -> list[LeftOut]:
+        """Rigs of the base design that do not take the chosen array."""
         return left_out(self.found.design) if self.found.accepted else []
 
     @property

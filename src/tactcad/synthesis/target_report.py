@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from tactcad.paper.plots import BLACK, BLUE, GREY, ORANGE, SKY, log_ticks, panels, series, svg
 from tactcad.parts.layout import Layout
+from tactcad.scenes.rigs.calibration import RIG as CALIBRATION
 
 from .interval import LEVEL
 from .realise import dealt
@@ -110,10 +111,13 @@ def _beyond(got: Synthesis) -> dict[str, float]:
 def _notes(got: Synthesis) -> list[str]:
     """What the design does not say of itself."""
     notes = []
-    for line in got.scenes_left_out:
-        if line.startswith("scene calibration ") and got.target.known.how == "calibrated":
-            line = f"its elements count as calibrated, but not on the rig of this design; {line}"
-        notes.append(line)
+    for left in got.scenes_left_out:
+        unlike = left.scene == CALIBRATION.name and got.target.known.how == "calibrated"
+        notes.append(
+            f"its elements count as calibrated, but not on the rig of this design; {left}"
+            if unlike
+            else str(left)
+        )
     if got.met and got.target.target.half_width is None and got.wanted > USEFUL:
         notes.append(
             f"an interval of {percent(got.wanted)} either way is no useful sensor: allow more force, more "

@@ -2,12 +2,13 @@
 anything is made.
 
 In: a layout. Out: findings, each with the field to look at and what is legal. A field's own range is tried
-when the file is read, these after. A rule is a function with `@rule` above it; `@fits` says that a rig takes
-this array.
+when the file is read, these after. A rule is a function with `@rule` above it in any file of this folder;
+`@fits` marks one that an array keeps for a rig to take it, and the rig's declaration lists it.
 """
 
 from __future__ import annotations
 
+import pkgutil
 from importlib import import_module
 
 from tactcad.design.messages import InputError
@@ -19,9 +20,8 @@ from .readout_blame import blamed
 from .rule import Rule
 
 READOUT = ("readout_rules",)
-# Files in the order in which their rules are tried. Those of the rigs load no numpy: which scenes a design
-# has is known without.
-ARRAY = (
+# The order in which files are tried where it matters; any other file of this folder follows by name.
+FIRST = (
     "element_rules",
     "gauge_rules",
     "stop_rules",
@@ -29,25 +29,17 @@ ARRAY = (
     "pressed_rules",
     "slot_gauge_rules",
     *READOUT,
-)
-RIGS = (
     "cart_rules",
     "holder_rules",
     "calibration_rules",
-    "grasping_rules",
-    "bonding_rules",
-    "stiffness_rules",
 )
 
 
 def design_rules() -> dict[str, Rule]:
     """Every rule that a design must keep, by name, in the order in which they are tried."""
-    return {name: r for name, r in _rules(ARRAY + RIGS).items() if not r.scenes}
-
-
-def scene_rules(scene: str) -> dict[str, Rule]:
-    """Rules that the array must keep for that scene's rig to take it."""
-    return {name: r for name, r in _rules(RIGS).items() if scene in r.scenes}
+    found = sorted(name for _, name, _ in pkgutil.iter_modules(__path__) if name.endswith("_rules"))
+    every = dict.fromkeys((*FIRST, *found))
+    return {name: r for name, r in _rules(tuple(every)).items() if not r.fit}
 
 
 def _rules(subjects: tuple[str, ...]) -> dict[str, Rule]:
@@ -85,8 +77,3 @@ def refuse_broken(design: Design) -> None:
             value=first.value,
             legal=str(first.limit),
         )
-
-
-def misfit(layout: Layout, scene: str) -> Finding | None:
-    """Why the scene's rig cannot take this array; None where it can."""
-    return next((finding for rule in scene_rules(scene).values() for finding in rule(layout)), None)

@@ -9,6 +9,8 @@ from ..layout import LEAST_GAP, Layout
 from ..lead_route import AHEAD_OF_LEADS
 from ..library.dowels import LEAST_PLAY
 from ..rigs.bonding_layout import EDGE, GUIDED, LEAST_TONGUE, ROOT, SILL, TONGUE, bonding_rigs
+from ..rigs.stiffness import bonding_lines
+from ..stiffness_remedy import too_much
 from .rule import at_least, at_most, fits, wrong
 
 TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
@@ -17,7 +19,7 @@ TALLEST = 60.0  # clamp bar, mm; chosen: a taller one topples where its pins end
 BENT_BY_CLAMP = 0.1
 
 
-@fits("bonding")
+@fits
 def tongue_enters_slot(layout: Layout) -> Iterator[Finding]:
     for rig in bonding_rigs(layout.design):
         less = layout.design.tolerance.hinge_length + TONGUE + LEAST_PLAY
@@ -37,7 +39,7 @@ def tongue_enters_slot(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def nest_clears_rear_body(layout: Layout) -> Iterator[Finding]:
     for rig in bonding_rigs(layout.design):
         e = layout.design.element
@@ -50,7 +52,7 @@ def nest_clears_rear_body(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def rear_body_takes_pins(layout: Layout) -> Iterator[Finding]:
     """Two pairs of pins beside the element, apart enough for the clamp not to turn on them."""
     for rig in bonding_rigs(layout.design):
@@ -65,7 +67,7 @@ def rear_body_takes_pins(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def clamp_balances_on_leaf(layout: Layout) -> Iterator[Finding]:
     """The clamp's weight acts over the tongue or behind it: else the element tips off its rest."""
     for rig in bonding_rigs(layout.design):
@@ -87,7 +89,7 @@ def clamp_balances_on_leaf(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def clamp_can_be_handled(layout: Layout) -> Iterator[Finding]:
     for rig in bonding_rigs(layout.design):
         pressure = rig.table.pressure
@@ -100,7 +102,7 @@ def clamp_can_be_handled(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def leaf_bears_clamp(layout: Layout) -> Iterator[Finding]:
     """The clamp's pressure ahead of the hinge bends a leaf that is not backed: 6 M/(b t^2), M = p w a^2/2."""
     d = layout.design
@@ -120,7 +122,7 @@ def leaf_bears_clamp(layout: Layout) -> Iterator[Finding]:
             yield wrong("gauge.carrier_arm_side", what, arm_side, legal)
 
 
-@fits("bonding")
+@fits
 def glue_lies_under_foil(layout: Layout) -> Iterator[Finding]:
     b = layout.design.bonding
     if b is not None:
@@ -132,7 +134,7 @@ def glue_lies_under_foil(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("bonding")
+@fits
 def terminals_lie_in_recess(layout: Layout) -> Iterator[Finding]:
     """Solder terminals on the floor of the wire recess, behind its wall."""
     for rig in bonding_rigs(layout.design):
@@ -146,3 +148,22 @@ def terminals_lie_in_recess(layout: Layout) -> Iterator[Finding]:
             rig.terminal_width,
             layout.design.sheet.thickness,
         )
+
+
+@fits
+def tongue_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from too_much(layout, bonding_lines)
+
+
+# What the bonding fixture asks of an array.
+FITS = (
+    tongue_enters_slot,
+    nest_clears_rear_body,
+    rear_body_takes_pins,
+    clamp_balances_on_leaf,
+    clamp_can_be_handled,
+    leaf_bears_clamp,
+    glue_lies_under_foil,
+    terminals_lie_in_recess,
+    tongue_stays_straight,
+)

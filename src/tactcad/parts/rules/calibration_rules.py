@@ -25,8 +25,9 @@ from ..rigs.stage_choice import (
     most_elements,
 )
 from ..rigs.stand_layout import StandLayout
-from . import misfit
-from .rule import at_least, at_most, fits, rule, wrong
+from ..rigs.stiffness import calibration_lines
+from ..stiffness_remedy import too_much
+from .rule import at_least, at_most, fits, misfit, rule, wrong
 
 ROLLER_OUT = 0.1  # mm that the roller's holder keeps from pads beside the one that is pressed; chosen
 
@@ -49,7 +50,7 @@ def axis_reaches_contact(layout: Layout) -> Iterator[Finding]:
 def calibration_bends_elastically(layout: Layout) -> Iterator[Finding]:
     """No hinge yields at the end of the travel: in this set-up there is no stop plate."""
     c = layout.design.calibration
-    if c is None or misfit(layout, "calibration") is not None:
+    if c is None or misfit(layout, FITS) is not None:
         return
     for load in calibration_loads(layout.design):
         if c.travel > load.travel_at_yield:  # not where the estimator does not reach
@@ -66,7 +67,7 @@ def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
     """High pads of short arms swing sideways: at the end of the travel the roller still stands on every
     pad."""
     c = layout.design.calibration
-    if c is None or misfit(layout, "calibration") is not None:
+    if c is None or misfit(layout, FITS) is not None:
         return
     roller = dowel_diameter(c.roller) / 2
     for load in calibration_loads(layout.design):
@@ -81,7 +82,7 @@ def roller_stays_on_pad(layout: Layout) -> Iterator[Finding]:
             )
 
 
-@fits("calibration")
+@fits
 def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
     travel = present(layout.design.calibration).stage_travel
     yield from at_most(
@@ -96,7 +97,7 @@ def stages_reach_pads(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("calibration")
+@fits
 def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     if not faults_of(calibration_stage(layout), layout):
         return
@@ -111,7 +112,7 @@ def mount_clears_carrier(layout: Layout) -> Iterator[Finding]:
     )
 
 
-@fits("calibration", "grasping")
+@fits
 def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
     c = layout.design.clamp
     under = under_carrier_screw(layout.design)
@@ -138,7 +139,7 @@ def carrier_screws_fit(layout: Layout) -> Iterator[Finding]:
         )
 
 
-@fits("calibration")
+@fits
 def mount_holes_apart(layout: Layout) -> Iterator[Finding]:
     hole = calibration_stage(layout).hole
     yield from carrier_threads_clear(layout, hole, hole, "the stage's screws in the array mount")
@@ -158,7 +159,7 @@ def carrier_threads_clear(layout: Layout, x: float, y: float, what: str) -> Iter
         )
 
 
-@fits("calibration")
+@fits
 def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     d, size = layout.design, present(layout.design.calibration).roller
     length = next((n for n in dowel_lengths(size) if n >= d.sheet.thickness), None)
@@ -180,3 +181,19 @@ def roller_clears_neighbours(layout: Layout) -> Iterator[Finding]:
     )
     if out > d.array.row_pitch - d.element.pad_length / 2 - 0.1:
         yield wrong("calibration.roller", "roller touches the facing pad", size, "a thinner one")
+
+
+@fits
+def calibration_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from too_much(layout, calibration_lines)
+
+
+# What the calibration asks of an array.
+FITS = (
+    stages_reach_pads,
+    mount_clears_carrier,
+    carrier_screws_fit,
+    mount_holes_apart,
+    roller_clears_neighbours,
+    calibration_stays_straight,
+)

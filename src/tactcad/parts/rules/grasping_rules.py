@@ -10,8 +10,11 @@ from ..library.screws import counterbore_diameter
 from ..rigs.bar import BAR_SCREW_X
 from ..rigs.frame import BAR, BAR_FRONT, BAR_WIDTH, CARRIAGE_LENGTH, RAIL_HEIGHT
 from ..rigs.guide_layout import guide_layout
-from .calibration_rules import carrier_threads_clear
+from ..rigs.stiffness import grasping_lines, sample_lines
+from ..stiffness_remedy import too_much
+from .calibration_rules import carrier_screws_fit, carrier_threads_clear
 from .cart_rules import LEAST_AIR
+from .holder_rules import pads_on_sample
 from .rule import at_most, fits, rule, wrong
 
 
@@ -24,7 +27,7 @@ def weights_clear_guide(layout: Layout) -> Iterator[Finding]:
     yield from at_most("grasping.weight_diameter", "weights rub on the guide", g.weight_diameter, most)
 
 
-@fits("grasping")
+@fits
 def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
     clamp = layout.design.clamp
     head = counterbore_diameter(clamp.mount_thread) / 2
@@ -36,7 +39,7 @@ def bar_clears_screws(layout: Layout) -> Iterator[Finding]:
         yield wrong("clamp.mount_pitch_y", what, clamp.mount_pitch_y, f"at most {most:g} mm")
 
 
-@fits("grasping")
+@fits
 def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
     rig = guide_layout(layout.design)
     if rig is not None:
@@ -44,7 +47,7 @@ def foot_holes_apart(layout: Layout) -> Iterator[Finding]:
         yield from carrier_threads_clear(layout, BAR_SCREW_X, rig.bar_middle, what)
 
 
-@fits("grasping")
+@fits
 def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     rig = guide_layout(layout.design)
     if rig is None:
@@ -60,3 +63,25 @@ def rail_is_long_enough(layout: Layout) -> Iterator[Finding]:
     if top < g.lift - SAME or bottom < 1.0:
         what = f"carriage can rise {top:.3g} mm and fall {bottom:.3g} mm"
         yield wrong(path, what, length, f"rise at least {g.lift:g}, fall at least 1 mm")
+
+
+@fits
+def guide_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from too_much(layout, grasping_lines)
+
+
+@fits
+def sample_stand_stays_straight(layout: Layout) -> Iterator[Finding]:
+    yield from too_much(layout, sample_lines)
+
+
+# What the vertical guide asks of an array, and what the stand asks for the sample's stiffness.
+FITS = (
+    pads_on_sample,
+    carrier_screws_fit,
+    bar_clears_screws,
+    foot_holes_apart,
+    rail_is_long_enough,
+    guide_stays_straight,
+)
+SAMPLE_FITS = (sample_stand_stays_straight,)

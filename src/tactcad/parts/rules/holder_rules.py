@@ -128,7 +128,7 @@ def tip_land_clears_sample(layout: Layout) -> Iterator[Finding]:
         yield from at_most("sample.travel", what, s.travel, min(TIP_LAND, s.thickness / 2))
 
 
-@fits("grasping")
+@fits
 def pads_on_sample(layout: Layout) -> Iterator[Finding]:
     d = layout.design
     half_pad, half_sheet = d.element.pad_length / 2, d.sheet.thickness / 2

@@ -12,8 +12,8 @@ from ..finding import SAME, Finding
 from ..layout import ElementPlace, Layout
 from ..rigs.calibration_loads import calibration_loads
 from ..stop_gap import seat, stop_gap
-from . import misfit
-from .rule import rule, wrong
+from .calibration_rules import FITS as CALIBRATION_FITS
+from .rule import misfit, rule, wrong
 
 
 def turns(layout: Layout) -> list[float]:
@@ -26,7 +26,7 @@ def turns(layout: Layout) -> list[float]:
     gives = layout.stop_give * design.rating.overload_force
     wider = design.stop.tolerance + seat(layout)
     tips = [stop_gap(layout, p) + wider + gives * p.load_arm / p.arm for p in layout.elements]
-    if design.calibration is not None and misfit(layout, "calibration") is None:
+    if design.calibration is not None and misfit(layout, CALIBRATION_FITS) is None:
         for n, load in enumerate(calibration_loads(design)):
             pad = design.calibration.travel if load.refused else load.deflection
             tips[n] = max(tips[n], pad * load.place.arm / load.place.load_arm)

@@ -16,14 +16,13 @@ class Rule:
     """A function from a layout to findings, the most important first.
 
     after   name of an earlier rule: this one is tried only where that one and all before it are kept, because
-    it
-            would only repeat their findings, or could not be computed
-    scenes  scenes whose rig needs it: a design that breaks it loses these scenes and is not refused
+            it would only repeat their findings, or could not be computed
+    fit     a rig needs it to take the array: a design that breaks it loses the rig's scene and is not refused
     """
 
     find: Find
     after: str = ""
-    scenes: tuple[str, ...] = ()
+    fit: bool = False
 
     @property
     def name(self) -> str:
@@ -40,9 +39,15 @@ def rule(after: str = "") -> Callable[[Find], Rule]:
     return lambda find: Rule(find, after)
 
 
-def fits(*scenes: str) -> Callable[[Find], Rule]:
-    """Makes a function a rule that an array must keep to have these scenes."""
-    return lambda find: Rule(find, scenes=scenes)
+def fits(find: Find) -> Rule:
+    """Makes a function a rule that an array must keep for a rig to take it; the rig's declaration names it
+    (scenes/rig.py)."""
+    return Rule(find, fit=True)
+
+
+def misfit(layout: Layout, rules: Iterable[Rule]) -> Finding | None:
+    """The first finding of a rig's rules: why it cannot take this array; None if it can."""
+    return next((finding for rule in rules for finding in rule(layout)), None)
 
 
 def wrong(path: str, what: str, value: object, legal: str) -> Finding:

@@ -19,9 +19,10 @@ from tactcad.parts.fasteners import carrier_screw, clamping
 from tactcad.parts.layout import Layout
 from tactcad.parts.library import dowels, screws
 from tactcad.parts.spacer import spacer
+from tactcad.parts.stiffness_table import array_lines
 from tactcad.parts.stop_plate import stop_plate
 
-from .array_steps import (
+from ..array_steps import (
     CARRIER,
     COPLANAR,
     FIRST_PLATE,
@@ -32,8 +33,9 @@ from .array_steps import (
     array_steps,
     first_on_first,
 )
-from .builder import Builder
-from .scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Scene
+from ..builder import Builder
+from ..rig import ARRAY, Rig, none
+from ..scene import AGAINST_Y, ALONG_Y, DOWN, UPRIGHT, Scene
 
 # Local contour plane (x, y) laid into the scene's (x, z) plane, thickness along y: row one's arms
 # run along +x, row two is row one turned by half a turn about z.
@@ -174,3 +176,16 @@ def _stop_plate(b: Builder, layout: Layout, on_ledge: list[str]) -> None:
         name = b.place("SS", screw, (x, y, layout.stop_plate_top + length), DOWN, HOLD_DOWN)
         b.meet(name, plate)
         b.meet(name, "CA1", "thread")
+
+
+RIG = Rig(
+    name=ARRAY,
+    tables=(),
+    make=lambda design, _pose: array(design),
+    poses=none,
+    under_sensor=none,
+    rules=(),
+    deflections=array_lines,
+    requirements=lambda _layout, _known: [],  # the sensor's own: assembly/requirements.py
+    checks=(),
+)

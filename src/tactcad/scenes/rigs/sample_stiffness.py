@@ -6,17 +6,21 @@ from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts.rigs.cart_layout import cart_layout
 from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.stiffness import sample_lines
+from tactcad.parts.rules.grasping_rules import SAMPLE_FITS
 
-from .builder import Builder
-from .common import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
-from .scene import REST, Motion, Pose, Scene
+from ..builder import Builder
+from ..common import AXIS_LIFT, JAM_SPANNER, place_cart, place_force_axis, place_stand
+from ..rig import Rig, none
+from ..rig_requirements import wheels
+from ..scene import REST, Motion, Pose, Scene
 
 
 def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
     """Scene `sample-stiffness`: tip on the middle of the sample, pose.deflection mm into it or pose.height
     over it."""
     rig, cart = StandLayout(design), cart_layout(design)
-    assert cart is not None, "scenes/__init__.NEEDS has its tables"
+    assert cart is not None, "RIG has its tables"
     b = Builder()
     s, gauge = present(design.sample), present(design.calibration)
     dents = ((-pose.cart, 0.0),) if pose.deflection else ()
@@ -44,3 +48,22 @@ def sample_stiffness(design: Design, pose: Pose = REST) -> Scene:
         ),
     )
     return b.scene("sample-stiffness", motions, cover=b.groups["axis"])
+
+
+def _poses(design: Design) -> tuple[Pose, ...]:
+    """The tip half and all the way into the sample; lifted, the cart half the way out."""
+    travel, roll = present(design.sample).travel, present(design.cart).roll
+    return (Pose(deflection=travel / 2), Pose(deflection=travel), Pose(cart=roll / 2, height=1.0))
+
+
+RIG = Rig(
+    name="sample-stiffness",
+    tables=("calibration", "sample", "cart", "holder"),
+    make=sample_stiffness,
+    poses=_poses,
+    under_sensor=none,
+    rules=SAMPLE_FITS,
+    deflections=sample_lines,
+    requirements=wheels,
+    checks=(),
+)

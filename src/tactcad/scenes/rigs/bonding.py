@@ -10,10 +10,13 @@ from tactcad.parts.element import element
 from tactcad.parts.layout import ElementPlace
 from tactcad.parts.library.dowels import dowel
 from tactcad.parts.rigs.bonding_layout import BASE, BondingLayout, bonding_rigs
+from tactcad.parts.rigs.stiffness import bonding_lines
+from tactcad.parts.rules.bonding_rules import FITS
 
-from . import bonding_text as text
-from .builder import Builder
-from .scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
+from ..bonding_requirements import bonding_requirements
+from ..builder import Builder
+from ..rig import Rig, none
+from ..scene import AGAINST_Y, REST, UPRIGHT, Placement, Pose, Rotation, Scene
 
 FACE_UP: Rotation = ((1, 0, 0), (0, 0, 1), (0, -1, 0))  # local y runs along -z, the thickness along +y
 BETWEEN = 20.0  # mm between the fixtures of several kinds of hinge; chosen: a hand's room
@@ -23,6 +26,9 @@ LIFTED = 40.0  # exploded view: what comes from above
 def bonding(design: Design, pose: Pose = REST) -> Scene:
     """Scene `bonding`: every kind of hinge in its fixture, the first element of that kind; it has no pose
     but rest."""
+    # loads numpy, which nothing needs that only asks which scenes there are
+    from .. import bonding_text as text
+
     stations = bonding_rigs(design)
     b = Builder()
     b.supplies += bonding_supplies()
@@ -78,3 +84,16 @@ def _pad(b: Builder, rig: BondingLayout, y: float) -> str:
 
 def _bar(b: Builder, rig: BondingLayout, y: float, pad: str) -> None:
     b.meet(pad, b.place("CB", rigs.bonding_clamp(rig), (0, y + rig.width / 2, rig.nose), AGAINST_Y))
+
+
+RIG = Rig(
+    name="bonding",
+    tables=("bonding",),
+    make=bonding,
+    poses=none,
+    under_sensor=none,
+    rules=FITS,
+    deflections=bonding_lines,
+    requirements=bonding_requirements,
+    checks=(),
+)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from math import floor
 
 from tactcad.design.messages import InputError
@@ -10,17 +10,19 @@ from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
 from tactcad.parts.deflected import deflected_element
+from tactcad.parts.element import element_number
+from tactcad.parts.finding import Finding, Severity
 from tactcad.parts.library.dowels import dowel_diameter
 from tactcad.parts.rigs.calibration_loads import calibration_loads
 from tactcad.parts.rigs.carrier_screws import carrier_pattern, carrier_screw_length, under_carrier_screw
 from tactcad.parts.rigs.frame import PLATE, pad_middles
 from tactcad.parts.rigs.stand_layout import StandLayout
-from tactcad.parts.rigs.stiffness import series_give
+from tactcad.parts.rigs.stiffness import calibration_lines, series_give
+from tactcad.parts.rules.calibration_rules import FITS
 
-from .array import array
-from .array_steps import flatness_tools
-from .builder import Builder
-from .common import (
+from ..array_steps import flatness_tools
+from ..builder import Builder
+from ..common import (
     AXIS_LIFT,
     CORNERS,
     JAM_SPANNER,
@@ -31,7 +33,10 @@ from .common import (
     place_force_axis,
     place_stand,
 )
-from .scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene
+from ..rig import Rig
+from ..rig_requirements import roller
+from ..scene import AGAINST_Y, DOWN, REST, Motion, Pose, Rotation, Scene, whole_um
+from .array import array
 
 BACK_DOWN: Rotation = DOWN  # half a turn about x: pads up
 OUT_OF_X: Rotation = ((0, 0, -1), (0, 1, 0), (1, 0, 0))  # local z runs along -x
@@ -221,3 +226,59 @@ def _motions(design: Design, pads: Iterable[tuple[float, float]], px: float, py:
             )
         )
     return tuple(ways)
+
+
+def check_travel(design: Design, _scene: Scene) -> list[Finding]:
+    """Fail where the travel makes a hinge yield, flag where it passes the rated deflection; each with the
+    travel that does not.
+
+    An element whose strength the estimator cannot compute is flagged by the strength check.
+    """
+    findings = []
+    travel = present(design.calibration).travel
+    for load in calibration_loads(design):
+        if load.refused or load.deflection <= load.rated_deflection:
+            continue
+        severity: Severity = "fail" if travel > load.travel_at_yield else "flag"
+        who = f"{load.place.designator} ({element_number(design, load.place)})"
+        message = (
+            f"{travel:g} mm of travel bend it by {load.deflection:.4g} mm, it is rated "
+            f"for {load.rated_deflection:.4g}: calibrate it to {load.travel_at_rated:.4g} mm of travel"
+        )
+        findings.append(
+            Finding(
+                "calibration",
+                severity,
+                who,
+                (load.place.hinge_x, load.place.hinge.t / 2),
+                load.deflection,
+                load.rated_deflection,
+                message,
+            )
+        )
+    return findings
+
+
+def _poses(design: Design) -> Iterator[Pose]:
+    """Every element under the sensor, deflected by its stage's whole travel: to a micrometre, which a check
+    can resolve; an element that the estimator refuses, as if it had no stiffness."""
+    travel = present(design.calibration).travel
+    for n, load in enumerate(calibration_loads(design), start=1):
+        yield Pose(element=n, deflection=whole_um(travel if load.refused else load.deflection))
+
+
+def _under_sensor(design: Design) -> Iterator[Pose]:
+    return (Pose(element=n) for n in range(1, sum(map(len, design.array.row_arms)) + 1))
+
+
+RIG = Rig(
+    name="calibration",
+    tables=("calibration",),
+    make=calibration,
+    poses=_poses,
+    under_sensor=_under_sensor,
+    rules=FITS,
+    deflections=calibration_lines,
+    requirements=roller,
+    checks=(("calibration travel", check_travel),),
+)

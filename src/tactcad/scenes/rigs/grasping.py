@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from tactcad.design.present import present
 from tactcad.design.tree import Design
 from tactcad.parts import rigs
+from tactcad.parts.finding import Finding
 from tactcad.parts.library.dowels import dowel
 from tactcad.parts.rigs.frame import POST_Y, RISER_PITCH, STAGE_HOLE, pad_middles
 from tactcad.parts.rigs.guide_layout import GuideLayout, guide_layout
@@ -21,17 +25,25 @@ from tactcad.parts.rigs.riser import (
     stop_below,
 )
 from tactcad.parts.rigs.stand_layout import StandLayout
+from tactcad.parts.rigs.stiffness import grasping_lines
+from tactcad.parts.rules.grasping_rules import FITS
 
-from .builder import Builder
-from .common import CORNERS, place_cart, place_stand
-from .moving_axis import place_axis
-from .scene import AGAINST_Y, ALONG_Y, REST, Motion, Pose, Scene
+from ..builder import Builder
+from ..common import CORNERS, place_cart, place_stand
+from ..moving_axis import ballast_trims_moving_weight, moving_weight, place_axis
+from ..rig import Rig, none
+from ..rig_requirements import wheels
+from ..scene import AGAINST_Y, ALONG_Y, REST, Motion, Pose, Scene, whole_um
+
+# Relative difference allowed between the parts' weight and the design's: the ballast is turned to weight
+# anyway.
+AGREES = 0.005
 
 
 def grasping(design: Design, pose: Pose = REST) -> Scene:
     """Scene `grasping`: pads on the sample (pose.deflection mm into it), or pose.height mm over it."""
     rig = guide_layout(design)
-    assert rig is not None, "scenes/__init__.NEEDS has its tables"
+    assert rig is not None, "RIG has its tables"
     g = rig.grasping
     weights = g.weights if pose.weights is None else pose.weights
     b = Builder()
@@ -115,3 +127,36 @@ def _guide(b: Builder, rig: GuideLayout, post: str, latched: bool) -> str:
         tools=("parallel, as long as the rail", "soft-faced hammer"),
     )
     return rail
+
+
+def check_moving_weight(design: Design, scene: Scene) -> list[Finding]:
+    """A finding where what moves is heavier than asked for (no ballast can mend that), or lighter."""
+    weight, wanted = moving_weight(scene), present(design.grasping).moving_weight
+    if abs(weight - wanted) <= AGREES * wanted:
+        return []
+    message = f"what moves weighs {weight:.4g} N by its parts, grasping.moving_weight asks for {wanted:.4g} N"
+    return [Finding("moving-weight", "fail", scene.name, (), weight, wanted, message)]
+
+
+def _poses(design: Design) -> Iterator[Pose]:
+    """Without weights; lifted; and the pads in the sample: by its travel, but no deeper than they stand out
+    of the arms' root fillets."""
+    yield Pose(weights=0)
+    yield Pose(height=present(design.grasping).lift, weights=0, cart=present(design.cart).roll)
+    e = design.element
+    deep = whole_um(min(present(design.sample).travel, e.pad_height - e.pad_root_radius))
+    if deep > 0:
+        yield Pose(deflection=deep)
+
+
+RIG = Rig(
+    name="grasping",
+    tables=("grasping", "sample", "cart", "holder"),
+    make=grasping,
+    poses=_poses,
+    under_sensor=none,
+    rules=(*FITS, ballast_trims_moving_weight),
+    deflections=grasping_lines,
+    requirements=wheels,
+    checks=(("moving weight", check_moving_weight),),
+)

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import inf
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from tactcad.design.present import present
-from tactcad.design.tree import Design
+from tactcad.parts.layout import Layout
 from tactcad.parts.library.bearings import BORE, OUTSIDE
 from tactcad.parts.library.dowels import LEAST_PLAY, dowel_limits
 from tactcad.parts.library.fits import deviations
 from tactcad.parts.rigs.cart_layout import LOOSE_WHEEL, cart_layout
 from tactcad.parts.rigs.cart_plate import AXLES, AXLES_OVER
 from tactcad.parts.rigs.roller_tip import SEAT, SEAT_RADIUS, seat_radius
-from tactcad.scenes.scene import Scene
 
-from .mechanic import Assembled
-from .requirement import Requirement, summed
-from .variables import Array, DimensionLimits, variable
+from .requirement import Built, DimensionLimits, Requirement, summed, variable
+
+if TYPE_CHECKING:
+    from tactcad.mechanics.section import Array
 
 AXLE_HEIGHT, WHEEL, BORES, SHANKS = (
     "axles: height over the cart's underside",
@@ -33,23 +31,12 @@ SHANK = "h13"
 # the seat is in the tip does not matter: the guide sets the roller by the pad's edge, after it is bonded.
 ROLLER_PLACE = 0.02
 # Wheels around the cart: the fourth stands off the plane of three by the alternating sum of their heights.
-AROUND = np.array([1.0, -1.0, 1.0, -1.0])
+AROUND = (1.0, -1.0, 1.0, -1.0)
 
 
-def rig_requirements(
-    design: Design, scenes: Sequence[Scene], known: dict[str, DimensionLimits]
-) -> list[Requirement]:
-    """Requirements on the rigs that these scenes show; adds the variables they depend on to `known`."""
-    shown = {scene.name for scene in scenes}
-    wanted = []
-    if shown & {"sample-stiffness", "grasping"}:
-        wanted.append(_wheels(design, known))
-    if "calibration" in shown:
-        wanted += _roller(design, known)
-    return wanted
-
-
-def _wheels(design: Design, known: dict[str, DimensionLimits]) -> Requirement:
+def wheels(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
+    """Of the cart: no wheel is loose. Adds the variables that it depends on to `known`."""
+    design = layout.design
     rig = present(cart_layout(design))
     plate = ((f"{design.name}-cart-plate", AXLES_OVER),)
     for name, (low, high), of in (
@@ -59,20 +46,24 @@ def _wheels(design: Design, known: dict[str, DimensionLimits]) -> Requirement:
         (SHANKS, deviations(SHANK, rig.bearing.d), ()),
     ):
         known[name] = variable(name, low, high, len(AROUND), of)
-    return Requirement("wheels touch", "mm", -inf, LOOSE_WHEEL, loose_wheel)
+    return [Requirement("wheels touch", "mm", -inf, LOOSE_WHEEL, loose_wheel)]
 
 
-def loose_wheel(a: Assembled) -> Array:
+def loose_wheel(a: Built) -> Array:
     """How far a wheel stands off the plane of the other three, axles tightened while the cart is pressed on a
     surface plate: each wheel gives way by half its play on the shank. A shank that would not enter is
     polished until it does."""
+    import numpy as np
+
     heights = a.made[AXLE_HEIGHT] - a.made[WHEEL] / 2
     play = np.maximum(a.made[BORES] - a.made[SHANKS], 0.0)
-    off = np.abs(heights @ AROUND) - play.sum(axis=1) / 2
+    off = np.abs(heights @ np.array(AROUND)) - play.sum(axis=1) / 2
     return np.maximum(off, 0.0)[:, np.newaxis]
 
 
-def _roller(design: Design, known: dict[str, DimensionLimits]) -> list[Requirement]:
+def roller(layout: Layout, known: dict[str, DimensionLimits]) -> list[Requirement]:
+    """Of the calibration's tip: the roller lies in its seat. Adds the variables to `known`."""
+    design = layout.design
     size, of = present(design.calibration).roller, ((f"{design.name}-tip-roller", SEAT_RADIUS),)
     seat, pin = "roller tip: seat radius", "roller: diameter"
     low, high = (limit - float(size) for limit in dowel_limits(size))

@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from tactcad.parts.end_plate import pressed
-from tactcad.parts.gauge_checks import allowed_places
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.dowels import dowel_limits
 from tactcad.parts.library.fits import general
@@ -17,9 +15,10 @@ from tactcad.parts.plate import PLACE
 from tactcad.parts.rigs.bonding_layout import PLAY, TIP, TONGUE, BondingLayout, bonding_rigs, kind_suffix
 from tactcad.parts.rigs.bonding_nest import TIP_OVER_REST, TONGUE_WIDTH
 
-from .mechanic import Assembled
-from .requirement import LEAST_PRESS, Requirement, summed
-from .variables import Array, DimensionLimits, variable
+from .requirement import LEAST_PRESS, Built, DimensionLimits, Requirement, summed, variable
+
+if TYPE_CHECKING:
+    from tactcad.mechanics.section import Array
 
 PLACE_ON_HINGE = "gauge lies on its hinge"
 SHARE, EYE = (
@@ -49,6 +48,10 @@ def _on_hinge(
     layout: Layout, rigs: Sequence[BondingLayout], known: dict[str, DimensionLimits]
 ) -> Requirement:
     """Each gauge within what bonding.signal_share lets it err along its hinge."""
+    import numpy as np
+
+    from tactcad.parts.gauge_checks import allowed_places
+
     places = layout.elements
     table = rigs[0].table
     nests = tuple((_nest(rig), TONGUE_WIDTH) for rig in rigs)
@@ -59,7 +62,7 @@ def _on_hinge(
     kind = np.array([next(i for i, rig in enumerate(rigs) if rig.hinge == p.hinge) for p in places])
     play = np.array([rig.play for rig in rigs])[kind]
 
-    def room(a: Assembled) -> Array:
+    def room(a: Built) -> Array:
         loose = play + a.made["element: slot length"] - a.made[TONGUE_][:, kind]
         return allowed - np.abs(a.made[SHARE] * loose / 2 + a.made[EYE])
 

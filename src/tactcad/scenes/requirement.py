@@ -1,0 +1,104 @@
+"""What must hold for parts to make a sensor, and the dimensions that it depends on.
+
+numpy is loaded when a limit or a value is made: which scenes a design has is known without.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+if TYPE_CHECKING:
+    from tactcad.mechanics.section import Array
+
+Deviations = dict[str, "Array"]  # by variable: (arrays built, pieces) deviations from nominal
+Matters = Literal["pads", "plate", "neither", "joint"]
+# Least interference of a pressed pin, mm; chosen: what a plug gauge tells from none.
+LEAST_PRESS = 0.002
+
+
+@dataclass(frozen=True)
+class DimensionLimits:
+    """One dimension of all pieces of a kind: a variable of virtual builds.
+
+    name          part and dimension, as stack and findings call it
+    lower, upper  deviations from nominal, of shape (pieces,); mm unless the name says otherwise
+    stated        part number and limit that it is of; empty where it is of elements, or general
+    apart         of no array: drawn by chance of its own, so that an array is the same with and without it
+    element       the limit of an element that it is; empty where it is of another part
+    matters       to what: to the pads on the surface plate and all that stands on them, to the stop plate on
+                  the ledges, to neither, or to a screwed joint alone
+    """
+
+    name: str
+    lower: Array
+    upper: Array
+    stated: tuple[tuple[str, str], ...] = ()
+    apart: bool = False
+    element: str = ""
+    matters: Matters = "neither"
+
+    @property
+    def pieces(self) -> int:
+        return len(self.lower)
+
+
+def variable(
+    name: str,
+    lower: float,
+    upper: float,
+    pieces: int = 1,
+    stated: tuple[tuple[str, str], ...] = (),
+    matters: Matters = "neither",
+) -> DimensionLimits:
+    """A variable with the same limits for all its pieces."""
+    import numpy as np
+
+    return DimensionLimits(name, np.full(pieces, lower), np.full(pieces, upper), stated, matters=matters)
+
+
+class Built(Protocol):
+    """Arrays whose parts were made."""
+
+    @property
+    def made(self) -> Deviations: ...
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """A requirement on every array.
+
+    name          what must hold
+    unit          of value and limits
+    lower, upper  limits, -inf or inf where there is none
+    value         (arrays, instances) of arrays that were put together
+    linear        where the value is a sum of deviations: the nominal value, and each variable's coefficient;
+                  such a value does not depend on the array's contacts
+    fields        of the design, to look at where it is missed
+    """
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    value: Callable[..., Array]
+    linear: tuple[float, tuple[tuple[str, float], ...]] | None = None
+    fields: tuple[str, ...] = ()
+
+    def margin(self, value: Array) -> Array:
+        """How far inside its limits a value is, in its unit; negative outside."""
+        import numpy as np
+
+        return np.minimum(value - self.lower, self.upper - value)
+
+
+def summed(
+    name: str, lower: float, upper: float, nominal: float, terms: tuple[tuple[str, float], ...]
+) -> Requirement:
+    """A requirement on a sum of deviations of all pieces, mm."""
+
+    def value(a: Built) -> Array:
+        return nominal + sum(c * a.made[v].sum(axis=1, keepdims=True) for v, c in terms)
+
+    return Requirement(name, "mm", lower, upper, value, (nominal, terms))

@@ -1,0 +1,1 @@
+"""The rigs: every module of this folder declares one, as its `RIG`."""
