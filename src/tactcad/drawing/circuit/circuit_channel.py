@@ -1,0 +1,207 @@
+"""One channel of the circuit in full: gauge and leads, bridge, switch, multiplexer, amplifier, connectors."""
+
+from __future__ import annotations
+
+from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
+from tactcad.circuit.netlist import GROUND, Component, Netlist
+from tactcad.parts.lead_route import COLOURS
+
+from ..engine.ink import Item, Point
+from ..engine.paper import A3
+from ..engine.title import Page, notes
+from . import circuit_symbols as symbols
+from .circuit_symbols import SMALL, label, line
+
+SUPPLIES = (POSITIVE, NEGATIVE, LOGIC)
+RAIL = 262.0  # mm on the paper: the bridges' supply
+RED, WHITE, MINUS, BLACK = 224.0, 210.0, 200.0, 176.0
+
+
+def channel_page(circuit: Netlist, says: list[str]) -> Page:
+    """The page of the first element's channel; `says` are its notes."""
+    gauge = next(circuit.of_kind("gauge"))
+    n, b = gauge.element, gauge.board
+    items = [
+        *_array_side(circuit, gauge),
+        *_bridge(circuit, n),
+        *_switching(circuit, n, b),
+        *_amplifier(circuit, b),
+        *_card(circuit, b),
+        *_capacitors(circuit, b),
+        *symbols.dashed(24.0, 150.0, 39.0, 92.0, f"on the array: E{n}"),
+        *symbols.dashed(82.0, 112.0, 318.0, 164.0, f"board {b}, channel 1"),
+        *notes((26.0, 100.0), says, 190.0)[0],
+    ]
+    return Page(A3, "", tuple(items), "Circuit diagram")
+
+
+def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
+    """The gauge, its terminals, its leads to the board's connector."""
+    n = gauge.element
+    leads = [c for c in circuit.of_kind("lead") if c.element == n]
+    three = len(leads) == 3
+    rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
+    colours = COLOURS["three-wire" if three else "two-wire"]
+    connector = _connector_of(circuit, leads[0].net("2"))
+    x, terminal, pin = 42.0, 56.0, 90.0
+    items: list[Item] = [
+        *symbols.strain_gauge((x, RED), (x, BLACK), gauge.designator, gauge.value),
+        line((x, RED), (terminal - 1.0, RED)),
+        line((x, BLACK), (terminal - 1.0, BLACK)),
+        symbols.ring((terminal, RED)),
+        symbols.ring((terminal, BLACK)),
+        label((terminal - 1.0, RED + 2.0), f"X{n}.1", SMALL, "middle"),
+        label((terminal - 1.0, BLACK - 4.0), f"X{n}.2", SMALL, "middle"),
+        label((pin - 2.0, RED + 9.0), connector.designator),
+    ]
+    for y, lead, colour in zip(rows, leads, colours):
+        if y == WHITE:
+            items.append(line((terminal, RED - 1.0), (terminal, WHITE), (pin - 1.0, WHITE)))
+        else:
+            items.append(line((terminal + 1.0, y), (pin - 1.0, y)))
+        number = next(p.number for p in connector.pins if p.net == lead.net("2"))
+        items += [
+            symbols.ring((pin, y)),
+            label((pin, y + 2.0), number, SMALL, "middle"),
+            label((terminal + 9.0, y + 1.2), f"{lead.designator} {colour}", SMALL),
+        ]
+    return items
+
+
+def _connector_of(circuit: Netlist, net: str) -> Component:
+    return next(c for c, _ in circuit.nets[net] if c.kind == "connector")
+
+
+def _bridge(circuit: Netlist, n: int) -> list[Item]:
+    """The three other arms, and the lines to the multiplexer."""
+    arms = {c.designator: c for c in circuit.of_kind("resistor") if c.element == n}
+    first, second, third = (f"R{10 * n + k}" for k in (1, 2, 3))
+    left, right, pin, multiplexer = 112.0, 148.0, 91.0, 196.0
+    three = any(c.net("2") == f"E{n}_RED" for c in circuit.of_kind("lead") if c.element == n)
+    plus: list[Item] = (
+        [line((pin, WHITE), (multiplexer, WHITE))]
+        if three
+        else [line((left, RED), (left, WHITE), (multiplexer, WHITE)), symbols.dot((left, RED))]
+    )
+    return [
+        line((left, RAIL), (right, RAIL), (250.0, RAIL)),
+        symbols.dot((left, RAIL)),
+        symbols.dot((right, RAIL)),
+        label((252.0, RAIL - 1.0), EXCITATION),
+        *symbols.resistor((left, RAIL), (left, RED), first, arms[first].value),
+        line((pin, RED), (left, RED)),
+        *plus,
+        *symbols.resistor((right, RAIL), (right, 224.0), second, arms[second].value),
+        line((right, 224.0), (right, MINUS)),
+        symbols.dot((right, MINUS)),
+        line((right, MINUS), (multiplexer, MINUS)),
+        *symbols.resistor((right, MINUS), (right, BLACK), third, arms[third].value),
+        line((pin, BLACK), (right, BLACK)),
+    ]
+
+
+def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
+    """MOSFET, decoder and multiplexer."""
+    switch = circuit.of_element("switch", n)
+    decoder, multiplexer = circuit.on_board("decoder", b), circuit.on_board("multiplexer", b)
+    foot, gate = (128.0, BLACK), (196.0, 150.0)
+    items: list[Item] = [symbols.dot(foot)]
+    items += symbols.mosfet(foot, (foot[0] + 12.0, BLACK - 8.0), switch.designator, switch.value)
+    items.append(line((foot[0] + 12.0, BLACK - 8.0), (166.0, BLACK - 8.0), (166.0, gate[1]), gate))
+    items += symbols.box(196.0, 190.0, 30.0, 30.0, multiplexer.designator, multiplexer.value)
+    items += symbols.box(196.0, 128.0, 30.0, 30.0, decoder.designator, decoder.value)
+    items.append(label((196.0, 186.0), _fed(multiplexer), SMALL))
+    items.append(label((196.0, 124.0), _fed(decoder), SMALL))
+    items.append(label((198.0, gate[1] - 0.9), f"{_pin(decoder, 'Y0')} Y0", SMALL))
+    for role, y in (("S1A", WHITE), ("S1B", MINUS)):
+        items.append(label((198.0, y - 0.9), f"{_pin(multiplexer, role)} {role}", SMALL))
+    for role, name, y in (("out_a", "DA", WHITE), ("out_b", "DB", MINUS)):
+        items.append(label((224.0, y - 0.9), f"{name} {_pin(multiplexer, role)}", SMALL, "end"))
+        items.append(line((226.0, y), (262.0, y)))
+    address = [p.role for p in multiplexer.pins if p.role in ("A0", "A1", "A2")]
+    for i, role in enumerate((*address, "enable")):
+        y, own = 154.0 - 6.0 * i, "E3" if role == "enable" else role
+        items.append(label((224.0, y - 0.9), f"{own} {_pin(decoder, own)}", SMALL, "end"))
+        also = "" if role == "enable" else f", also {multiplexer.designator}.{_pin(multiplexer, role)}"
+        named = f"{decoder.net(own)}{also}"
+        items += symbols.stub((226.0, y), 0.0, named)
+    return items
+
+
+def _fed(component: Component) -> str:
+    """Which of its pins, but for channels that are not used, are on supplies and ground."""
+    pins: dict[str, list[str]] = {}
+    for pin in component.pins:
+        if pin.net in (GROUND, *SUPPLIES) and not pin.role.startswith("S"):
+            pins.setdefault(pin.net, []).append(pin.number)
+    return "pins " + "; ".join(f"{', '.join(numbers)} on {net}" for net, numbers in pins.items())
+
+
+def _pin(component: Component, role: str) -> str:
+    return next(p.number for p in component.pins if p.role == role)
+
+
+def _amplifier(circuit: Netlist, b: int) -> list[Item]:
+    part = circuit.on_board("amplifier", b)
+    middle, x, size = (WHITE + MINUS) / 2, 262.0, 24.0
+    out = (x + size, middle)
+    items = [
+        *symbols.amplifier((x, middle), size),
+        label((x - 2.0, WHITE + 1.5), _pin(part, "plus"), SMALL, "end"),
+        label((x - 2.0, MINUS - 3.3), _pin(part, "minus"), SMALL, "end"),
+        label((x, middle + 17.6), part.designator),
+        label((x, middle + 13.8), part.value, SMALL),
+        *symbols.stub(out, 0.0, part.net("out")),
+        label((out[0] + 1.0, middle + 1.5), _pin(part, "out"), SMALL),
+    ]
+    items += _gain(circuit, part, (x, middle))
+    lines = [
+        f"pin {_pin(part, 'ref')} (REF) on {GROUND}",
+        f"pins {_pin(part, 'positive')}, {_pin(part, 'negative')} on VPOS, VNEG",
+    ]
+    return [*items, *(label((x + 4.0, middle - 32.0 - 4.0 * i), t, SMALL) for i, t in enumerate(lines))]
+
+
+def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
+    """What sets the gain between two pins on the triangle's lower edge: a resistor, a joint, or nothing."""
+    (x, y), slope = at, 0.5
+    left, right = ((x + dx, y - 12.0 + slope * dx) for dx in (3.0, 19.0))
+    resistor = next((c for c in circuit.of_kind("resistor") if c.board == part.board and not c.element), None)
+    low = y - 18.0
+    items: list[Item] = [
+        label((left[0] - 1.0, low + 0.6), _pin(part, "rg1"), SMALL, "end"),
+        label((right[0] + 1.0, low + 0.6), _pin(part, "rg2"), SMALL),
+    ]
+    if resistor:
+        return items + symbols.resistor_below(left, right, low, resistor.designator, resistor.value)
+    if part.net("rg1"):
+        return [*items, line(left, (left[0], low), (right[0], low), right)]
+    return [*items, *(line(p, (p[0], low)) for p in (left, right))]
+
+
+def _card(circuit: Netlist, b: int) -> list[Item]:
+    """The connector to the converter's card, pin by pin."""
+    connector = _card_connector(circuit, b)
+    x, top = 360.0, 250.0
+    items: list[Item] = [label((x - 4.0, top + 8.0), f"{connector.designator}, to the card")]
+    for i, pin in enumerate(connector.pins):
+        y = top - 7.0 * i
+        items += [
+            symbols.ring((x, y)),
+            line((x - 8.0, y), (x - 1.0, y)),
+            label((x + 3.0, y - 1.2), f"{pin.number}  {pin.net}", 2.5),
+        ]
+    return items
+
+
+def _card_connector(circuit: Netlist, b: int) -> Component:
+    return next(c for c, _ in circuit.nets[EXCITATION] if c.kind == "connector" and c.board == b)
+
+
+def _capacitors(circuit: Netlist, b: int) -> list[Item]:
+    """Four below the bridge, the others below the decoder's lines."""
+    items: list[Item] = []
+    for i, c in enumerate(c for c in circuit.of_kind("capacitor") if c.board == b):
+        x, top = (92.0 + 26.0 * i, 140.0) if i < 4 else (246.0 + 32.0 * (i - 4), 128.0)
+        items += symbols.capacitor((x, top), (x, top - 12.0), c.designator, c.value, c.net("1"))
+    return items

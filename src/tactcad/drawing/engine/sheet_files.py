@@ -1,0 +1,217 @@
+"""Sheets as files, at the paper's size: one vector PDF, the same bytes in every process, with texts that
+readers find again; and SVG, whose texts are held to the width that they have in the PDF.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from calendar import timegm
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import lru_cache
+from html import escape
+from typing import TYPE_CHECKING
+
+from .fonts import FAMILY, em, font_file
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, LineType, Point, Stroke, Text
+
+if TYPE_CHECKING:
+    from reportlab.pdfgen.canvas import Canvas
+
+POINT = 72 / 25.4  # PDF points in a millimetre
+FONT = "DejaVuSans"
+EPOCH = "SOURCE_DATE_EPOCH"
+BETWEEN = 10.0  # of the sheets of one SVG file, mm
+GREY = "#c9ced4"
+
+
+def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) -> bytes:
+    """The sheets, a page each at the paper's size, dated midnight (UTC) of `date` (YYYY-MM-DD).
+
+    Raises CheckFailure where the font is missing.
+    """
+    from reportlab.pdfbase import pdfmetrics
+    from reportlab.pdfbase.ttfonts import TTFont
+    from reportlab.pdfgen.canvas import Canvas
+
+    pdfmetrics.registerFont(TTFont(FONT, str(font_file())))
+    out = io.BytesIO()
+    with _dated(date):
+        canvas = Canvas(out, invariant=1, pageCompression=1)  # invariant: no clock, no random identifiers
+    canvas.setTitle(title)
+    canvas.setAuthor(author)
+    canvas.setCreator("tactcad")
+    for sheet in sheets:
+        canvas.setPageSize((sheet.size[0] * POINT, sheet.size[1] * POINT))
+        canvas.scale(POINT, POINT)
+        canvas.setLineJoin(1)
+        for item in sheet.items:
+            _draw(canvas, item)
+        canvas.showPage()
+    canvas.save()
+    return out.getvalue()
+
+
+@contextmanager
+def _dated(date: str) -> Iterator[None]:
+    """Make reportlab use this date only: by itself it takes that of SOURCE_DATE_EPOCH, which users set for
+    other purposes.
+    """
+    given = os.environ.pop(EPOCH, None)
+    os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
+    try:
+        yield
+    finally:
+        del os.environ[EPOCH]
+        if given is not None:
+            os.environ[EPOCH] = given
+
+
+def _draw(canvas: Canvas, item: Item) -> None:
+    if isinstance(item, Text):
+        _write(canvas, item)
+        return
+    path = canvas.beginPath()
+    if isinstance(item, DrawnArc):
+        (x, y), r = item.centre, item.radius
+        path.arc(x - r, y - r, x + r, y + r, item.start, item.sweep)
+    elif isinstance(item, Hatch):
+        for a, b in item.chords():
+            path.moveTo(*a)
+            path.lineTo(*b)
+    else:
+        path.moveTo(*item.points[0])
+        for point in item.points[1:]:
+            path.lineTo(*point)
+    if isinstance(item, Fill):
+        path.close()
+        canvas.setFillGray(0)
+        canvas.drawPath(path, stroke=0, fill=1)
+        return
+    if isinstance(item, Stroke) and item.closed:
+        path.close()
+    _set_pen(canvas, item.line)
+    canvas.drawPath(path, stroke=1, fill=0)
+
+
+def _set_pen(canvas: Canvas, line: LineType) -> None:
+    canvas.setStrokeGray(0)
+    canvas.setLineWidth(line.width)
+    canvas.setDash(list(line.dashes))
+
+
+def _write(canvas: Canvas, text: Text) -> None:
+    x, y = text.origin
+    canvas.saveState()
+    canvas.setFillGray(0.8 if text.role == "watermark" else 0)
+    canvas.translate(x, y)
+    if text.angle:
+        canvas.rotate(text.angle)
+    canvas.setFont(FONT, em(text.height))
+    canvas.drawString(0, 0, text.text)
+    canvas.restoreState()
+
+
+def svg_bytes(sheet: DrawnSheet) -> bytes:
+    """The sheet as SVG; units of the view box are millimetres."""
+    w, h = sheet.size
+    lines = [
+        '<?xml version="1.0" encoding="UTF-8"?>',
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{w:g}mm" height="{h:g}mm" viewBox="0 0 {w:g} {h:g}" '
+        f'font-family="{FAMILY}, Verdana, sans-serif" fill="none" stroke-linecap="butt" '
+        'stroke-linejoin="round">',
+        f"<title>{escape(sheet.number)}: {escape(sheet.title)}</title>",
+        f'<rect width="{w:g}" height="{h:g}" fill="#ffffff"/>',
+        *(_element(item, h) for item in sheet.items),
+        "</svg>",
+        "",
+    ]
+    return "\n".join(lines).encode()
+
+
+def _element(item: Item, h: float) -> str:
+    if isinstance(item, Text):
+        return _text(item, h)
+    if isinstance(item, Fill):
+        return f'<path class="{item.role}" fill="#000000" d="{_polyline(item.points, h)}Z"/>'
+    if isinstance(item, DrawnArc):
+        return f'<path class="{item.role}" {_pen(item.line)} d="{_arc(item, h)}"/>'
+    if isinstance(item, Hatch):
+        lines = "".join(_polyline(chord, h) for chord in item.chords())
+        return f'<path class="{item.role}" {_pen(item.line)} d="{lines}"/>'
+    line = _polyline(item.points, h) + ("Z" if item.closed else "")
+    return f'<path class="{item.role}" {_pen(item.line)} d="{line}"/>'
+
+
+def _pen(line: LineType) -> str:
+    dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in line.dashes)}"' if line.dashes else ""
+    return f'stroke="#000000" stroke-width="{line.width:g}"{dashes}'
+
+
+def _polyline(points: tuple[Point, ...], h: float) -> str:
+    return "M" + "L".join(f"{x:.3f},{h - y:.3f}" for x, y in points)
+
+
+def _arc(arc: DrawnArc, h: float) -> str:
+    """In two halves: a full circle has no one arc in SVG."""
+    stops = [arc.at(arc.start + arc.sweep * share) for share in (0.0, 0.5, 1.0)]
+    (x0, y0), *rest = [(x, h - y) for x, y in stops]
+    turns = "".join(f"A{arc.radius:.3f},{arc.radius:.3f} 0 0 0 {x:.3f},{y:.3f}" for x, y in rest)
+    return f"M{x0:.3f},{y0:.3f}{turns}"
+
+
+def _text(text: Text, h: float) -> str:
+    x, y = text.origin
+    turn = f' transform="rotate({-text.angle:g} {x:.3f} {h - y:.3f})"' if text.angle else ""
+    ink = GREY if text.role == "watermark" else "#000000"
+    return (
+        f'<text class="{text.role}" fill="{ink}" font-size="{em(text.height):.4f}" '
+        f'x="{x:.3f}" y="{h - y:.3f}" textLength="{text.width:.3f}" lengthAdjust="spacingAndGlyphs" '
+        f'xml:space="preserve"{turn}>{escape(text.text)}</text>'
+    )
+
+
+@lru_cache(maxsize=16)  # a release asks several things of each of its sheets
+def pdf_texts(data: bytes) -> tuple[tuple[tuple[str, float], ...], ...]:
+    """Texts of every page with the size of their letters (points), in the order in which they were drawn, as
+    pypdf reads them."""
+    from pypdf import PdfReader
+
+    pages = []
+    for page in PdfReader(io.BytesIO(data)).pages:
+        texts: list[tuple[str, float]] = []
+
+        def take(text: str, _matrix: object, _text_matrix: object, _font: object, size: float) -> None:
+            texts.extend((run.strip(), size) for run in text.splitlines() if run.strip())
+
+        page.extract_text(visitor_text=take)
+        pages.append(tuple(texts))
+    return tuple(pages)
+
+
+def pdf_runs(data: bytes) -> list[list[str]]:
+    """Texts of every page in the order in which they were drawn."""
+    return [[text for text, _ in page] for page in pdf_texts(data)]
+
+
+def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
+    """The sheets below each other in one SVG file, each at the paper's size."""
+
+    width, y, pieces = max(s.size[0] for s in sheets), 0.0, []
+    for sheet in sheets:
+        w, h = sheet.size
+        body = svg_bytes(sheet).decode().partition("?>\n")[2]
+        # in millimetres of the whole, not of the window
+        pieces.append(
+            body.replace(
+                f'width="{w:g}mm" height="{h:g}mm"', f'x="0" y="{y:g}" width="{w:g}" height="{h:g}"', 1
+            )
+        )
+        y += h + BETWEEN
+    head = (
+        '<?xml version="1.0" encoding="UTF-8"?>\n'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}mm" height="{y - BETWEEN:g}mm" '
+        f'viewBox="0 0 {width:g} {y - BETWEEN:g}">\n'
+    )
+    return (head + "".join(pieces) + "</svg>\n").encode()

@@ -1,0 +1,225 @@
+"""Linear dimensions of a plan: running ones from one origin to edges, holes, corners and centres, each
+determining something new; and a dimension line for each limit between two edges of the outline.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from tactcad.contour import Arc, Line, Segment
+from tactcad.parts.description import Characteristic, Part
+from tactcad.parts.limits import FACES
+
+from ..engine.boxes import Point
+from .callouts import Group
+from .measures import Level, Span, level
+from .part_variables import OUTER, THICKNESS, Spot
+from .sheet_plan import Linear, Running, Side, View, seen
+from .sketch import ALIKE, Coordinate, Sketch
+from .tolerances import places
+
+# Characteristics of parts that are a hole's height over the underside, by the hole's label.
+HEIGHTS = {"axle": "axles over the underside"}
+SIDES: tuple[Side, Side] = ("bottom", "left")  # of distances along x and along y
+
+
+def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequence[Coordinate]) -> Running:
+    """Running dimensions of edges and holes along an axis.
+
+    Parameters
+    ----------
+    sketch
+        Receives the dimensions; those that determine nothing new are left out.
+    view, side
+        Where they stand.
+    k
+        The part's axis, 0 or 1.
+    points
+        Coordinates along it; mere corners are left to `filled`.
+
+    Returns
+    -------
+    Running
+        From the datum across the axis; without one from the view's left or lower edge, of a disc from its
+        centre. Without points it has no stops.
+    """
+    if not points:
+        return Running(side, ())
+    features = [c for c in points if not c.corner]
+    edges = [c for c in features if c.contour == OUTER]
+    first = _first_datum(sketch.part, features)
+    origin = first or min(edges or features, key=lambda c: _right_or_up(view, k) * c.at[k])
+    way = _way(sketch, view, k, origin)
+    sketch.known[k].append(origin)
+    # the outline first: what is centred on it follows from it
+    features.sort(key=lambda c: (c not in edges, round(way * c.at[k], 6), str(c.variable)))
+    start = _foot(view, side, origin)
+    return _with_stops(Running(side, ((None, start),)), sketch, view, k, origin, way, features)
+
+
+def filled(sketch: Sketch, view: View, r: Running, k: int, points: Sequence[Coordinate]) -> Running:
+    """The running dimensions, with stops for corners and centres that still determine something."""
+    if not r.stops:
+        return r
+    origin = sketch.known[k][0]
+    return _with_stops(r, sketch, view, k, origin, _way(sketch, view, k, origin), points)
+
+
+def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequence[Group]) -> Running:
+    """Holes of a side face along the face (axis k), from the same edge as in the front view."""
+    known, origin = sketch.known[k], sketch.known[k][0]
+    way = _way(sketch, view, k, origin)
+    holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[k], str(r.owner)))
+    points = [Coordinate(f"{r.label} {'xyz'[k]}", r.owner.place(k), r.at) for r in holes]
+    sketch.known[k] = [origin]
+    bare = Running(side, ((None, _corner(view, origin)),))
+    r = _with_stops(bare, sketch, view, k, origin, way, points)
+    sketch.known[k] = known
+    return r
+
+
+def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Sequence[Group]) -> Running:
+    """Holes of a side face across the thickness, from the face that is a datum, otherwise from z = 0, and the
+    thickness itself."""
+    body = part.extrusion
+    x0 = body.outer.box[0]
+    faces = {
+        FACES[0]: Coordinate("thickness", None, (x0, 0.0, 0.0), states="thickness"),
+        FACES[1]: Coordinate("thickness", THICKNESS, (x0, 0.0, body.thickness), states="thickness"),
+    }
+    origin = faces.pop(next((d.feature for d in part.datums if d.feature in faces), FACES[0]))
+    way = 1.0 if origin.variable is None else -1.0
+    sketch.known[2] = [origin]
+    holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[2], str(r.owner)))
+    points = [
+        Coordinate(f"{r.label} z", r.owner.place(2), r.at, states=HEIGHTS.get(r.label, "")) for r in holes
+    ]
+    points += faces.values()
+    # the origin may be the upper edge of the view: the numbers still count from it
+    bare = Running(side, ((None, seen(view, origin.at)),))
+    return _with_stops(bare, sketch, view, 2, origin, way, points)
+
+
+def _first_datum(part: Part, points: Sequence[Coordinate]) -> Coordinate | None:
+    """Of the points the one that the first datum stands on."""
+    on = [variable for d in part.datums for _, variable in places(part, (d.feature,))]
+    return next((c for variable in on for c in points if c.variable == variable), None)
+
+
+def _right_or_up(view: View, k: int) -> float:
+    """1 where the part's axis k runs to the right or up in the view, -1 where it runs the other way."""
+    return (view.right if k == 0 else view.up)[k] or 1.0
+
+
+def _way(sketch: Sketch, view: View, k: int, origin: Coordinate) -> float:
+    """Sign of counting along axis k: to the right or up, from an edge at that end the other way."""
+    way, box = _right_or_up(view, k), sketch.part.extrusion.outer.box
+    last = max(way * box[k], way * box[k + 2])
+    return -way if abs(way * origin.at[k] - last) < ALIKE else way
+
+
+def _with_stops(
+    r: Running,
+    sketch: Sketch,
+    view: View,
+    k: int,
+    origin: Coordinate,
+    way: float,
+    points: Sequence[Coordinate],
+) -> Running:
+    """One more dimension from the origin for every point that is not in line with one that has it, and does
+    not follow from it."""
+    stops = list(r.stops)
+    for c in points:
+        if c is origin:
+            continue
+        same = next((o for o in sketch.known[k] if abs(o.at[k] - c.at[k]) < ALIKE), None)
+        if same:
+            if same.level != c.level:
+                sketch.convention(Span(same.level, c.level))
+            continue
+        row = Span(origin.level, c.level) if way > 0 else Span(c.level, origin.level)
+        d = sketch.stating(c.states, (row,), plain=c.name)
+        d = replace(d, basic=d.characteristic is None and sketch.locates(origin, c, k))
+        if sketch.new(d):
+            sketch.known[k].append(c)
+            stops.append((d, _foot(view, r.side, c)))
+    return Running(r.side, tuple(stops))
+
+
+def _foot(view: View, side: Side, c: Coordinate) -> Point:
+    """Where the extension line starts: at the feature's end that is nearer to the side."""
+    outwards = {"top": (0, 1), "bottom": (0, -1), "left": (-1, 0), "right": (1, 0)}[side]
+    ends = [seen(view, p) for p in (c.at, c.other) if p]
+    return max(ends, key=lambda p: p[0] * outwards[0] + p[1] * outwards[1])
+
+
+def _corner(view: View, c: Coordinate) -> Point:
+    u0, v0, u1, v1 = view.box
+    u, v = seen(view, c.at)
+    return (min(max(u, u0), u1), v0 if v < v0 else v1 if v > v1 else v)
+
+
+@dataclass(frozen=True)
+class EdgeStand:
+    """Where a dimension stands on an outline's edge: its level along an axis, and a point of it, mm."""
+
+    level: Level
+    value: float
+    at: Point
+
+
+def edge_spans(sketch: Sketch, view: View, part: Part) -> list[Linear]:
+    """Dimension lines for what the part limits between two edges of its outline that are square to x or y."""
+    linears = []
+    for c in part.characteristics:
+        found = _between(part, c)
+        if found is None:
+            continue
+        k, (a, b) = found
+        a, b = sorted((a, b), key=lambda stand: stand.value)
+        d = sketch.must(sketch.stating(c.name, (Span(a.level, b.level),)))
+        linears.append(Linear(d, SIDES[k], seen(view, (*a.at, 0.0)), seen(view, (*b.at, 0.0))))
+    return linears
+
+
+def _between(part: Part, c: Characteristic) -> tuple[int, tuple[EdgeStand, EdgeStand]] | None:
+    """Axis and stands of a limit between two edges that are its nominal size apart; None where it is no such
+    limit."""
+    if len(c.between) != 2:
+        return None
+    for k in (0, 1):
+        firsts, seconds = (list(_stands(part, name, k)) for name in c.between)
+        for a in firsts:
+            for b in seconds:
+                if abs(abs(a.value - b.value) - c.nominal) < ALIKE:
+                    return k, (a, b)
+    return None
+
+
+def _stands(part: Part, name: str, k: int) -> Iterator[EdgeStand]:
+    """Where edges of that name stand along axis k: lines square to it; of a full round its summit."""
+    for i, s in enumerate(part.extrusion.outer):
+        if s.name != name:
+            continue
+        if isinstance(s, Line) and abs(s.start[k] - s.end[k]) < ALIKE:
+            yield EdgeStand(level(Spot(OUTER, i).place(k)), s.start[k], s.start)
+        elif isinstance(s, Arc) and _half_turn(s, k):
+            yield _summit(s, i, k)
+
+
+def _half_turn(s: Segment, k: int) -> bool:
+    """Whether an arc is half a turn about axis k: it starts and ends beside its centre."""
+    return isinstance(s, Arc) and all(abs(p[k] - s.centre[k]) < ALIKE for p in (s.start, s.end))
+
+
+def _summit(s: Arc, i: int, k: int) -> EdgeStand:
+    """The summit of half a turn: its centre and its radius, which its start has across the axis."""
+    start, centre = Spot(OUTER, i), Spot(OUTER, i, centre=True)
+    across = 1 - k
+    out = 1.0 if s.start[across] > s.centre[across] else -1.0
+    top = s.at(0.5)
+    way = 1.0 if top[k] > s.centre[k] else -1.0
+    terms = ((centre.place(k), 1.0), (start.place(across), way * out), (centre.place(across), -way * out))
+    return EdgeStand(Level(terms), top[k], top)
