@@ -22,7 +22,7 @@ from tactcad.scenes.scene import Placement, Scene, Step
 from .engine.boxes import Box, bounds, bounds_of, corners
 from .engine.extent import box_of, moved_by, placed
 from .engine.ink import (
-    LETTER_HEIGHT,
+    LETTERS,
     THIN,
     DrawnSheet,
     Fill,
@@ -283,8 +283,8 @@ def axes(at: Point, length: float = 8.0) -> list[Item]:
         segment(at, down, THIN, "symbol"),
         arrow(right, at, role="symbol"),
         arrow(down, at, role="symbol"),
-        Text((x + length + 1.0, y - LETTER_HEIGHT / 2), "+x", LETTER_HEIGHT),
-        Text((x, y - length - LETTER_HEIGHT - 1.0), "+y", LETTER_HEIGHT, "middle"),
+        Text((x + length + 1.0, y - LETTERS / 2), "+x", LETTERS),
+        Text((x, y - length - LETTERS - 1.0), "+y", LETTERS, "middle"),
     ]
 
 
@@ -301,17 +301,15 @@ def face_map(array: Scene, name: str) -> DrawnSheet:
     items: list[Item] = [Stroke(outline(seen_box(p)), THIN, closed=True) for p in [*plates, *in_stack(array)]]
     items += [Fill(outline(box), "symbol") for p in in_stack(array) if (box := pad(p))]
     items += numbers(array, f, x1 * f, arms=True)
-    over, under = y1 * f + BESIDE, y0 * f - BESIDE - LETTER_HEIGHT
+    over, under = y1 * f + BESIDE, y0 * f - BESIDE - LETTERS
     items += [
-        Text((x1 * f + BESIDE, over), "row 1", LETTER_HEIGHT),
-        Text((x0 * f - BESIDE, over), "row 2", LETTER_HEIGHT, "end"),
+        Text((x1 * f + BESIDE, over), "row 1", LETTERS),
+        Text((x0 * f - BESIDE, over), "row 2", LETTERS, "end"),
     ]
     for plate in plates:
-        y = over + 2 * LETTER_HEIGHT if middle(plate) > 0 else under
-        items.append(
-            Text((0.0, y), f"{plate.designator}: {plate.part.name.lower()}", LETTER_HEIGHT, "middle")
-        )
-    items += axes((x0 * f, under - LETTER_HEIGHT))
+        y = over + 2 * LETTERS if middle(plate) > 0 else under
+        items.append(Text((0.0, y), f"{plate.designator}: {plate.part.name.lower()}", LETTERS, "middle"))
+    items += axes((x0 * f, under - LETTERS))
     bx0, by0, bx1, by1 = bounds_of_items(items)
     title = "Sensing face, pads towards you"
     return DrawnSheet(

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -143,31 +143,23 @@ def _solved(
         for sign, r in ((1.0, m + 2 * t), (-1.0, m + 2 * t + 1)):
             rows[r, [i, k, n + m + t]] = sign, -sign, -1.0
     free = [(0.0, 0.0)] + [(-1e4, 1e4)] * (n - 1) + [(0.0, None)] * (m + q)
-    solution = linprog(
-        cost, A_ub=rows if len(rows) else None, b_ub=most if len(rows) else None, bounds=free, method="highs"
-    )
+    limited = {"A_ub": rows, "b_ub": most} if len(rows) else {}
+    solution = linprog(cost, **limited, bounds=free, method="highs")
     return np.round(solution.x[:n], 6)
 
 
 def _overlapping(
     pieces: Sequence[Piece], boxes: Mapping[str, Extent], shifts: np.ndarray
 ) -> list[tuple[Placement, Placement]]:
-    """One pair of parts for every two pieces whose boxes overlap where they stand now, the earlier part
-    first.
-    """
+    """One pair of parts for every two pieces whose boxes overlap where they stand, the earlier part first."""
     overlaps = []
     for i, k in combinations(range(len(pieces)), 2):
-        for a in pieces[i].placements:
-            for b in pieces[k].placements:
-                p, q = boxes[a.designator] + shifts[i], boxes[b.designator] + shifts[k]
-                if (
-                    np.minimum(p[1], q[1]) - np.maximum(p[0], q[0]) > TOUCH
-                ).all() and a.part.part_no != b.part.part_no:
-                    overlaps.append((a, b))
-                    break
-            else:
-                continue
-            break
+        for a, b in product(pieces[i].placements, pieces[k].placements):
+            p, q = boxes[a.designator] + shifts[i], boxes[b.designator] + shifts[k]
+            deep = np.minimum(p[1], q[1]) - np.maximum(p[0], q[0]) > TOUCH
+            if deep.all() and a.part.part_no != b.part.part_no:
+                overlaps.append((a, b))
+                break
     return overlaps
 
 
@@ -215,23 +207,18 @@ def joints_of(placements: Sequence[Placement], contacts: Sequence[Contact]) -> l
     """A joint for each contact. Parts of one number that meet, such as weights on each other, have none."""
     at = {p.designator: p for p in placements}
     boxes = {name: box_of(p) for name, p in at.items()}
-    leaving = {
-        c.first: way
+    leaving = {  # screws: axis and sign along which each leaves its thread
+        c.first: (axis, 1 if boxes[c.first][:, axis].sum() > boxes[c.second][:, axis].sum() else -1)
         for c in contacts
-        if c.kind == "thread"
-        and (way := _out_of_thread(at[c.first], boxes[c.first], boxes[c.second])) is not None
+        if c.kind == "thread" and (axis := turning_axis(at[c.first])) is not None
     }
     joints = []
     for c in contacts:
         if at[c.first].part.part_no == at[c.second].part.part_no:
             continue
         screw = next((name for name in (c.first, c.second) if name in leaving), None)
-        if screw:
-            axis, sign = leaving[screw]
-            pair = (c.first if screw == c.second else c.second, screw)
-        else:
-            axis, sign = way_off(at[c.first], at[c.second], boxes)
-            pair = (c.first, c.second)
+        pair = (c.second, c.first) if screw == c.first else (c.first, c.second)
+        axis, sign = leaving[screw] if screw else way_off(at[c.first], at[c.second], boxes)
         joints.append(Joint(*(pair if sign > 0 else pair[::-1]), axis))
     return joints
 
@@ -252,12 +239,6 @@ def turning_axis(p: Placement) -> int | None:
     if not isinstance(p.part.body, Revolution):
         return None
     return int(np.abs([row[2] for row in p.rotation]).argmax())
-
-
-def _out_of_thread(screw: Placement, its_box: Extent, into: Extent) -> tuple[int, int] | None:
-    """Axis and sign along which a screw leaves its thread; None where the part is not a turned one."""
-    axis = turning_axis(screw)
-    return None if axis is None else (axis, 1 if its_box[:, axis].sum() > into[:, axis].sum() else -1)
 
 
 def _inside(a: Extent, b: Extent, axis: int) -> bool:

@@ -5,7 +5,6 @@ the array also its sensing face, and how it is mounted.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tactcad.design.messages import CheckFailure
@@ -17,7 +16,7 @@ from tactcad.scenes.scene import Scene
 
 from ..engine.boxes import Box, Point, grown
 from ..engine.extent import projected_box
-from ..engine.ink import LETTER_HEIGHT, Item, Text, moved
+from ..engine.ink import LETTERS, Item, Text, moved
 from ..engine.paper import (
     A0,
     A1,
@@ -34,9 +33,8 @@ from ..engine.paper import (
 from ..engine.title import HEIGHT, MARGIN, WIDTH, Page, TitleBlock, edges, fewer, notes
 from ..guide import BESIDE, FACE_EYE, FACE_UP, array_of, axes, in_stack, numbers, pad, page_path, torque
 from ..parts.dimension_lines import stacked
-from ..parts.measures import size
-from ..parts.part_variables import WHOLE, Spot
-from ..parts.sheet_plan import Dimension, Linear, Side
+from ..parts.measures import Given
+from ..parts.sheet_plan import OUTWARDS, Dimension, Linear, Side
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
@@ -95,20 +93,27 @@ def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape]
     )
     inner = {"plan": mounting(Layout(design), boxes["plan"])} if face else {}
     for name, sides in dimensioned.items():
-        own = _dimensioned(extents[name], f, sides, inner.get(name, ()))
-        items += [moved(i, *places[name]) for i in own]
+        w, h = extents[name]
+        overall = {
+            "top": given("top", round(w, 1), (0.0, h), (w, h)),
+            "bottom": given("bottom", round(w, 1), (0.0, 0.0), (w, 0.0)),
+            "left": given("left", round(h, 1), (0.0, 0.0), (0.0, h)),
+            "right": given("right", round(h, 1), (w, 0.0), (w, h)),
+        }
+        own = [*inner.get(name, ()), *(overall[side] for side in sides)]
+        items += [moved(i, *places[name]) for i in _lines(own, (0.0, 0.0, w * f, h * f), f)]
     if face:
         items += [moved(i, *places["below"]) for i in _sensing_face(scene, boxes["below"], f)]
     return Page(paper, shown(scale), tuple(items), "Assembly drawing")
 
 
-def mounting(layout: Layout, plan: Box) -> tuple[Given, Given]:
+def mounting(layout: Layout, plan: Box) -> tuple[Linear, Linear]:
     """The pattern of the carrier's threads for its holder, in the plan whose box that is."""
     x, y = layout.mount_x, layout.design.clamp.mount_pitch_y / 2
     x0, y0 = plan[:2]
     return (
-        Given("bottom", 2 * x, (-x - x0, -y - y0), (x - x0, -y - y0)),
-        Given("right", 2 * y, (x - x0, -y - y0), (x - x0, y - y0)),
+        given("bottom", 2 * x, (-x - x0, -y - y0), (x - x0, -y - y0)),
+        given("right", 2 * y, (x - x0, -y - y0), (x - x0, y - y0)),
     )
 
 
@@ -156,41 +161,14 @@ def _with_notes(paper: Paper, lines: Sequence[str], block: TitleBlock) -> tuple[
     return [moved(t, *at) for t in texts], grown(left, -MARGIN)
 
 
-def _dimensioned(
-    extent: tuple[float, float], f: float, sides: Sequence[Side], inner: Sequence[Given]
-) -> list[Item]:
-    """Overall sizes of a view whose lower left corner is (0, 0), to 0.1 mm, and the `inner` dimensions."""
-    w, h = extent
-    overall: dict[Side, Given] = {
-        "top": Given("top", w, (0.0, h), (w, h)),
-        "bottom": Given("bottom", w, (0.0, 0.0), (w, 0.0)),
-        "left": Given("left", h, (0.0, 0.0), (0.0, h)),
-        "right": Given("right", h, (w, 0.0), (w, h)),
-    }
-    given = [*inner, *(replace(overall[side], value=round(overall[side].value, 1)) for side in sides)]
-    return for_information(given, (0.0, 0.0, w * f, h * f), f)
+def given(side: Side, value: float, p: Point, q: Point) -> Linear:
+    """A value (mm) in parentheses on a side of a view, between two points of it (mm of the assembly)."""
+    return Linear(Dimension("given", (Given(value),), auxiliary=True), side, p, q)
 
 
-@dataclass(frozen=True)
-class Given:
-    """A value (mm) on a side of a view, between two points of the view (mm of the assembly)."""
-
-    side: Side
-    value: float
-    p: Point
-    q: Point
-
-
-def for_information(given: Sequence[Given], box: Box, f: float) -> list[Item]:
-    """Their lines and texts around a view of that box (mm of paper), at the scale f."""
-    variables = [Spot(WHOLE, n).place(0) for n in range(len(given))]
-    values = {variable: g.value for variable, g in zip(variables, given)}
-    lines = [
-        Linear(Dimension(f"given {n}", (size(variable),), auxiliary=True), g.side, g.p, g.q)
-        for n, (variable, g) in enumerate(zip(variables, given))
-    ]
-    sides: tuple[Side, ...] = ("top", "bottom", "left", "right")
-    return [item for side in sides for item in stacked(lines, side, box, f, values, 10.0)]
+def _lines(some: Sequence[Linear], box: Box, f: float) -> list[Item]:
+    """Lines and texts around a view of that box (mm of paper), at the scale f."""
+    return [item for side in OUTWARDS for item in stacked(some, side, box, f, {}, 10.0)]
 
 
 def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
@@ -201,7 +179,12 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
             f"Assemble in the {len(scene.steps)} steps of the assembly guide, {page_path(scene)} "
             "(tactcad export --guide)"
         )
-    lines += _rows(design, scene)
+    placed = {p.designator for p in scene.placements}
+    for row, side in ((1, "+"), (2, "-")):  # of long rows the bill's designators alone say it
+        own = [p for p in Layout(design).elements if p.row == row and p.designator in placed]
+        if 0 < len(own) <= LONGEST_ROW:
+            order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
+            lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
     if torques := _torques(design, scene, "ISO4762-"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
     if torques := _torques(design, scene, "ISO4032-"):
@@ -219,19 +202,6 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
         "in the front view x points to the right, y away from the viewer"
     )
     return tuple(lines)
-
-
-def _rows(design: Design, scene: Scene) -> list[str]:
-    """Which element stands where; for long rows only the bill's designators."""
-    layout = Layout(design)
-    placed = {p.designator for p in scene.placements}
-    lines = []
-    for row, side in ((1, "+"), (2, "-")):
-        own = [p for p in layout.elements if p.row == row and p.designator in placed]
-        if 0 < len(own) <= LONGEST_ROW:
-            order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
-            lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
-    return lines
 
 
 def _torques(design: Design, scene: Scene, standard: str) -> str:
@@ -255,7 +225,7 @@ def _sensing_face(array: Scene, view: Box, f: float) -> list[Item]:
     half, high = x1 * f, (y1 - y0) * f
     names = numbers(array, f, half)
     wide = max(t.width for t in names) + 2 * BESIDE
-    given = []
+    own = []
     left, right = (
         [box for p in in_stack(array) if (box := pad(p)) and p.rotation[0][0] * s > 0] for s in (-1.0, 1.0)
     )
@@ -263,17 +233,12 @@ def _sensing_face(array: Scene, view: Box, f: float) -> list[Item]:
     if len(row) > 1:
         # beyond the numbers, so that the extension lines pass none
         a, b = ((-wide / f, box[1] - y0) for box in row[:2])
-        given.append(Given("left", a[1] - b[1], a, b))
+        own.append(given("left", a[1] - b[1], a, b))
     if left and right:
         (*_, inner, top), (outer, *_) = left[0], right[0]
-        given.append(Given("top", outer - inner, (inner - x0, top - y0), (outer - x0, top - y0)))
-    box = (-wide, 0.0, (x1 - x0) * f, high)
-    corner = ((x1 - x0) * f + wide, high)
-    name = Text((corner[0] + LETTER_HEIGHT, corner[1] - LETTER_HEIGHT), "Sensing face", LETTER_HEIGHT)
+        own.append(given("top", outer - inner, (inner - x0, top - y0), (outer - x0, top - y0)))
+    lines = _lines(own, (-wide, 0.0, (x1 - x0) * f, high), f)
+    right_of_it = (x1 - x0) * f + wide + LETTERS
+    name = Text((right_of_it, high - LETTERS), "Sensing face")
     texts = [moved(t, -x0 * f, -y0 * f) for t in names]
-    return [
-        *texts,
-        *for_information(given, box, f),
-        name,
-        *axes((corner[0] + LETTER_HEIGHT, corner[1] - 3 * LETTER_HEIGHT)),
-    ]
+    return [*texts, *lines, name, *axes((right_of_it, high - 3 * LETTERS))]

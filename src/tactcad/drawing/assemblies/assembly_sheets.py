@@ -10,17 +10,15 @@ from dataclasses import dataclass, replace
 from math import isclose
 from typing import TYPE_CHECKING
 
-from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Scene
 
 from ..engine.fonts import em
-from ..engine.ink import DrawnSheet, preliminary
-from ..engine.layout_check import layout_faults
-from ..engine.paper import A3, A4, frame
-from ..engine.sheet_files import pdf_runs, pdf_texts, stacked_svg
-from ..engine.title import HEIGHT, WIDTH, Page, TitleBlock, block_of, title_block
+from ..engine.ink import DrawnSheet
+from ..engine.paper import A3, A4
+from ..engine.sheet_files import files_of, pdf_runs, pdf_texts
+from ..engine.title import HEIGHT, WIDTH, Page, block_of, sheets_of
 from ..engine.workers import Written
 from . import parts_list
 from .arrangement import arrangement
@@ -29,7 +27,6 @@ from .numbered import numbered_pages
 
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
-
 
 
 def assembly_sheets(
@@ -65,31 +62,12 @@ def assembly_sheets(
     mass = sum(p.part.mass for p in scene.placements)
     block = replace(block, material="see parts list", mass=mass)
     arranged = arrangement(design, scene, shapes, block)
-    list_ = next(
-        (p for p in (parts_list.laid(rows, size) for size in parts_list.SIZES) if _fits_beside(p)), None
-    )
-    numbered, listed = numbered_pages(scene, rows, shapes, list_, block)
-    pages = [arranged, *numbered]
-    if not listed:
-        pages += _list_pages(parts_list.laid(rows, parts_list.SIZES[0]))
-    sheets = [_sheet(block, page, n + 1, len(pages)) for n, page in enumerate(pages)]
-    for sheet in sheets:
-        wrong = layout_faults(sheet)
-        if wrong:
-            raise CheckFailure(f"drawings: {block.number}: {'; '.join(wrong[:3])}; no drawing was written")
-    return [preliminary(sheet) for sheet in sheets] if draft else sheets
-
-
-def _sheet(block: TitleBlock, page: Page, number: int, count: int) -> DrawnSheet:
-    own = replace(block, scale=page.scale, sheet=number, sheets=count, document_type=page.document_type)
-    items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
-    return DrawnSheet(block.number, f"{block.title}, sheet {number} of {count}", page.paper.size, items)
-
-
-def _fits_beside(list_: parts_list.Laid) -> bool:
-    """Whether the whole list fits above the title block of an A3 sheet."""
-    _, y0, _, y1 = A3.area
-    return list_.total + parts_list.heading(list_.size) <= y1 - y0 - HEIGHT
+    above_block = A3.area[3] - A3.area[1] - HEIGHT
+    lists = [parts_list.laid(rows, size) for size in parts_list.SIZES]
+    beside = [p for p in lists if p.total + parts_list.heading(p.size) <= above_block]
+    numbered, listed = numbered_pages(scene, rows, shapes, beside[0] if beside else None, block)
+    pages = [arranged, *numbered, *([] if listed else _list_pages(lists[0]))]
+    return sheets_of(block, pages, draft, name)
 
 
 def _list_pages(list_: parts_list.Laid) -> list[Page]:
@@ -134,17 +112,16 @@ def assembly_written(order: AssemblyOrder) -> Written:
     """
     from tactcad.solids.bytes import from_bytes  # loads the kernel
 
-    from ..engine.sheet_files import pdf_bytes
-
-    design = order.design.design
     shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
     sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)
-    title = f"{order.name} revision {design.revision}: assembly"
-    pdf = pdf_bytes(sheets, title, design.author or "", design.date)
-    wrong = assembly_faults(pdf, order.name, design.revision, order.rows)
-    if wrong:
-        raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")
-    return Written(pdf, stacked_svg(sheets))
+    of = order.design.design
+    return files_of(
+        sheets,
+        order.name,
+        "assembly",
+        of,
+        lambda pdf: assembly_faults(pdf, order.name, of.revision, order.rows),
+    )
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
@@ -169,35 +146,25 @@ def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRo
     wrong = []
     for n, runs in enumerate(pages, start=1):
         wrong += [f"sheet {n}: {t!r} is missing" for t in (revision, f"{n}/{len(pages)}") if t not in runs]
-        wrong += (
-            [f"sheet {n}: {number!r} is missing"] if number not in "".join(runs) else []
-        )  # a long one is broken
-    numbers = _ballooned(pdf)
-    wrong += [
-        f"item {row.item} ({row.part_no}) has {numbers.count(row.item)} balloons"
-        for row in rows
-        if numbers.count(row.item) != row.has_solid
-    ]
-    listed = "".join(_without_spaces(run) for page in pages for run in page)
-    wrong += [
-        f"{row.part_no} is not in the parts list as the bill has it"
-        for row in rows
-        if _without_spaces(
-            f"{row.item}{row.qty:g}{'' if row.unit == 'pcs' else row.unit}{row.part_no}{row.description}"
-        )
-        not in listed
-    ]
-    return wrong
-
-
-def _ballooned(pdf: bytes) -> list[int]:
-    """Numbers in balloons, recognised by the height of their letters."""
-    return [
+        if number not in "".join(runs):  # a long one is broken
+            wrong.append(f"sheet {n}: {number!r} is missing")
+    numbers = [  # in balloons, recognised by the height of their letters
         int(text)
         for page in pdf_texts(pdf)
         for text, size in page
         if text.isdecimal() and isclose(size, em(height(text)), rel_tol=1e-3)
     ]
+    wrong += [
+        f"item {row.item} ({row.part_no}) has {numbers.count(row.item)} balloons"
+        for row in rows
+        if numbers.count(row.item) != row.has_solid
+    ]
+    listed = _without_spaces("".join(run for page in pages for run in page))
+    for row in rows:
+        unit = "" if row.unit == "pcs" else row.unit
+        if _without_spaces(f"{row.item}{row.qty:g}{unit}{row.part_no}{row.description}") not in listed:
+            wrong.append(f"{row.part_no} is not in the parts list as the bill has it")
+    return wrong
 
 
 def _without_spaces(text: str) -> str:

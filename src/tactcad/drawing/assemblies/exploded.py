@@ -9,10 +9,9 @@ from dataclasses import dataclass
 from string import ascii_uppercase
 from typing import TYPE_CHECKING
 
-from tactcad.scenes.scene import Placement, Scene
+from tactcad.scenes.scene import Scene
 
 from ..engine.boxes import Box, Polyline, bounds, bounds_of, corners, length, overlap
-from ..engine.fonts import width
 from ..engine.ink import Item, Text
 from ..engine.paper import A3, A3_UPRIGHT, A4, A4_LYING, SERIES, Paper, factor, shown
 from ..engine.title import HEIGHT, MARGIN, WIDTH, Page, edges
@@ -51,19 +50,21 @@ def seen_of_pieces(
     pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint
 ) -> list[list[Polyline]]:
     """Visible lines of each piece (mm, picture plane) as the pieces stand."""
-    from ..engine.picture import seen_of_each
+    from tactcad.solids.place import placed_shape
 
-    return seen_of_each([_solid(piece, shapes) for piece in pieces], eye)
+    from ..engine.picture import compound, seen_of_each
+
+    solids = []
+    for piece in pieces:
+        some = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in piece.placements]
+        solids.append(some[0] if len(some) == 1 else compound(some))
+    return seen_of_each(solids, eye)
 
 
 def lengths_alone(pieces: Sequence[Piece], shapes: Mapping[str, TopoDS_Shape], eye: Viewpoint) -> list[float]:
     """Length (mm) of each piece's visible lines where nothing stands before it."""
-    from ..engine.picture import seen_of_each
-
-    known: dict[tuple, float] = {}
-    for piece in pieces:
-        if alike(piece) not in known:
-            known[alike(piece)] = total_length(seen_of_each([_solid(piece, shapes)], eye)[0])
+    unlike = {alike(piece): piece for piece in reversed(pieces)}
+    known = {key: total_length(seen_of_pieces([piece], shapes, eye)[0]) for key, piece in unlike.items()}
     return [known[alike(piece)] for piece in pieces]
 
 
@@ -71,15 +72,6 @@ def alike(piece: Piece) -> tuple:
     """A key that is equal for pieces that look the same from one eye, wherever they stand."""
     first = piece.placements[0]
     return first.part.part_no, first.rotation, len(piece.placements), piece.letter
-
-
-def _solid(piece: Piece, shapes: Mapping[str, TopoDS_Shape]) -> TopoDS_Shape:
-    from tactcad.solids.place import placed_shape
-
-    from ..engine.picture import compound
-
-    some = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in piece.placements]
-    return some[0] if len(some) == 1 else compound(some)
 
 
 def exploded_view(
@@ -128,7 +120,8 @@ def exploded_page(
             texts, taken = _heading(heading, area)
             if any(overlap(bounds(e.points), taken) for e in drawn):
                 continue
-            placed = balloons.place(own, [*(e.points for e in drawn), _outline(taken)], area)
+            around = (*corners(taken), corners(taken)[0])
+            placed = balloons.place(own, [*(e.points for e in drawn), around], area)
             if not placed:
                 continue
             items: list[Item] = [*drawn, *balloons.drawn(placed), *texts]
@@ -142,21 +135,11 @@ def exploded_page(
 
 
 def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
-    """The view's title, with smaller remarks below it, in the upper left corner; and the room that they
-    take.
-    """
+    """The view's title, with smaller remarks below it, in the upper left corner; and the room they take."""
     x, y = area[0] + MARGIN, area[3] - MARGIN - 3.5
-    sizes = [3.5] + [2.5] * (len(lines) - 1)
-    texts: list[Item] = [
-        Text((x, y - LINE * n), line, size) for n, (line, size) in enumerate(zip(lines, sizes))
-    ]
-    wide = max(width(line, size) for line, size in zip(lines, sizes))
-    return texts, (x, y - LINE * (len(lines) - 1) - 1.0, x + wide, y + 3.5)
-
-
-def _outline(b: Box) -> Polyline:
-    ends = corners(b)
-    return (*ends, ends[0])
+    texts = [Text((x, y - LINE * n), line, 2.5 if n else 3.5) for n, line in enumerate(lines)]
+    wide = max(text.width for text in texts)
+    return [*texts], (x, y - LINE * (len(lines) - 1) - 1.0, x + wide, y + 3.5)
 
 
 def room(paper: Paper, with_list: bool) -> Box:
@@ -164,11 +147,8 @@ def room(paper: Paper, with_list: bool) -> Box:
     larger."""
     x0, y0, x1, y1 = paper.area
     beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
-    if with_list or (beside[2] - beside[0]) * (beside[3] - beside[1]) > (over[2] - over[0]) * (
-        over[3] - over[1]
-    ):
-        return beside
-    return over
+    sizes = [(b[2] - b[0]) * (b[3] - b[1]) for b in (beside, over)]
+    return beside if with_list or sizes[0] > sizes[1] else over
 
 
 @dataclass(frozen=True)
@@ -200,26 +180,17 @@ def unit_views(scene: Scene) -> list[UnitView]:
     whole_letter = next(letters)
     views, blocks = [], []
     for title, names in units.items():
-        letter = next(letters)
-        inside = [
-            (next(letters), ready)
-            for ready in scene.ready
-            if {p.designator for p in ready.placements} <= set(names)
-        ]
-        standing = {own: {p.designator for p in ready.placements} for own, ready in inside}
-        views.append(UnitView(letter, title, scene, _pieces(scene, [at[d] for d in names], standing)))
-        views += [UnitView(own, ready.name, ready) for own, ready in inside]
-        blocks.append(Piece(tuple(at[d] for d in names), letter))
+        letter, own = next(letters), [at[d] for d in names]
+        ready_ones, inside = [], set()  # the ready scenes behind the other parts, each as one piece
+        for ready in scene.ready:
+            theirs = {p.designator for p in ready.placements}
+            if theirs <= set(names):
+                ready_ones.append(
+                    (Piece(tuple(p for p in own if p.designator in theirs), next(letters)), ready)
+                )
+                inside |= theirs
+        pieces = pieces_of(scene, [p for p in own if p.designator not in inside])
+        views.append(UnitView(letter, title, scene, (*pieces, *(piece for piece, _ in ready_ones))))
+        views += [UnitView(piece.letter, ready.name, ready) for piece, ready in ready_ones]
+        blocks.append(Piece(tuple(own), letter))
     return [UnitView(whole_letter, "the sub-assemblies", scene, tuple(blocks)), *views]
-
-
-def _pieces(
-    scene: Scene, placements: Sequence[Placement], inside: Mapping[str, set[str]]
-) -> tuple[Piece, ...]:
-    """The parts one by one, the ready scenes (designators by letter) behind them, each as one piece."""
-    ready = set().union(*inside.values())
-    blocks = [
-        Piece(tuple(p for p in placements if p.designator in names), letter)
-        for letter, names in inside.items()
-    ]
-    return (*pieces_of(scene, [p for p in placements if p.designator not in ready]), *blocks)

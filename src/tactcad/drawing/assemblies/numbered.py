@@ -76,17 +76,13 @@ def numbered_pages(
         """A page for the view, where it finds room: it numbers what none before it does."""
         nonlocal listed
         fresh = view.labelled(lambda label: label in letters or label not in where)
-        letter = title.partition(":")[0]
-        made = (
-            exploded_page(
-                fresh, (title, *further, *_elsewhere(view, where)), None if listed else list_, small
-            )
-            if fresh.own
-            else None
-        )
+        before = [f"{n} (see {where[n]})" for n in view.own if isinstance(n, int) and n in where]
+        heading = (title, *further, *([f"Also here: {', '.join(before)}"] if before else []))
+        made = exploded_page(fresh, heading, None if listed else list_, small) if fresh.own else None
         if made:
             pages.append(made[0])
             listed = listed or made[1]
+            letter = title.partition(":")[0]
             where.update({label: letter for label in fresh.own if isinstance(label, int)})
         return made is not None
 
@@ -108,19 +104,11 @@ def numbered_pages(
         if views:
             pieces = pulled_apart(scene, pieces, GAP * _extent(pieces), {})
         view = exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
-        title = (
-            f"{ascii_uppercase[letter]}: {'what the views before it do not number' if pages else 'exploded'}"
-        )
-        if not add(view, title, (), (), bool(pages)):
+        what = "what the views before it do not number" if pages else "exploded"
+        if not add(view, f"{ascii_uppercase[letter]}: {what}", (), (), bool(pages)):
             return pages + _family_pages(left, item, shapes, block), listed
         letter += 1
     return pages, listed
-
-
-def _elsewhere(view: Exploded, where: Mapping[int, str]) -> list[str]:
-    """Which items of the view have their numbers in one before it."""
-    items = [label for label in view.own if isinstance(label, int) and label in where]
-    return [f"Also here: {', '.join(f'{n} (see {where[n]})' for n in items)}"] if items else []
 
 
 def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
@@ -132,7 +120,12 @@ def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, T
     if not unit.pieces:
         pieces = [Piece((p,)) for p in fewer(exploded(unit.scene))]
         return exploded_view(pieces, seen_of_pieces(pieces, shapes, ABOVE), item)
-    pieces = _fewer_pieces(unit.pieces)
+    drawn = {p.designator for p in fewer([p for piece in unit.pieces for p in piece.placements])}
+    thinned = [
+        replace(piece, placements=tuple(p for p in piece.placements if p.designator in drawn))
+        for piece in unit.pieces
+    ]
+    pieces = [piece for piece in thinned if piece.placements]
     gap = (GAP_OF_UNITS if all(piece.letter for piece in pieces) else GAP) * _extent(pieces)
     alone = lengths_alone(pieces, shapes, ABOVE)
     more: dict[int, float] = {}
@@ -157,16 +150,6 @@ def _best_of_alike(pieces: Sequence[Piece], shares: Sequence[float]) -> list[flo
     for piece, share in zip(pieces, shares):
         best[alike(piece)] = max(best.get(alike(piece), 0.0), share)
     return [best[alike(piece)] for piece in pieces]
-
-
-def _fewer_pieces(pieces: Sequence[Piece]) -> list[Piece]:
-    """Without the parts that are left out where there are very many."""
-    kept = {p.designator for p in fewer([p for piece in pieces for p in piece.placements])}
-    thinned = [
-        replace(piece, placements=tuple(p for p in piece.placements if p.designator in kept))
-        for piece in pieces
-    ]
-    return [piece for piece in thinned if piece.placements]
 
 
 def _extent(pieces: Sequence[Piece]) -> float:

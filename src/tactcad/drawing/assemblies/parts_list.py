@@ -14,7 +14,6 @@ from ..engine.title import wrapped
 
 HEADS = ("Item", "Qty", "Part number", "Description", "Material or standard")
 WIDTHS = (10.0, 14.0, 60.0, 50.0, 46.0)  # 180: the title block's width
-WIDTH = sum(WIDTHS)
 SIZES = (2.5, 1.8)  # heights of the text, ISO 3098
 PAD = 1.0
 LINE = 1.75  # from line to line, of the text's height
@@ -40,7 +39,10 @@ def laid(rows: Sequence[BomRow], size: float) -> Laid:
     """The bill's rows with texts broken to the columns."""
     cells = []
     for row in rows:
-        texts = (str(row.item), _quantity(row), row.part_no, row.description, _material(row))
+        quantity = f"{row.qty:g}" if row.unit == "pcs" else f"{row.qty:g} {row.unit}"
+        bought = row.standard_designation or row.mpn or row.material  # what it is ordered by
+        material = row.material if row.make_buy == "make" else bought
+        texts = (str(row.item), quantity, row.part_no, row.description, material)
         cells.append(tuple(tuple(_broken(t, size, w - 2 * PAD)) for t, w in zip(texts, WIDTHS)))
     return Laid(size, tuple(cells))
 
@@ -56,15 +58,6 @@ def _broken(text: str, size: float, room: float) -> list[str]:
             lines.append("")
         lines[-1] += piece
     return [short for line in lines for short in wrapped(line, size, room)]
-
-
-def _quantity(row: BomRow) -> str:
-    return f"{row.qty:g}" if row.unit == "pcs" else f"{row.qty:g} {row.unit}"
-
-
-def _material(row: BomRow) -> str:
-    """What a made part is of; what a bought one is ordered by."""
-    return row.material if row.make_buy == "make" else row.standard_designation or row.mpn or row.material
 
 
 def heading(size: float) -> float:
@@ -104,4 +97,4 @@ def drawn(list_: Laid, rows: range, at: Point) -> tuple[list[Item], float]:
         y -= list_.height(n)
         items.append(segment((x0, y), (xs[-1], y), THIN, "table"))
     items += [segment((x, y), (x, top), THIN, "table") for x in xs[1:-1]]
-    return [*items, rectangle(x0, y, WIDTH, top - y, FRAME, "table")], top - y
+    return [*items, rectangle(x0, y, sum(WIDTHS), top - y, FRAME, "table")], top - y

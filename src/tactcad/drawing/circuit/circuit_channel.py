@@ -6,11 +6,11 @@ from tactcad.circuit.bridges import EXCITATION, LOGIC, NEGATIVE, POSITIVE
 from tactcad.circuit.netlist import GROUND, Component, Netlist
 from tactcad.parts.lead_route import COLOURS
 
-from ..engine.ink import Item, Point
+from ..engine.ink import Item, Point, Text
 from ..engine.paper import A3
 from ..engine.title import Page, notes
 from . import circuit_symbols as symbols
-from .circuit_symbols import SMALL, label, line
+from .circuit_symbols import SMALL, line
 
 SUPPLIES = (POSITIVE, NEGATIVE, LOGIC)
 RAIL = 262.0  # mm on the paper: the bridges' supply
@@ -21,13 +21,17 @@ def channel_page(circuit: Netlist, says: list[str]) -> Page:
     """The page of the first element's channel; `says` are its notes."""
     gauge = next(circuit.of_kind("gauge"))
     n, b = gauge.element, gauge.board
+    capacitors: list[Item] = []  # four below the bridge, the others below the decoder's lines
+    for i, c in enumerate(c for c in circuit.of_kind("capacitor") if c.board == b):
+        x, top = (92.0 + 26.0 * i, 140.0) if i < 4 else (246.0 + 32.0 * (i - 4), 128.0)
+        capacitors += symbols.capacitor((x, top), (x, top - 12.0), c.designator, c.value, c.net("1"))
     items = [
         *_array_side(circuit, gauge),
         *_bridge(circuit, n),
         *_switching(circuit, n, b),
         *_amplifier(circuit, b),
         *_card(circuit, b),
-        *_capacitors(circuit, b),
+        *capacitors,
         *symbols.dashed(24.0, 150.0, 39.0, 92.0, f"on the array: E{n}"),
         *symbols.dashed(82.0, 112.0, 318.0, 164.0, f"board {b}, channel 1"),
         *notes((26.0, 100.0), says, 190.0)[0],
@@ -42,7 +46,7 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
     three = len(leads) == 3
     rows = [RED, WHITE, BLACK] if three else [RED, BLACK]
     colours = COLOURS["three-wire" if three else "two-wire"]
-    connector = _connector_of(circuit, leads[0].net("2"))
+    connector = next(c for c, _ in circuit.nets[leads[0].net("2")] if c.kind == "connector")
     x, terminal, pin = 42.0, 56.0, 90.0
     items: list[Item] = [
         *symbols.strain_gauge((x, RED), (x, BLACK), gauge.designator, gauge.value),
@@ -50,9 +54,9 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
         line((x, BLACK), (terminal - 1.0, BLACK)),
         symbols.ring((terminal, RED)),
         symbols.ring((terminal, BLACK)),
-        label((terminal - 1.0, RED + 2.0), f"X{n}.1", SMALL, "middle"),
-        label((terminal - 1.0, BLACK - 4.0), f"X{n}.2", SMALL, "middle"),
-        label((pin - 2.0, RED + 9.0), connector.designator),
+        Text((terminal - 1.0, RED + 2.0), f"X{n}.1", SMALL, "middle"),
+        Text((terminal - 1.0, BLACK - 4.0), f"X{n}.2", SMALL, "middle"),
+        Text((pin - 2.0, RED + 9.0), connector.designator),
     ]
     for y, lead, colour in zip(rows, leads, colours):
         if y == WHITE:
@@ -62,14 +66,10 @@ def _array_side(circuit: Netlist, gauge: Component) -> list[Item]:
         number = next(p.number for p in connector.pins if p.net == lead.net("2"))
         items += [
             symbols.ring((pin, y)),
-            label((pin, y + 2.0), number, SMALL, "middle"),
-            label((terminal + 9.0, y + 1.2), f"{lead.designator} {colour}", SMALL),
+            Text((pin, y + 2.0), number, SMALL, "middle"),
+            Text((terminal + 9.0, y + 1.2), f"{lead.designator} {colour}", SMALL),
         ]
     return items
-
-
-def _connector_of(circuit: Netlist, net: str) -> Component:
-    return next(c for c, _ in circuit.nets[net] if c.kind == "connector")
 
 
 def _bridge(circuit: Netlist, n: int) -> list[Item]:
@@ -87,7 +87,7 @@ def _bridge(circuit: Netlist, n: int) -> list[Item]:
         line((left, RAIL), (right, RAIL), (250.0, RAIL)),
         symbols.dot((left, RAIL)),
         symbols.dot((right, RAIL)),
-        label((252.0, RAIL - 1.0), EXCITATION),
+        Text((252.0, RAIL - 1.0), EXCITATION),
         *symbols.resistor((left, RAIL), (left, RED), first, arms[first].value),
         line((pin, RED), (left, RED)),
         *plus,
@@ -110,21 +110,21 @@ def _switching(circuit: Netlist, n: int, b: int) -> list[Item]:
     items.append(line((foot[0] + 12.0, BLACK - 8.0), (166.0, BLACK - 8.0), (166.0, gate[1]), gate))
     items += symbols.box(196.0, 190.0, 30.0, 30.0, multiplexer.designator, multiplexer.value)
     items += symbols.box(196.0, 128.0, 30.0, 30.0, decoder.designator, decoder.value)
-    items.append(label((196.0, 186.0), _fed(multiplexer), SMALL))
-    items.append(label((196.0, 124.0), _fed(decoder), SMALL))
-    items.append(label((198.0, gate[1] - 0.9), f"{_pin(decoder, 'Y0')} Y0", SMALL))
+    items.append(Text((196.0, 186.0), _fed(multiplexer), SMALL))
+    items.append(Text((196.0, 124.0), _fed(decoder), SMALL))
+    items.append(Text((198.0, gate[1] - 0.9), f"{_pin(decoder, 'Y0')} Y0", SMALL))
     for role, y in (("S1A", WHITE), ("S1B", MINUS)):
-        items.append(label((198.0, y - 0.9), f"{_pin(multiplexer, role)} {role}", SMALL))
+        items.append(Text((198.0, y - 0.9), f"{_pin(multiplexer, role)} {role}", SMALL))
     for role, name, y in (("out_a", "DA", WHITE), ("out_b", "DB", MINUS)):
-        items.append(label((224.0, y - 0.9), f"{name} {_pin(multiplexer, role)}", SMALL, "end"))
+        items.append(Text((224.0, y - 0.9), f"{name} {_pin(multiplexer, role)}", SMALL, "end"))
         items.append(line((226.0, y), (262.0, y)))
     address = [p.role for p in multiplexer.pins if p.role in ("A0", "A1", "A2")]
     for i, role in enumerate((*address, "enable")):
         y, own = 154.0 - 6.0 * i, "E3" if role == "enable" else role
-        items.append(label((224.0, y - 0.9), f"{own} {_pin(decoder, own)}", SMALL, "end"))
+        items.append(Text((224.0, y - 0.9), f"{own} {_pin(decoder, own)}", SMALL, "end"))
         also = "" if role == "enable" else f", also {multiplexer.designator}.{_pin(multiplexer, role)}"
         named = f"{decoder.net(own)}{also}"
-        items += symbols.stub((226.0, y), 0.0, named)
+        items += symbols.stub((226.0, y), named)
     return items
 
 
@@ -147,19 +147,19 @@ def _amplifier(circuit: Netlist, b: int) -> list[Item]:
     out = (x + size, middle)
     items = [
         *symbols.amplifier((x, middle), size),
-        label((x - 2.0, WHITE + 1.5), _pin(part, "plus"), SMALL, "end"),
-        label((x - 2.0, MINUS - 3.3), _pin(part, "minus"), SMALL, "end"),
-        label((x, middle + 17.6), part.designator),
-        label((x, middle + 13.8), part.value, SMALL),
-        *symbols.stub(out, 0.0, part.net("out")),
-        label((out[0] + 1.0, middle + 1.5), _pin(part, "out"), SMALL),
+        Text((x - 2.0, WHITE + 1.5), _pin(part, "plus"), SMALL, "end"),
+        Text((x - 2.0, MINUS - 3.3), _pin(part, "minus"), SMALL, "end"),
+        Text((x, middle + 17.6), part.designator),
+        Text((x, middle + 13.8), part.value, SMALL),
+        *symbols.stub(out, part.net("out")),
+        Text((out[0] + 1.0, middle + 1.5), _pin(part, "out"), SMALL),
     ]
     items += _gain(circuit, part, (x, middle))
     lines = [
         f"pin {_pin(part, 'ref')} (REF) on {GROUND}",
         f"pins {_pin(part, 'positive')}, {_pin(part, 'negative')} on VPOS, VNEG",
     ]
-    return [*items, *(label((x + 4.0, middle - 32.0 - 4.0 * i), t, SMALL) for i, t in enumerate(lines))]
+    return [*items, *(Text((x + 4.0, middle - 32.0 - 4.0 * i), t, SMALL) for i, t in enumerate(lines))]
 
 
 def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
@@ -169,8 +169,8 @@ def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
     resistor = next((c for c in circuit.of_kind("resistor") if c.board == part.board and not c.element), None)
     low = y - 18.0
     items: list[Item] = [
-        label((left[0] - 1.0, low + 0.6), _pin(part, "rg1"), SMALL, "end"),
-        label((right[0] + 1.0, low + 0.6), _pin(part, "rg2"), SMALL),
+        Text((left[0] - 1.0, low + 0.6), _pin(part, "rg1"), SMALL, "end"),
+        Text((right[0] + 1.0, low + 0.6), _pin(part, "rg2"), SMALL),
     ]
     if resistor:
         return items + symbols.resistor_below(left, right, low, resistor.designator, resistor.value)
@@ -181,27 +181,14 @@ def _gain(circuit: Netlist, part: Component, at: Point) -> list[Item]:
 
 def _card(circuit: Netlist, b: int) -> list[Item]:
     """The connector to the converter's card, pin by pin."""
-    connector = _card_connector(circuit, b)
+    connector = next(c for c, _ in circuit.nets[EXCITATION] if c.kind == "connector" and c.board == b)
     x, top = 360.0, 250.0
-    items: list[Item] = [label((x - 4.0, top + 8.0), f"{connector.designator}, to the card")]
+    items: list[Item] = [Text((x - 4.0, top + 8.0), f"{connector.designator}, to the card")]
     for i, pin in enumerate(connector.pins):
         y = top - 7.0 * i
         items += [
             symbols.ring((x, y)),
             line((x - 8.0, y), (x - 1.0, y)),
-            label((x + 3.0, y - 1.2), f"{pin.number}  {pin.net}", 2.5),
+            Text((x + 3.0, y - 1.2), f"{pin.number}  {pin.net}", 2.5),
         ]
-    return items
-
-
-def _card_connector(circuit: Netlist, b: int) -> Component:
-    return next(c for c, _ in circuit.nets[EXCITATION] if c.kind == "connector" and c.board == b)
-
-
-def _capacitors(circuit: Netlist, b: int) -> list[Item]:
-    """Four below the bridge, the others below the decoder's lines."""
-    items: list[Item] = []
-    for i, c in enumerate(c for c in circuit.of_kind("capacitor") if c.board == b):
-        x, top = (92.0 + 26.0 * i, 140.0) if i < 4 else (246.0 + 32.0 * (i - 4), 128.0)
-        items += symbols.capacitor((x, top), (x, top - 12.0), c.designator, c.value, c.net("1"))
     return items

@@ -10,9 +10,8 @@ from math import ceil
 
 from tactcad.circuit.bridges import EXCITATION, netlist
 from tactcad.circuit.netlist import Component, Netlist
-from tactcad.circuit.wiring_list import Lead, wiring
+from tactcad.circuit.wiring_list import wiring
 from tactcad.design.electronics import MULTIPLEXERS
-from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts.boards import boards
 from tactcad.parts.bridge_figures import settling_time
@@ -21,30 +20,19 @@ from tactcad.parts.layout import Layout
 from tactcad.parts.lead_route import leads
 
 from ..engine.fonts import width
-from ..engine.ink import FRAME, THIN, DrawnSheet, Item, Text, preliminary, rectangle, segment
-from ..engine.layout_check import layout_faults
-from ..engine.paper import A3, frame
-from ..engine.sheet_files import pdf_runs, stacked_svg
-from ..engine.title import HEIGHT, MARGIN, Page, block_of, title_block
+from ..engine.ink import FRAME, LETTERS, THIN, DrawnSheet, Item, Text, rectangle, segment
+from ..engine.paper import A3
+from ..engine.sheet_files import files_of, pdf_runs
+from ..engine.title import HEIGHT, MARGIN, Page, block_of, sheets_of
 from ..engine.workers import Written
 from .circuit_channel import channel_page
 from .wiring_plan import plan_page
 
-ROW, LETTERS = 5.5, 2.5
-CHANNEL_HEADS = (
-    "Board",
-    "Channel",
-    "Element",
-    "Gauge",
-    "Arms",
-    "Leads",
-    "Terminals",
-    "Lead connector",
-    "Switch",
-    "Multiplexer",
-    "Decoder",
-    "Read at",
+ROW = 5.5  # mm
+CHANNELS = (
+    "Board, Channel, Element, Gauge, Arms, Leads, Terminals, Lead connector, Switch, Multiplexer, Decoder"
 )
+CHANNEL_HEADS = (*CHANNELS.split(", "), "Read at")
 LEAD_HEADS = ("Lead", "Element", "From", "To", "Colour", "Wire", "Cut to, mm", "Bundle")
 
 
@@ -66,51 +54,32 @@ def circuit_written(order: CircuitOrder) -> Written:
 
     Raises CheckFailure where a layout is not clean, or the PDF lacks a component when read back.
     """
-    from ..engine.sheet_files import pdf_bytes
 
-    identity = order.design.design
+    def faults(pdf: bytes) -> list[str]:
+        runs = " ".join(run for page in pdf_runs(pdf) for run in page)
+        gauges = netlist(Layout(order.design)).of_kind("gauge")
+        return [f"{c.designator} is missing" for c in gauges if c.designator not in runs][:1]
+
     sheets = circuit_sheets(order.design, order.draft, order.sample)
-    pdf = pdf_bytes(
-        sheets, f"{order.name} revision {identity.revision}: circuit", identity.author or "", identity.date
-    )
-    runs = " ".join(run for page in pdf_runs(pdf) for run in page)
-    wanted = [c.designator for c in netlist(Layout(order.design)).of_kind("gauge")]
-    missing = [name for name in wanted if name not in runs]
-    if missing:
-        raise CheckFailure(f"drawings: {order.name}: {missing[0]} is missing; no drawing was written")
-    return Written(pdf, stacked_svg(sheets))
+    return files_of(sheets, order.name, "circuit", order.design.design, faults)
 
 
 def circuit_sheets(design: Design, draft: bool = False, sample: bool = False) -> list[DrawnSheet]:
     """Every sheet, its layout clean; raises CheckFailure where it is not."""
     layout = Layout(design)
     circuit = netlist(layout)
+    rows = [
+        (e.designator, f"E{e.element}", e.start, e.end, e.colour, e.wire, f"{e.length:g}", f"{e.bundle}")
+        for e in wiring(layout, circuit)
+    ]
     pages = [
         channel_page(circuit, _channel_notes(layout)),
-        *channel_pages(circuit),
+        *_tables(CHANNEL_HEADS, list(_channels(circuit)), "Circuit, all channels"),
         plan_page(layout, _plan_notes(layout)),
-        *lead_pages(wiring(layout, circuit)),
+        *_tables(LEAD_HEADS, rows, "Wiring list"),
     ]
-    sheets = _sheets(design, pages, draft, sample)
-    for sheet in sheets:
-        wrong = layout_faults(sheet)
-        if wrong:
-            raise CheckFailure(f"drawings: {sheet.title}: {'; '.join(wrong[:3])}; no drawing was written")
-    return [preliminary(sheet) for sheet in sheets] if draft else sheets
-
-
-def _sheets(design: Design, pages: Sequence[Page], draft: bool, sample: bool) -> list[DrawnSheet]:
-    block = replace(
-        block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample),
-        dimensioned=False,
-    )
-    sheets = []
-    for n, page in enumerate(pages, start=1):
-        own = replace(block, scale=page.scale, sheet=n, sheets=len(pages), document_type=page.document_type)
-        items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
-        title = f"{page.document_type}, sheet {n} of {len(pages)}"
-        sheets.append(DrawnSheet(block.number, title, page.paper.size, items))
-    return sheets
+    block = block_of(design.design, f"{design.name}-circuit", "Circuit and wiring", draft, sample)
+    return sheets_of(replace(block, dimensioned=False), pages, draft)
 
 
 def _channel_notes(layout: Layout) -> list[str]:
@@ -145,37 +114,16 @@ def _plan_notes(layout: Layout) -> list[str]:
     ]
 
 
-def channel_pages(circuit: Netlist) -> list[Page]:
-    """Every channel of every board."""
-    return _pages(CHANNEL_HEADS, list(_channels(circuit)), "Circuit, all channels")
-
-
-def lead_pages(leads: Sequence[Lead]) -> list[Page]:
-    """Every lead, as in the wiring list."""
-    rows = [
-        (
-            lead.designator,
-            f"E{lead.element}",
-            lead.start,
-            lead.end,
-            lead.colour,
-            lead.wire,
-            f"{lead.length:g}",
-            f"{lead.bundle}",
-        )
-        for lead in leads
-    ]
-    return _pages(LEAD_HEADS, rows, "Wiring list")
-
-
 def _channels(circuit: Netlist) -> Iterator[tuple[str, ...]]:
+    """Every channel of every board, a row each."""
     leads: dict[int, list[Component]] = {}
     arms: dict[int, list[Component]] = {}
-    connectors = {c.board: c for c in circuit.of_kind("connector") if EXCITATION not in _nets(c)}
-    for kept, kind in ((leads, "lead"), (arms, "resistor")):
+    of_leads = [c for c in circuit.of_kind("connector") if EXCITATION not in {p.net for p in c.pins}]
+    connectors = {c.board: c for c in of_leads}
+    for by_element, kind in ((leads, "lead"), (arms, "resistor")):
         for c in circuit.components:
             if c.kind == kind and c.element:
-                kept.setdefault(c.element, []).append(c)
+                by_element.setdefault(c.element, []).append(c)
     for gauge in circuit.of_kind("gauge"):
         n, b = gauge.element, gauge.board
         multiplexer, decoder = circuit.on_board("multiplexer", b), circuit.on_board("decoder", b)
@@ -199,11 +147,7 @@ def _channels(circuit: Netlist) -> Iterator[tuple[str, ...]]:
         )
 
 
-def _nets(c: Component) -> set[str]:
-    return {p.net for p in c.pins}
-
-
-def _pages(heads: Sequence[str], rows: Sequence[tuple[str, ...]], kind: str) -> list[Page]:
+def _tables(heads: Sequence[str], rows: Sequence[tuple[str, ...]], kind: str) -> list[Page]:
     """The rows as tables over the width of as many A3 pages as they need, above the title block."""
     x0, y0, x1, y1 = A3.area
     widths = [3.0 + max(width(text, LETTERS) for text in column) for column in zip(heads, *rows, strict=True)]

@@ -6,10 +6,10 @@ substrate's arrow.
 
 from __future__ import annotations
 
-from ..engine.ink import THIN, VISIBLE, DrawnArc, Fill, Item, LineType, Point, Stroke, Text, polar, rectangle
+from ..engine.ink import THIN, VISIBLE, DrawnArc, Fill, Item, LineType, Point, Stroke, Text, rectangle
 
 LINE = LineType("circuit", 0.35)
-SMALL, USUAL = 1.8, 2.5  # heights of letters, ISO 3098
+SMALL = 1.8  # height of values' letters, ISO 3098
 
 
 def line(*points: Point) -> Stroke:
@@ -27,12 +27,6 @@ def ring(at: Point) -> Item:
     return DrawnArc(at, 1.0, line=LINE, role="symbol")
 
 
-def label(at: Point, text: str, height: float = USUAL, anchor: str = "start") -> Text:
-    """A text beside a symbol."""
-    assert anchor in ("start", "middle", "end")
-    return Text(at, text, height, anchor, role="note")  # type: ignore[arg-type]
-
-
 def resistor(top: Point, bottom: Point, name: str, value: str) -> list[Item]:
     """Upright, in the middle of its connection; name and value to its right."""
     x, middle = top[0], (top[1] + bottom[1]) / 2
@@ -40,8 +34,8 @@ def resistor(top: Point, bottom: Point, name: str, value: str) -> list[Item]:
         line(top, (x, middle + 5.0)),
         rectangle(x - 2.0, middle - 5.0, 4.0, 10.0, LINE, "symbol"),
         line((x, middle - 5.0), bottom),
-        label((x + 3.5, middle + 0.8), name),
-        label((x + 3.5, middle - 3.0), value, SMALL),
+        Text((x + 3.5, middle + 0.8), name),
+        Text((x + 3.5, middle - 3.0), value, SMALL),
     ]
 
 
@@ -52,23 +46,21 @@ def resistor_below(left: Point, right: Point, y: float, name: str, value: str) -
         line(left, (left[0], y), (middle - 5.0, y)),
         rectangle(middle - 5.0, y - 2.0, 10.0, 4.0, LINE, "symbol"),
         line((middle + 5.0, y), (right[0], y), right),
-        label((middle, y - 6.2), name, anchor="middle"),
-        label((middle, y - 9.6), value, SMALL, "middle"),
+        Text((middle, y - 6.2), name, anchor="middle"),
+        Text((middle, y - 9.6), value, SMALL, "middle"),
     ]
 
 
 def strain_gauge(top: Point, bottom: Point, name: str, value: str) -> list[Item]:
     """A resistor that strain varies; name and value to its left."""
     x, middle = top[0], (top[1] + bottom[1]) / 2
-    far = (x + 4.5, middle + 6.0)
-    near = (x - 4.5, middle - 6.0)
+    lines = [item for item in resistor(top, bottom, name, value) if not isinstance(item, Text)]
+    near, far = (x - 4.5, middle - 6.0), (x + 4.5, middle + 6.0)
     return [
-        line(top, (x, middle + 5.0)),
-        rectangle(x - 2.0, middle - 5.0, 4.0, 10.0, LINE, "symbol"),
-        line((x, middle - 5.0), bottom),
+        *lines,
         line((near[0] - 2.5, near[1]), near, far),
-        label((x - 4.5, middle + 0.8), name, anchor="end"),
-        label((x - 4.5, middle - 3.0), value, SMALL, "end"),
+        Text((x - 4.5, middle + 0.8), name, anchor="end"),
+        Text((x - 4.5, middle - 3.0), value, SMALL, "end"),
     ]
 
 
@@ -81,14 +73,14 @@ def capacitor(top: Point, bottom: Point, name: str, value: str, net: str) -> lis
     """Upright from a net's name to ground."""
     x, middle = top[0], (top[1] + bottom[1]) / 2
     return [
-        label((x, top[1] + 1.2), net, SMALL, "middle"),
+        Text((x, top[1] + 1.2), net, SMALL, "middle"),
         line(top, (x, middle + 0.7)),
         line((x - 3.0, middle + 0.7), (x + 3.0, middle + 0.7)),
         line((x - 3.0, middle - 0.7), (x + 3.0, middle - 0.7)),
         line((x, middle - 0.7), bottom),
         *ground(bottom),
-        label((x + 4.0, middle + 1.2), name),
-        label((x + 4.0, middle - 2.8), value, SMALL),
+        Text((x + 4.0, middle + 1.2), name),
+        Text((x + 4.0, middle - 2.8), value, SMALL),
     ]
 
 
@@ -96,12 +88,10 @@ def mosfet(drain: Point, gate: Point, name: str, value: str) -> list[Item]:
     """N-channel, enhancement, to ground; the gate to the right of the channel; name and value to its left."""
     x, y = drain
     channel, middle = x + 4.0, y - 8.0
-    pieces = [
-        line((channel, middle + s - 1.2), (channel, middle + s + 1.2)) for s in (-4.0, 0.0, 4.0)
-    ]  # broken: enhancement
+    broken = [line((channel, middle + s - 1.2), (channel, middle + s + 1.2)) for s in (-4.0, 0.0, 4.0)]
     return [
         line(drain, (x, middle + 4.0), (channel, middle + 4.0)),
-        *pieces,
+        *broken,  # enhancement
         line((channel, middle), (x, middle)),
         Fill(((channel, middle), (x + 1.2, middle + 1.1), (x + 1.2, middle - 1.1)), "symbol"),
         line((channel, middle - 4.0), (x, middle - 4.0)),
@@ -109,8 +99,8 @@ def mosfet(drain: Point, gate: Point, name: str, value: str) -> list[Item]:
         *ground((x, middle - 10.0)),
         line((channel + 1.2, middle - 4.0), (channel + 1.2, middle + 4.0)),
         line((channel + 1.2, middle), (gate[0], middle), gate),
-        label((x - 2.5, middle + 0.8), name, anchor="end"),
-        label((x - 2.5, middle - 3.0), value, SMALL, "end"),
+        Text((x - 2.5, middle + 0.8), name, anchor="end"),
+        Text((x - 2.5, middle - 3.0), value, SMALL, "end"),
     ]
 
 
@@ -120,8 +110,8 @@ def amplifier(at: Point, size: float) -> list[Item]:
     half = size / 2
     return [
         Stroke(((x, y + half), (x, y - half), (x + size, y)), LINE, "symbol", True),
-        label((x + 1.5, y + 0.3 * half + 1.0), "+"),
-        label((x + 1.5, y - 0.3 * half - 3.2), "−"),
+        Text((x + 1.5, y + 0.3 * half + 1.0), "+"),
+        Text((x + 1.5, y - 0.3 * half - 3.2), "−"),
     ]
 
 
@@ -129,20 +119,18 @@ def box(x: float, y: float, w: float, h: float, name: str, value: str) -> list[I
     """A circuit as a box; name and value above it."""
     return [
         rectangle(x, y, w, h, LINE, "symbol"),
-        label((x, y + h + 5.2), name),
-        label((x, y + h + 1.4), value, SMALL),
+        Text((x, y + h + 5.2), name),
+        Text((x, y + h + 1.4), value, SMALL),
     ]
 
 
-def stub(start: Point, angle: float, text: str) -> list[Item]:
-    """A connection that ends at its net's name, to the left or right."""
-    end = polar(start, 5.0, angle)
-    right = end[0] > start[0]
-    at = (end[0] + (1.0 if right else -1.0), end[1] - SMALL / 2)
-    return [line(start, end), label(at, text, SMALL, "start" if right else "end")]
+def stub(start: Point, text: str) -> list[Item]:
+    """A connection to the right that ends at its net's name."""
+    end = (start[0] + 5.0, start[1])
+    return [line(start, end), Text((end[0] + 1.0, end[1] - SMALL / 2), text, SMALL)]
 
 
 def dashed(x: float, y: float, w: float, h: float, name: str) -> list[Item]:
     """What stands together: on the array, on a board."""
     around = LineType("around", THIN.width, (3.0, 1.5))
-    return [rectangle(x, y, w, h, around, "symbol"), label((x + 2.0, y + 2.0), name)]
+    return [rectangle(x, y, w, h, around, "symbol"), Text((x + 2.0, y + 2.0), name)]

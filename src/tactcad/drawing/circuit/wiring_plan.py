@@ -10,7 +10,7 @@ from tactcad.parts.lead_route import lead_routes
 
 from ..engine.boxes import Point
 from ..engine.fonts import width
-from ..engine.ink import THIN, VISIBLE, DrawnArc, Item, LineType, Text, rectangle, segment
+from ..engine.ink import LETTERS, THIN, VISIBLE, DrawnArc, Item, LineType, Text, rectangle, segment
 from ..engine.paper import A3
 from ..engine.title import HEIGHT, MARGIN, Page, notes
 
@@ -18,7 +18,6 @@ Place = Callable[[float, float], Point]  # mm of the array to mm of the paper
 LEAD = LineType("lead", 0.35)
 SCALES = (5.0, 2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)  # ISO 5455
 ONWARDS = 16.0  # mm of paper that a bundle is drawn beyond its tie
-LETTERS = 2.5
 MARKS = 12.0  # mm of paper above the array for what is marked there
 
 
@@ -86,12 +85,7 @@ def _marks(layout: Layout, on: Place) -> list[Item]:
     rear, wiring = layout.rear_end, layout.design.wiring
     items: list[Item] = []
     last = 0.0
-    for letter, x in (
-        ("a", layout.recess_start),
-        ("b", rear - wiring.bonded),
-        ("c", rear),
-        ("d", rear + wiring.gather),
-    ):
+    for letter, x in zip("abcd", (layout.recess_start, rear - wiring.bonded, rear, rear + wiring.gather)):
         px, top = on(x, -layout.stack / 2)
         if px - last > 4.0:
             items.append(segment((px, top + 1.0), (px, top + 6.0), THIN, "leader"))

@@ -25,7 +25,10 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
 
     A model file counts with its box, which may be seen larger than the model.
     """
-    up = _unit(_cross(eye, right))
+    (ex, ey, ez), (rx, ry, rz) = eye, right
+    up = (ey * rz - ez * ry, ez * rx - ex * rz, ex * ry - ey * rx)
+    size = _dot(up, up) ** 0.5
+    up = (up[0] / size, up[1] / size, up[2] / size)
     axes = np.array([right, up])
     points: dict[str, NDArray[np.float64]] = {}
     spans: dict[tuple, Box] = {}  # equal parts turned alike differ by their place alone
@@ -36,8 +39,7 @@ def projected_box(placements: Iterable[Placement], right: Vector, eye: Vector) -
             if p.part.part_no not in points:
                 points[p.part.part_no] = np.array(list(_surface_points(p.part)))
             seen = points[p.part.part_no] @ (axes @ np.array(p.rotation)).T
-            (x0, y0), (x1, y1) = seen.min(axis=0).tolist(), seen.max(axis=0).tolist()
-            spans[key] = (x0, y0, x1, y1)
+            spans[key] = (*seen.min(axis=0).tolist(), *seen.max(axis=0).tolist())
         x, y = _dot(p.origin, right), _dot(p.origin, up)
         x0, y0, x1, y1 = spans[key]
         corners += [(x + x0, y + y0), (x + x1, y + y1)]
@@ -57,7 +59,9 @@ def moved_by(p: Placement, way: Sequence[float], digits: int = 9) -> Placement:
 def _surface_points(part: Part) -> Iterator[Vector]:
     body = part.body
     if isinstance(body, Extrusion):
-        foot = _turned_down(part, body)
+        # a pocket may take the whole section off the foot (z = 0) but for its islands: a land or a shaft
+        pockets = [f for f in part.features if isinstance(f, Pocket) and f.at == (0, 0, 0)]
+        foot = next((f for f in pockets if f.contour == body.outer), None)
         for x, y in _curve_points(body.outer):
             yield (x, y, foot.depth if foot else 0.0)
             yield (x, y, body.thickness)
@@ -71,14 +75,6 @@ def _surface_points(part: Part) -> Iterator[Vector]:
                 yield (r * cos(2 * pi * k / _STEPS), r * sin(2 * pi * k / _STEPS), z)
 
 
-def _turned_down(part: Part, body: Extrusion) -> Pocket | None:
-    """The pocket that takes the whole section off the foot (z = 0) but for its islands: a land or a shaft."""
-    for feature in part.features:
-        if isinstance(feature, Pocket) and feature.contour == body.outer and feature.at == (0, 0, 0):
-            return feature
-    return None
-
-
 def _curve_points(contour: Contour) -> Iterator[Point]:
     for s in contour:
         steps = max(1, round(abs(s.sweep) / (2 * pi) * _STEPS)) if isinstance(s, Arc) else 1
@@ -88,15 +84,6 @@ def _curve_points(contour: Contour) -> Iterator[Point]:
 
 def _dot(a: Vector, b: Vector) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def _unit(a: Vector) -> Vector:
-    size = _dot(a, a) ** 0.5
-    return (a[0] / size, a[1] / size, a[2] / size)
 
 
 def box_corners(box: tuple[Vector, Vector]) -> Iterator[Vector]:

@@ -19,7 +19,6 @@ from .fonts import ink_box, width
 Role = Literal[
     "outline",
     "hidden",
-    "smooth",
     "centre",
     "extension",
     "dimension",
@@ -33,7 +32,7 @@ Role = Literal[
     "cutting",
 ]
 HATCHING = (1.0, 3.0)  # least and largest distance of hatching lines; ISO 128-2 asks for 0.7 at least
-LETTER_HEIGHT = 2.5  # of dimension texts, mm
+LETTERS = 2.5  # of dimension texts, mm
 
 
 @dataclass(frozen=True)
@@ -247,19 +246,19 @@ def arrow(tip: Point, towards: Point, length: float = 2.5, role: Role = "dimensi
     )
 
 
-def moved(item: Item, dx: float, dy: float) -> Item:
-    """The same item elsewhere."""
+def moved(item: Item, dx: float, dy: float, f: float = 1.0) -> Item:
+    """The same item `f` times as large about (0, 0), then elsewhere; letters and lines keep their size."""
 
-    def shifted(p: Point) -> Point:
-        return (p[0] + dx, p[1] + dy)
+    def at(p: Point) -> Point:
+        return (p[0] * f + dx, p[1] * f + dy)
 
     if isinstance(item, DrawnArc):
-        return replace(item, centre=shifted(item.centre))
+        return replace(item, centre=at(item.centre), radius=item.radius * f)
     if isinstance(item, Text):
-        return replace(item, at=shifted(item.at))
+        return replace(item, at=at(item.at))
     if isinstance(item, Hatch):
-        return replace(item, loops=tuple(tuple(shifted(p) for p in loop) for loop in item.loops))
-    return replace(item, points=tuple(shifted(p) for p in item.points))
+        return replace(item, loops=tuple(tuple(map(at, loop)) for loop in item.loops))
+    return replace(item, points=tuple(map(at, item.points)))
 
 
 def bounds_of_items(items: Iterable[Item]) -> Box:

@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from .boxes import Chord, Point, bounds, chord_meets, crossing, quads_meet
-from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Stroke, Text, points_of
+from .ink import DrawnSheet, Fill, Hatch, Text, points_of
 from .paper import LEFT, OTHER
 
 # Least white between two texts, and between a text and the edge of a line, mm of paper; chosen: a thin line's
@@ -35,29 +35,26 @@ def layout_faults(sheet: DrawnSheet) -> list[str]:
     """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension
     lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
-    drawn = list(_pieces(sheet.items))
-    return [
-        *_text_on_text(texts),
-        *_text_on_line(texts, drawn),
-        *_text_on_hatching(texts, sheet.items),
-        *_outside(sheet),
-        *_dimension_lines(drawn),
+    drawn = [
+        _Straight(chord, 0.0 if isinstance(item, Fill) else item.line.width / 2, item.role, n)
+        for n, item in enumerate(sheet.items)
+        if not isinstance(item, Text)
+        for chord in item.chords()
     ]
-
-
-def _pieces(items: Sequence[Item]) -> Iterator[_Straight]:
-    for n, item in enumerate(items):
-        if isinstance(item, Stroke | DrawnArc | Fill | Hatch):
-            half = 0.0 if isinstance(item, Fill) else item.line.width / 2
-            for chord in item.chords():
-                yield _Straight(chord, half, item.role, n)
-
-
-def _text_on_text(texts: Sequence[Text]) -> Iterator[str]:
     boxes = [(t, t.corners(BETWEEN_TEXTS / 2)) for t in texts]
-    for (a, quad_a), (b, quad_b) in combinations(boxes, 2):
-        if quads_meet(quad_a, quad_b):
-            yield f"text {a.text!r} over text {b.text!r} at {_shown(a.at)}"
+    over = [
+        f"text {a.text!r} over text {b.text!r} at {_shown(a.at)}"
+        for (a, quad_a), (b, quad_b) in combinations(boxes, 2)
+        if quads_meet(quad_a, quad_b)
+    ]
+    # inside a hatched area, even between two lines; across its edge a text is over a line anyway
+    hatches = [item for item in sheet.items if isinstance(item, Hatch)]
+    hatched = [
+        f"text {text.text!r} at {_shown(text.at)} over hatching"
+        for text in texts
+        if any(hatch.holds(corner) for hatch in hatches for corner in text.corners())
+    ]
+    return [*over, *_text_on_line(texts, drawn), *hatched, *_outside(sheet), *_dimension_lines(drawn)]
 
 
 def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator[str]:
@@ -77,20 +74,12 @@ def _text_on_line(texts: Sequence[Text], drawn: Sequence[_Straight]) -> Iterator
             yield f"text {text.text!r} at {_shown(text.at)} over a line ({', '.join(sorted(hit))})"
 
 
-def _text_on_hatching(texts: Sequence[Text], items: Sequence[Item]) -> Iterator[str]:
-    """A text inside a hatched area, even one between two lines; across its edge it is over a line anyway."""
-    for text in texts:
-        if any(item.holds(corner) for item in items if isinstance(item, Hatch) for corner in text.corners()):
-            yield f"text {text.text!r} at {_shown(text.at)} over hatching"
-
-
 def _outside(sheet: DrawnSheet) -> Iterator[str]:
     """Everything but the frame itself lies inside it; the frame inside the paper."""
     w, h = sheet.size
     for item in sheet.items:
-        inside = (
-            (0.0, 0.0, w, h) if item.role in ("frame", "watermark") else (LEFT, OTHER, w - OTHER, h - OTHER)
-        )
+        whole = item.role in ("frame", "watermark")
+        inside = (0.0, 0.0, w, h) if whole else (LEFT, OTHER, w - OTHER, h - OTHER)
         x0, y0, x1, y1 = bounds(points_of(item))
         if x0 < inside[0] or y0 < inside[1] or x1 > inside[2] or y1 > inside[3]:
             what = f"text {item.text!r}" if isinstance(item, Text) else f"a line ({item.role})"

@@ -117,9 +117,17 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
         # meshed once a prototype: placed copies share it
         with making("mesh", f"picture of {len(shapes)} shapes"):
             BRepMesh_IncrementalMesh(compound(shapes), MESH_LINEAR, False, MESH_ANGULAR)
-        sharp, smooth = draw_in_windows(
-            _boxes(shapes, view), lambda some: _on_triangles([shapes[i] for i in some], onto)
-        )
+
+        def on_triangles(some: NDArray[np.intp]) -> Lines:
+            algorithm = HLRBRep_PolyAlgo()
+            algorithm.Load(compound([shapes[i] for i in some]))
+            algorithm.Projector(onto)
+            algorithm.Update()
+            result = HLRBRep_PolyHLRToShape()
+            result.Update(algorithm)
+            return _lines(result)
+
+        sharp, smooth = draw_in_windows(_boxes(shapes, view), on_triangles)
     return Drawing(tuple(sorted(sharp)), tuple(sorted(smooth)))
 
 
@@ -154,16 +162,6 @@ def exact(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> HLRBR
     algorithm.Update()
     algorithm.Hide()
     return HLRBRep_HLRToShape(algorithm)
-
-
-def _on_triangles(shapes: Sequence[TopoDS_Shape], projector: HLRAlgo_Projector) -> Lines:
-    algorithm = HLRBRep_PolyAlgo()
-    algorithm.Load(compound(shapes))
-    algorithm.Projector(projector)
-    algorithm.Update()
-    result = HLRBRep_PolyHLRToShape()
-    result.Update(algorithm)
-    return _lines(result)
 
 
 def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
@@ -202,9 +200,9 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
     pen = 0.35 / scale
 
     def path(name: str, colour: str, wide: float, some: Sequence[Polyline]) -> str:
-        return (
-            f'<path class="{name}" stroke="{colour}" stroke-width="{wide:.4f}" d="{_path(some, left, top)}"/>'
-        )
+        lines = ("L".join(f"{x - left:.3f},{top - y:.3f}" for x, y in line) for line in some)
+        d = "".join(f"M{line}" for line in lines)
+        return f'<path class="{name}" stroke="{colour}" stroke-width="{wide:.4f}" d="{d}"/>'
 
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -274,7 +272,13 @@ def curves_of(compound: TopoDS_Shape | None) -> Iterator[BRepAdaptor_Curve]:
 
 def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
     """A removal's result as chords in the picture plane, mm."""
-    return [line for line in map(_polyline, curves_of(compound)) if len(line) > 1]
+    lines = []
+    for curve in curves_of(compound):
+        rounded = [(round(p.X(), 3) + 0.0, round(p.Y(), 3) + 0.0) for p in on_curve(curve, CHORD)]
+        line = tuple(p for i, p in enumerate(rounded) if i == 0 or p != rounded[i - 1])
+        if len(line) > 1:
+            lines.append(min(line, line[::-1]))
+    return lines
 
 
 def on_curve(curve: BRepAdaptor_Curve, chord: float) -> list[gp_Pnt]:
@@ -285,20 +289,6 @@ def on_curve(curve: BRepAdaptor_Curve, chord: float) -> list[gp_Pnt]:
         return [curve.Value(first), curve.Value(last)]
     sampled = GCPnts_QuasiUniformDeflection(curve, chord, first, last)
     return [sampled.Value(i) for i in range(1, sampled.NbPoints() + 1)]
-
-
-def _polyline(curve: BRepAdaptor_Curve) -> Polyline:
-    rounded = [(round(p.X(), 3) + 0.0, round(p.Y(), 3) + 0.0) for p in on_curve(curve, CHORD)]
-    kept = tuple(p for i, p in enumerate(rounded) if i == 0 or p != rounded[i - 1])
-    return min(kept, kept[::-1])
-
-
-def _path(lines: Sequence[Polyline], left: float, top: float) -> str:
-    parts = []
-    for line in lines:
-        points = [f"{x - left:.3f},{top - y:.3f}" for x, y in line]
-        parts.append("M" + "L".join(points))
-    return "".join(parts)
 
 
 def draw_in_windows(boxes: NDArray[np.float64], draw: Callable[[NDArray[np.intp]], Lines]) -> Lines:

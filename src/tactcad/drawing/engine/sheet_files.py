@@ -7,14 +7,17 @@ from __future__ import annotations
 import io
 import os
 from calendar import timegm
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING
 
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Identity
+
 from .fonts import FAMILY, em, font_file
-from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, LineType, Point, Stroke, Text
+from .ink import DrawnArc, DrawnSheet, Fill, Hatch, Item, Point, Stroke, Text
+from .workers import Written
 
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
@@ -37,8 +40,15 @@ def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) 
 
     pdfmetrics.registerFont(TTFont(FONT, str(font_file())))
     out = io.BytesIO()
-    with _dated(date):
+    # by itself reportlab takes the date of SOURCE_DATE_EPOCH, which users set for other purposes
+    given = os.environ.get(EPOCH)
+    os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
+    try:
         canvas = Canvas(out, invariant=1, pageCompression=1)  # invariant: no clock, no random identifiers
+    finally:
+        del os.environ[EPOCH]
+        if given is not None:
+            os.environ[EPOCH] = given
     canvas.setTitle(title)
     canvas.setAuthor(author)
     canvas.setCreator("tactcad")
@@ -53,24 +63,16 @@ def pdf_bytes(sheets: Sequence[DrawnSheet], title: str, author: str, date: str) 
     return out.getvalue()
 
 
-@contextmanager
-def _dated(date: str) -> Iterator[None]:
-    """Make reportlab use this date only: by itself it takes that of SOURCE_DATE_EPOCH, which users set for
-    other purposes.
-    """
-    given = os.environ.pop(EPOCH, None)
-    os.environ[EPOCH] = str(timegm((*map(int, date.split("-")), 0, 0, 0)))
-    try:
-        yield
-    finally:
-        del os.environ[EPOCH]
-        if given is not None:
-            os.environ[EPOCH] = given
-
-
 def _draw(canvas: Canvas, item: Item) -> None:
     if isinstance(item, Text):
-        _write(canvas, item)
+        canvas.saveState()
+        canvas.setFillGray(0.8 if item.role == "watermark" else 0)
+        canvas.translate(*item.origin)
+        if item.angle:
+            canvas.rotate(item.angle)
+        canvas.setFont(FONT, em(item.height))
+        canvas.drawString(0, 0, item.text)
+        canvas.restoreState()
         return
     path = canvas.beginPath()
     if isinstance(item, DrawnArc):
@@ -91,26 +93,10 @@ def _draw(canvas: Canvas, item: Item) -> None:
         return
     if isinstance(item, Stroke) and item.closed:
         path.close()
-    _set_pen(canvas, item.line)
-    canvas.drawPath(path, stroke=1, fill=0)
-
-
-def _set_pen(canvas: Canvas, line: LineType) -> None:
     canvas.setStrokeGray(0)
-    canvas.setLineWidth(line.width)
-    canvas.setDash(list(line.dashes))
-
-
-def _write(canvas: Canvas, text: Text) -> None:
-    x, y = text.origin
-    canvas.saveState()
-    canvas.setFillGray(0.8 if text.role == "watermark" else 0)
-    canvas.translate(x, y)
-    if text.angle:
-        canvas.rotate(text.angle)
-    canvas.setFont(FONT, em(text.height))
-    canvas.drawString(0, 0, text.text)
-    canvas.restoreState()
+    canvas.setLineWidth(item.line.width)
+    canvas.setDash(list(item.line.dashes))
+    canvas.drawPath(path, stroke=1, fill=0)
 
 
 def svg_bytes(sheet: DrawnSheet) -> bytes:
@@ -132,44 +118,32 @@ def svg_bytes(sheet: DrawnSheet) -> bytes:
 
 def _element(item: Item, h: float) -> str:
     if isinstance(item, Text):
-        return _text(item, h)
+        x, y = item.origin
+        turn = f' transform="rotate({-item.angle:g} {x:.3f} {h - y:.3f})"' if item.angle else ""
+        ink = GREY if item.role == "watermark" else "#000000"
+        return (
+            f'<text class="{item.role}" fill="{ink}" font-size="{em(item.height):.4f}" '
+            f'x="{x:.3f}" y="{h - y:.3f}" textLength="{item.width:.3f}" lengthAdjust="spacingAndGlyphs" '
+            f'xml:space="preserve"{turn}>{escape(item.text)}</text>'
+        )
     if isinstance(item, Fill):
         return f'<path class="{item.role}" fill="#000000" d="{_polyline(item.points, h)}Z"/>'
-    if isinstance(item, DrawnArc):
-        return f'<path class="{item.role}" {_pen(item.line)} d="{_arc(item, h)}"/>'
-    if isinstance(item, Hatch):
-        lines = "".join(_polyline(chord, h) for chord in item.chords())
-        return f'<path class="{item.role}" {_pen(item.line)} d="{lines}"/>'
-    line = _polyline(item.points, h) + ("Z" if item.closed else "")
-    return f'<path class="{item.role}" {_pen(item.line)} d="{line}"/>'
-
-
-def _pen(line: LineType) -> str:
-    dashes = f' stroke-dasharray="{" ".join(f"{d:g}" for d in line.dashes)}"' if line.dashes else ""
-    return f'stroke="#000000" stroke-width="{line.width:g}"{dashes}'
+    if isinstance(item, DrawnArc):  # in two halves: a full circle has no one arc in SVG
+        stops = [item.at(item.start + item.sweep * share) for share in (0.0, 0.5, 1.0)]
+        (x0, y0), *rest = [(x, h - y) for x, y in stops]
+        turns = (f"A{item.radius:.3f},{item.radius:.3f} 0 0 0 {x:.3f},{y:.3f}" for x, y in rest)
+        line = f"M{x0:.3f},{y0:.3f}{''.join(turns)}"
+    elif isinstance(item, Hatch):
+        line = "".join(_polyline(chord, h) for chord in item.chords())
+    else:
+        line = _polyline(item.points, h) + ("Z" if item.closed else "")
+    pen, dashes = item.line, " ".join(f"{d:g}" for d in item.line.dashes)
+    dashed = f' stroke-dasharray="{dashes}"' if dashes else ""
+    return f'<path class="{item.role}" stroke="#000000" stroke-width="{pen.width:g}"{dashed} d="{line}"/>'
 
 
 def _polyline(points: tuple[Point, ...], h: float) -> str:
     return "M" + "L".join(f"{x:.3f},{h - y:.3f}" for x, y in points)
-
-
-def _arc(arc: DrawnArc, h: float) -> str:
-    """In two halves: a full circle has no one arc in SVG."""
-    stops = [arc.at(arc.start + arc.sweep * share) for share in (0.0, 0.5, 1.0)]
-    (x0, y0), *rest = [(x, h - y) for x, y in stops]
-    turns = "".join(f"A{arc.radius:.3f},{arc.radius:.3f} 0 0 0 {x:.3f},{y:.3f}" for x, y in rest)
-    return f"M{x0:.3f},{y0:.3f}{turns}"
-
-
-def _text(text: Text, h: float) -> str:
-    x, y = text.origin
-    turn = f' transform="rotate({-text.angle:g} {x:.3f} {h - y:.3f})"' if text.angle else ""
-    ink = GREY if text.role == "watermark" else "#000000"
-    return (
-        f'<text class="{text.role}" fill="{ink}" font-size="{em(text.height):.4f}" '
-        f'x="{x:.3f}" y="{h - y:.3f}" textLength="{text.width:.3f}" lengthAdjust="spacingAndGlyphs" '
-        f'xml:space="preserve"{turn}>{escape(text.text)}</text>'
-    )
 
 
 @lru_cache(maxsize=16)  # a release asks several things of each of its sheets
@@ -197,17 +171,12 @@ def pdf_runs(data: bytes) -> list[list[str]]:
 
 def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
     """The sheets below each other in one SVG file, each at the paper's size."""
-
     width, y, pieces = max(s.size[0] for s in sheets), 0.0, []
     for sheet in sheets:
         w, h = sheet.size
         body = svg_bytes(sheet).decode().partition("?>\n")[2]
-        # in millimetres of the whole, not of the window
-        pieces.append(
-            body.replace(
-                f'width="{w:g}mm" height="{h:g}mm"', f'x="0" y="{y:g}" width="{w:g}" height="{h:g}"', 1
-            )
-        )
+        place = f'x="0" y="{y:g}" width="{w:g}" height="{h:g}"'  # in millimetres of the whole
+        pieces.append(body.replace(f'width="{w:g}mm" height="{h:g}mm"', place, 1))
         y += h + BETWEEN
     head = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -215,3 +184,16 @@ def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
         f'viewBox="0 0 {width:g} {y - BETWEEN:g}">\n'
     )
     return (head + "".join(pieces) + "</svg>\n").encode()
+
+
+def files_of(
+    sheets: Sequence[DrawnSheet], name: str, what: str, of: Identity, faults: Callable[[bytes], list[str]]
+) -> Written:
+    """Sheets of a design as PDF and SVG.
+
+    Raises CheckFailure, naming them, where the PDF read back has `faults`.
+    """
+    pdf = pdf_bytes(sheets, f"{name} revision {of.revision}: {what}", of.author or "", of.date)
+    if wrong := faults(pdf):
+        raise CheckFailure(f"drawings: {name}: {'; '.join(wrong)}; no drawing was written")
+    return Written(pdf, stacked_svg(sheets) if len(sheets) > 1 else svg_bytes(sheets[0]))

@@ -5,7 +5,7 @@ corner; numbered notes; and the pages of assembly and circuit drawings before th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Identity
@@ -19,15 +19,18 @@ from .ink import (
     THIN,
     VISIBLE,
     DrawnArc,
+    DrawnSheet,
     Item,
     LineType,
     Point,
     Stroke,
     Text,
+    preliminary,
     rectangle,
     segment,
 )
-from .paper import Paper
+from .layout_check import layout_faults
+from .paper import Paper, frame
 
 WIDTH, HEIGHT = 180.0, 59.0  # ISO 7200: 180 wide, so that it fits A4
 LABEL = 1.8  # height of the cells' headings, ISO 3098 series
@@ -83,51 +86,25 @@ def title_block(paper: Paper, t: TitleBlock) -> list[Item]:
     x0, y0 = paper.area[2] - WIDTH, paper.area[1]
     items: list[Item] = [rectangle(x0, y0, WIDTH, HEIGHT, FRAME, "table")]
     mass = "" if t.mass is None else f"{t.mass:.3g} g" if t.mass < 1000 else f"{t.mass / 1000:.3g} kg"
+    limits, units = (
+        (GENERAL_TOLERANCES, ("mm, angles in degrees", TOLERANCING)) if t.dimensioned else ("", "mm")
+    )
+    material = (
+        (58, "Material and temper", t.material),
+        (24, "Mass", mass),
+        (60, "General tolerances", limits),
+    )
+    finish = ((96, "Surface finish", t.finish), (54, "Dimensions", units))
+    signed = ((46, "Created by", t.creator), (46, "Approved by", ""))  # by hand
+    kind = ((44, "Document type", t.document_type), (44, "Document status", t.status))
+    titles = (92, "Title, supplementary title", (t.title, t.supplementary))
+    issue = ((92, "Legal owner", t.legal_owner), (18, "Revision", t.revision), (40, "Date of issue", t.date))
     rows = (  # height, cells of width, heading, value
-        (
-            12,
-            (
-                (58, "Material and temper", t.material),
-                (24, "Mass", mass),
-                (60, "General tolerances", GENERAL_TOLERANCES if t.dimensioned else ""),
-                (18, "Scale", t.scale),
-                (20, "Projection", ""),
-            ),
-        ),
-        (
-            12,
-            (
-                (96, "Surface finish", t.finish),
-                (54, "Dimensions", ("mm, angles in degrees", TOLERANCING) if t.dimensioned else "mm"),
-                (15, "Paper", paper.name),
-                (15, "Language", "en"),
-            ),
-        ),
-        (
-            10,
-            (
-                (46, "Created by", t.creator),
-                (46, "Approved by", ""),  # signed by hand
-                (44, "Document type", t.document_type),
-                (44, "Document status", t.status),
-            ),
-        ),
-        (
-            15,
-            (
-                (92, "Title, supplementary title", (t.title, t.supplementary)),
-                (88, "Identification number", t.number),
-            ),
-        ),
-        (
-            10,
-            (
-                (92, "Legal owner", t.legal_owner),
-                (18, "Revision", t.revision),
-                (40, "Date of issue", t.date),
-                (30, "Sheet", f"{t.sheet}/{t.sheets}"),
-            ),
-        ),
+        (12, (*material, (18, "Scale", t.scale), (20, "Projection", ""))),
+        (12, (*finish, (15, "Paper", paper.name), (15, "Language", "en"))),
+        (10, (*signed, *kind)),
+        (15, (titles, (88, "Identification number", t.number))),
+        (10, (*issue, (30, "Sheet", f"{t.sheet}/{t.sheets}"))),
     )
     y = y0 + HEIGHT
     for height, cells in rows:
@@ -144,42 +121,27 @@ def _cell(x: float, y: float, w: float, h: float, heading: str, value: str | tup
         rectangle(x, y, w, h, THIN, "table"),
         Text((x + 1.0, y + h - LABEL - 0.9), heading, LABEL, role="table"),
     ]
-    lines, size = _fitted((value,) if isinstance(value, str) else value, w - 2.0, h - LABEL - 2.4)
-    if lines is None:
-        raise CheckFailure(f"drawings: {heading.lower()} {' '.join(value)!r} does not fit the title block")
-    step = 1.6 * size
-    base = y + 1.1 + 0.25 * size
-    return items + [
-        Text((x + 1.0, base + step * (len(lines) - 1 - i)), line, size, role="table")
-        for i, line in enumerate(lines)
-    ]
-
-
-def _fitted(given: tuple[str, ...], room: float, high: float) -> tuple[list[str] | None, float]:
-    """The lines at the largest size at which they fit, broken only where they have to be; None where none
-    fits."""
-    given = tuple(line for line in given if line)
+    given = [line for line in ((value,) if isinstance(value, str) else value) if line]
+    room, high = w - 2.0, h - LABEL - 2.4
+    # the largest size at which all fits; broken only where it has to be
     for size, whole in ((3.5, True), (2.5, True), (1.8, True), (2.5, False), (1.8, False)):
-        lines = list(given) if whole else [piece for line in given for piece in wrapped(line, size, room)]
+        lines = given if whole else [piece for line in given for piece in wrapped(line, size, room)]
         high_enough = size * (1.6 * len(lines) - 0.3) <= high
         if high_enough and all(width(line, size) <= room for line in lines):
-            return lines, size
-    return None, 0.0
+            step, base = 1.6 * size, y + 1.1 + 0.25 * size
+            at = [(x + 1.0, base + step * (len(lines) - 1 - i)) for i in range(len(lines))]
+            return items + [Text(p, line, size, role="table") for p, line in zip(at, lines)]
+    raise CheckFailure(f"drawings: {heading.lower()} {' '.join(value)!r} does not fit the title block")
 
 
 def _first_angle(at: Point) -> list[Item]:
     """Symbol of first-angle projection (ISO 5456-2): truncated cone to the left of its end view."""
     x, y = at
     small, large = 1.4, 2.8
-    left, right = x - 7.2, x - 1.8
-    circle = x + 3.6
+    left, right, circle = x - 7.2, x - 1.8, x + 3.6
+    cone = ((left, y - small), (right, y - large), (right, y + large), (left, y + small))
     return [
-        Stroke(
-            ((left, y - small), (right, y - large), (right, y + large), (left, y + small)),
-            VISIBLE,
-            "symbol",
-            True,
-        ),
+        Stroke(cone, VISIBLE, "symbol", True),
         segment((left - 1.0, y), (right + 1.0, y), CENTRE, "symbol"),
         DrawnArc((circle, y), small, line=VISIBLE, role="symbol"),
         DrawnArc((circle, y), large, line=VISIBLE, role="symbol"),
@@ -189,8 +151,7 @@ def _first_angle(at: Point) -> list[Item]:
 
 
 def wrapped(text: str, height: float, room: float) -> list[str]:
-    """The text in lines no wider than `room` mm, broken at blanks, or inside a word that is too long by
-    itself."""
+    """The text in lines no wider than `room` mm, broken at blanks, or inside a word that is too long."""
     lines, line = [], ""
     for word in text.split():
         longer = f"{line} {word}" if line else word
@@ -208,8 +169,7 @@ def wrapped(text: str, height: float, room: float) -> list[str]:
 
 
 def notes(at: Point, lines: Sequence[str], room: float, height: float = 2.5) -> tuple[list[Item], float]:
-    """Numbered notes from the upper left corner `at`, wrapped to `room` mm; the items, and how high they are
-    (mm)."""
+    """Numbered notes from the upper left corner `at`, `room` mm wide; the items, and their height (mm)."""
     items: list[Item] = []
     indent = width("00. ", height)
     x, y = at
@@ -251,3 +211,21 @@ def fewer(placements: Sequence[Placement]) -> tuple[Placement, ...]:
         if len(kept) <= MOST_DRAWN or most == 1:
             return tuple(kept)
         most = max(1, most // 2)
+
+
+def sheets_of(block: TitleBlock, pages: Sequence[Page], draft: bool, named: str = "") -> list[DrawnSheet]:
+    """The pages in frame and title block, called `named` or after their document types; a `draft` says so.
+
+    Raises CheckFailure where a layout is not clean.
+    """
+    sheets = []
+    for n, page in enumerate(pages, start=1):
+        own = replace(block, scale=page.scale, sheet=n, sheets=len(pages), document_type=page.document_type)
+        items = (*frame(page.paper), *title_block(page.paper, own), *page.items)
+        title = f"{named or page.document_type}, sheet {n} of {len(pages)}"
+        sheets.append(DrawnSheet(block.number, title, page.paper.size, items))
+    for sheet in sheets:
+        if wrong := layout_faults(sheet):
+            name = block.number if named else sheet.title
+            raise CheckFailure(f"drawings: {name}: {'; '.join(wrong[:3])}; no drawing was written")
+    return [preliminary(sheet) for sheet in sheets] if draft else sheets

@@ -10,7 +10,7 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, wait
+from concurrent.futures import ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
@@ -55,6 +55,11 @@ def end_with(parent: int) -> None:
         os._exit(1)
 
 
+def _pool(count: int) -> ProcessPoolExecutor:
+    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are serial)
+    return ProcessPoolExecutor(count, multiprocessing.get_context("fork"), end_with, (os.getpid(),))
+
+
 def all_written(
     orders: Sequence[Named],
     make: Callable[..., Written],
@@ -84,18 +89,22 @@ def all_written(
     if not orders:
         return []
     cores = min(len(os.sched_getaffinity(0)), len(orders))
-    # fork: the kernel is loaded already, and runs no threads of its own (its booleans and meshes are called
-    # serial).
-    # Even a single drawing has a process of its own: the kernel would block this one, and nothing could be
+    # even a single drawing has a process of its own: the kernel would block this one, and nothing could be
     # shown meanwhile.
-    with ProcessPoolExecutor(cores, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
+    made: list[Written] = []
+    with _pool(cores) as pool:
         futures = [pool.submit(make, order) for order in orders]
         try:
-            made = [_waited(f, n, orders, say) for n, f in enumerate(futures)]
+            for n, (order, future) in enumerate(zip(orders, futures)):
+                say(n, len(orders), f"drawing of {order.name}")
+                for rounds in count(1):
+                    if wait([future], EVERY).done:
+                        break
+                    say(n, len(orders), f"drawing of {order.name} (for {rounds * EVERY:g} s)")
+                made.append(future.result())
         except BrokenProcessPool as error:
-            raise CheckFailure(
-                "drawings: a process that made them was killed; no drawing was written"
-            ) from error
+            killed = "drawings: a process that made them was killed; no drawing was written"
+            raise CheckFailure(killed) from error
         finally:
             for future in futures:
                 future.cancel()
@@ -108,20 +117,8 @@ def made_apart(name: str, make: Callable[..., bytes], *arguments: object) -> byt
 
     Raises CheckFailure, naming it, where that process was killed or crashed; else what `make` raises.
     """
-    with ProcessPoolExecutor(1, multiprocessing.get_context("fork"), end_with, (os.getpid(),)) as pool:
+    with _pool(1) as pool:
         try:
             return pool.submit(make, *arguments).result()
         except BrokenProcessPool as error:
             raise CheckFailure(f"{name}: the process that made it crashed or was killed") from error
-
-
-def _waited(
-    future: Future[Written], n: int, orders: Sequence[Named], say: Callable[[int, int, str], None]
-) -> Written:
-    """The n-th drawing once it is finished; meanwhile a message every EVERY seconds."""
-    say(n, len(orders), f"drawing of {orders[n].name}")
-    for rounds in count(1):
-        if wait([future], EVERY).done:
-            break
-        say(n, len(orders), f"drawing of {orders[n].name} (for {rounds * EVERY:g} s)")
-    return future.result()

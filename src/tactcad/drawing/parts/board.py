@@ -11,13 +11,13 @@ import numpy as np
 
 from ..engine.boxes import Box, Chord, Point, Quad, bounds, chord_meets, corners, grown, overlap, quads_meet
 from ..engine.fonts import width
-from ..engine.ink import LETTER_HEIGHT, THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
+from ..engine.ink import LETTERS, THIN, Fill, Item, Text, arrow, bounds_of_items, polar, segment
 from ..engine.layout_check import BESIDE_LINE
 from .dimension_lines import ARROW, PAD
 from .sheet_plan import Callout, Datum
 from .tolerances import FRAME, block, datum, frame_width
 
-STEP = 1.7 * LETTER_HEIGHT  # between lines of a callout
+STEP = 1.7 * LETTERS  # between lines of a callout
 SHELF = 3.0  # of the leader beside the text
 BELOW_LINE = 1.5  # from the last line's baseline to a frame
 # Lengths of leaders tried, mm.
@@ -237,11 +237,11 @@ def _block(c: Callout, start: Point, towards: float) -> tuple[list[Text], list[I
     """Texts beside the shelf's end, the first line level with it; below them tolerance frames and a datum's
     symbol, level with it where there is no text."""
     x, y = start
-    wide = max([FRAME, *(width(line, LETTER_HEIGHT) for line in c.lines), *map(frame_width, c.frames)])
+    wide = max([FRAME, *(width(line, LETTERS) for line in c.lines), *map(frame_width, c.frames)])
     aside = 1.0 if c.lines else 0.0
     left = x + aside if towards > 0 else x - aside - wide
-    base = y - LETTER_HEIGHT / 2
-    texts = [Text((left, base - STEP * i), line, LETTER_HEIGHT) for i, line in enumerate(c.lines)]
+    base = y - LETTERS / 2
+    texts = [Text((left, base - STEP * i), line, LETTERS) for i, line in enumerate(c.lines)]
     if not c.frames and not c.datum:
         return texts, []
     top = texts[-1].at[1] - BELOW_LINE if texts else y + (FRAME / 2 if c.frames else 0.0)

@@ -33,7 +33,7 @@ from .broken import windowed
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .part_variables import Values
 from .sections import bore_lines, letters, mark_plane
-from .sheet_plan import Callout, SectionPlane, SheetPlan, View, seen
+from .sheet_plan import OUTWARDS, Callout, SectionPlane, SheetPlan, View, seen
 
 MARGIN = 4.0  # distance of anything from the frame
 APART = 12.0  # between views, their dimensions included
@@ -89,31 +89,27 @@ def compose(
     NoPlace
         Where no scale fits, or none leaves a clean layout.
     """
-    width_, height_ = _main_size(plan)
+    x0, y0, x1, y1 = plan.views[0].box
+    wide, high = x1 - x0, y1 - y0
     said: list[str] = []
     for scale in scales:
         details = SHRUNK if any(v.window for v in plan.views) else SHRUNK[:1]
         for paper, beside, shrunk in ((p, b, s) for p in papers for s in details for b in (True, False)):
-            if max(width_, height_) * factor(scale) > (LARGEST if paper in (A4, A3) else paper.width):
+            if max(wide, high) * factor(scale) > (LARGEST if paper in (A4, A3) else paper.width):
                 said.append(f"the views at {shown(scale)} do not fit {paper.name}")
                 continue
             if beside and paper.area[2] - paper.area[0] - WIDTH < NARROWEST:
                 continue
-            sheet, faults = _attempt(plan, curves, block, paper, scale, beside, shrunk)
-            if sheet and not faults:
-                return sheet
-            said.append(f"{paper.name} {shown(scale)}: {faults[0]}")
+            try:
+                return _attempt(plan, curves, block, paper, scale, beside, shrunk)
+            except NoPlace as fault:
+                said.append(f"{paper.name} {shown(scale)}: {fault}")
     nearest = [line for line in said if "do not fit" not in line] or said[-1:]
     raise NoPlace(
-        f"drawings: {plan.part.part_no} ({width_:g} x {height_:g} mm) finds no place on "
+        f"drawings: {plan.part.part_no} ({wide:g} x {high:g} mm) finds no place on "
         f"{', '.join(p.name for p in papers)} at "
         f"{shown(SERIES[0])} to {shown(SERIES[-1])}: {'; '.join(nearest[:6])}; no drawing was written"
     )
-
-
-def _main_size(plan: SheetPlan) -> tuple[float, float]:
-    x0, y0, x1, y1 = plan.views[0].box
-    return (x1 - x0, y1 - y0)
 
 
 def _attempt(
@@ -124,7 +120,8 @@ def _attempt(
     scale: Scale,
     beside: bool,
     shrunk: float,
-) -> tuple[DrawnSheet | None, list[str]]:
+) -> DrawnSheet:
+    """The sheet on one paper at one scale. Raises NoPlace with its first fault."""
     board = Board(paper.area)
     board.add(frame(paper))
     board.add(title_block(paper, replace(block, scale=shown(scale))))
@@ -134,16 +131,20 @@ def _attempt(
     spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
     drawn = []
     for n, v in enumerate(plan.views):
+        # running dimensions stand further off where a datum's symbol has to fit between them and its edge
+        edges = {d.away for d in v.datums}
+        off = {} if n else dict(spread)
+        off |= {r.side: off.get(r.side, 0.0) + DATUM for r in v.runnings if OUTWARDS[r.side] in edges}
         own = _detail_scale(v, v.window, shrunk) if v.window else scale
-        drawn.append(_drawn(v, curves[v.name], own, plan.values, _room_for_datums(v, {} if n else spread)))
+        drawn.append(_drawn(v, curves[v.name], own, plan.values, off))
     places = _arranged([d for d in drawn if not d.view.window], board, len(drawn))
     if places is None:
-        return None, [f"the views at {shown(scale)} do not fit {paper.name}"]
+        raise NoPlace(f"the views at {shown(scale)} do not fit {paper.name}")
     for d in drawn:
         if d.view.window:
             spot = _free_spot(board, grown(d.box, APART / 2))
             if spot is None:
-                return None, [f"detail {d.view.label} finds no place"]
+                raise NoPlace(f"detail {d.view.label} finds no place")
             places[d.view.name] = spot
             board.keep_out(shifted(_view_box(d), spot))
             board.taken.append(shifted(d.box, spot))
@@ -153,43 +154,34 @@ def _attempt(
     for d in drawn:
         window = shifted(scaled(d.view.window, factor(scale)), front) if d.view.window else None
         if window and not _mark_window(board, window, d.view.label):
-            return None, [f"the letter {d.view.label} finds no place"]
+            raise NoPlace(f"the letter {d.view.label} finds no place")
         if d.view.section and not _mark_section(board, d.view, d.view.section, drawn[0], front):
-            return None, [f"the cutting plane {letters(d.view.section)} finds no place"]
+            raise NoPlace(f"the cutting plane {letters(d.view.section)} finds no place")
     lettered: dict[str, bool] = {}
-    for d in drawn:
-        for edge in d.view.datums:
-            # a letter that several views offer stands on the first of them that has room
-            if not lettered.get(edge.letter):
-                lettered[edge.letter] = board.datum(edge, factor(d.scale), places[d.view.name])
-    for d in drawn:
-        for edge in d.view.datums:
-            if not lettered[edge.letter]:  # at the end of a leader
-                spots = tuple((edge.at(share), 0.0) for share in (0.5, 0.25, 0.75))
-                said = Callout((), spots, datum=edge.letter)
-                lettered[edge.letter] = board.callout(said, factor(d.scale), places[d.view.name])
+    edged = [(edge, factor(d.scale), places[d.view.name]) for d in drawn for edge in d.view.datums]
+    for edge, f, place in edged:
+        # a letter that several views offer stands on the first of them that has room
+        if not lettered.get(edge.letter):
+            lettered[edge.letter] = board.datum(edge, f, place)
+    for edge, f, place in edged:
+        if not lettered[edge.letter]:  # at the end of a leader
+            spots = tuple((edge.at(share), 0.0) for share in (0.5, 0.25, 0.75))
+            lettered[edge.letter] = board.callout(Callout((), spots, datum=edge.letter), f, place)
     if not all(lettered.values()):
-        return None, [f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place"]
+        raise NoPlace(f"datum {', '.join(n for n, placed in lettered.items() if not placed)} finds no place")
     for d in drawn:
         for callout in d.view.callouts:
             if not board.callout(callout, factor(d.scale), places[d.view.name]):
-                return None, [f"callout {_said(callout)!r} finds no place"]
+                cells = [
+                    *callout.lines[:1],
+                    *(cell for f in callout.frames for cell in f.cells),
+                    callout.datum,
+                ]
+                raise NoPlace(f"callout {' '.join(cells).strip()!r} finds no place")
     sheet = DrawnSheet(plan.part.part_no, plan.part.name, paper.size, tuple(board.items))
-    return sheet, layout_faults(sheet)
-
-
-def _room_for_datums(view: View, spread: Mapping[str, float]) -> dict[str, float]:
-    """By how much running dimensions stand further off, so that a datum's symbol fits between them and its
-    edge."""
-    sides = {"top": (0.0, 1.0), "bottom": (0.0, -1.0), "left": (-1.0, 0.0), "right": (1.0, 0.0)}
-    edges = {d.away for d in view.datums}
-    return dict(spread) | {
-        r.side: spread.get(r.side, 0.0) + DATUM for r in view.runnings if sides[r.side] in edges
-    }
-
-
-def _said(c: Callout) -> str:
-    return " ".join([*c.lines[:1], *(cell for f in c.frames for cell in f.cells), c.datum]).strip()
+    if faults := layout_faults(sheet):
+        raise NoPlace(faults[0])
+    return sheet
 
 
 def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool) -> None:
@@ -211,28 +203,24 @@ def _drawn(
     f = factor(scale)
     if view.window:
         curves = windowed([c for c in curves if not isinstance(c, Hatch)], view.window)
-    items: list[Item] = [_scaled(c, f) for c in curves if view.hidden or c.role != "hidden"]
+    items = [moved(c, 0.0, 0.0, f) for c in curves if view.hidden or c.role != "hidden"]
     paper_box = scaled(view.window or view.box, f)
     starts = {}
     for r in view.runnings:
         off = spread.get(r.side, 0.0)
         items += running(r, paper_box, f, values, FIRST - 2.0 + off)
         starts[r.side] = FIRST + 22.0 + off
-    for side in ("top", "bottom", "left", "right"):
-        items += stacked(
-            view.linears, side, paper_box, f, values, starts.get(side, FIRST + spread.get(side, 0.0))
-        )
+    for side in OUTWARDS:
+        start = starts.get(side, FIRST + spread.get(side, 0.0))
+        items += stacked(view.linears, side, paper_box, f, values, start)
     for dimension in view.across:
         items += across(dimension, f, values)
     for centre, diameter in view.centres:
         items += centre_lines(centre, diameter, f)
     for centre, diameter in view.threads:
         # three quarters of a thin circle at the nominal diameter (ISO 6410-1)
-        items.append(
-            DrawnArc((centre[0] * f, centre[1] * f), diameter / 2 * f, 100.0, 370.0, THIN, "outline")
-        )
-    for a, b in view.axes:
-        items.append(Stroke(((a[0] * f, a[1] * f), (b[0] * f, b[1] * f)), CENTRE, "centre"))
+        items.append(moved(DrawnArc(centre, diameter / 2, 100.0, 370.0, THIN), 0.0, 0.0, f))
+    items += [moved(Stroke(axis, CENTRE, "centre"), 0.0, 0.0, f) for axis in view.axes]
     if view.section:
         face = next(item for item in items if isinstance(item, Hatch))
         items += [line for bore in view.section.bores for line in bore_lines(bore, f, face)]
@@ -267,7 +255,14 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
     if "above" in boxes:
         shifts["above"] = (0.0, f[3] + APART - boxes["above"][1])
     whole = bounds_of(corners(shifted(boxes[name], s)) for name, s in shifts.items())
-    spot = _middle_spot(board, whole) if len(drawn) == views else None
+    spot = None
+    if len(drawn) == views:  # in the middle above the title block, with room for callouts around
+        x0, _, x1, y1 = board.area
+        y0 = max(top for *_, top in board.kept)
+        middle = ((x0 + x1 - whole[0] - whole[2]) / 2, (y0 + y1 - whole[1] - whole[3]) / 2)
+        around = grown(shifted(whole, middle), APART)
+        if around[0] >= x0 and around[1] >= y0 and around[2] <= x1 and around[3] <= y1:
+            spot = middle
     spot = spot or _free_spot(board, grown(whole, APART))
     if spot is None:
         return None
@@ -276,16 +271,6 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
     for name, place in places.items():
         board.keep_out(shifted(_view_box(next(d for d in drawn if d.view.name == name)), place))
     return places
-
-
-def _middle_spot(board: Board, wanted: Box) -> Point | None:
-    """Shift to the middle of the area above the title block, with room for callouts around; None where it
-    does not fit."""
-    x0, y0, x1, y1 = board.area
-    y0 = max([y0, *(kept[3] for kept in board.kept)])
-    spot = ((x0 + x1 - wanted[0] - wanted[2]) / 2, (y0 + y1 - wanted[1] - wanted[3]) / 2)
-    around = grown(shifted(wanted, spot), APART)
-    return spot if around[0] >= x0 and around[1] >= y0 and around[2] <= x1 and around[3] <= y1 else None
 
 
 def _view_box(d: _Drawn) -> Box:
@@ -336,11 +321,3 @@ def _mark_section(board: Board, view: View, section: SectionPlane, front: _Drawn
     at = seen(front.view, on)[section.axis] * f + place[section.axis]
     sight = -sum(a * b for a, b in zip(view.eye, (front.view.right, front.view.up)[section.axis]))
     return mark_plane(board, section, at, sight, shifted(scaled(front.view.box, f), place))
-
-
-def _scaled(curve: Curve, f: float) -> Curve:
-    if isinstance(curve, Hatch):
-        return replace(curve, loops=tuple(tuple((x * f, y * f) for x, y in loop) for loop in curve.loops))
-    if isinstance(curve, DrawnArc):
-        return replace(curve, centre=(curve.centre[0] * f, curve.centre[1] * f), radius=curve.radius * f)
-    return replace(curve, points=tuple((x * f, y * f) for x, y in curve.points))

@@ -11,19 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from ..engine.boxes import Box, Point
 from ..engine.fonts import ink_box, width
-from ..engine.ink import (
-    CENTRE,
-    LETTER_HEIGHT,
-    THIN,
-    DrawnArc,
-    Fill,
-    Item,
-    Stroke,
-    Text,
-    arrow,
-    polar,
-    segment,
-)
+from ..engine.ink import CENTRE, LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, arrow, polar, segment
 from .part_variables import Values
 from .sheet_plan import Across, Linear, Running, Side
 
@@ -93,7 +81,7 @@ def _outline(start: Point, text: Text, length: float, pad: float) -> Stroke:
 
 
 def boxed_width(text: str, key: int) -> float:
-    return width(text, LETTER_HEIGHT) + (width(f"K{key}", LETTER_HEIGHT) + 4 * PAD if key else 0.0)
+    return width(text, LETTERS) + (width(f"K{key}", LETTERS) + 4 * PAD if key else 0.0)
 
 
 def stacked(
@@ -215,13 +203,11 @@ def _text_on(
 ) -> list[Item]:
     """The text above its dimension line, read from below or from the right."""
     x, y = on_paper(t0, o)
-    below = -ink_box(text, LETTER_HEIGHT)[
-        1
-    ]  # parentheses reach below the line of writing, down to the arrow heads
+    below = -ink_box(text, LETTERS)[1]  # parentheses reach below the line of writing, down to the arrow heads
     lift = max(ABOVE + (PAD - 0.2 if key or basic else 0.0), below + CLEAR_OF_ARROW)
     upright = side in ("left", "right")
     at = (x - lift, y) if upright else (x, y + lift)
-    shown = Text(at, text, LETTER_HEIGHT, angle=90.0 if upright else 0.0)
+    shown = Text(at, text, LETTERS, angle=90.0 if upright else 0.0)
     if basic:
         shown = replace(shown, at=polar(at, BASIC, shown.angle))
         return [shown, _outline(at, shown, shown.width + 2 * BASIC, BASIC)]
@@ -273,10 +259,8 @@ def _stop(
 def _label(on_paper: Callable[[float, float], Point], side: Side, s: float, o: float, text: str) -> Text:
     x, y = on_paper(s, o)
     if side in ("top", "bottom"):
-        return Text(
-            (x + LETTER_HEIGHT / 2, y), text, LETTER_HEIGHT, "start" if side == "top" else "end", 90.0
-        )
-    return Text((x, y - LETTER_HEIGHT / 2), text, LETTER_HEIGHT, "end" if side == "left" else "start")
+        return Text((x + LETTERS / 2, y), text, LETTERS, "start" if side == "top" else "end", 90.0)
+    return Text((x, y - LETTERS / 2), text, LETTERS, "end" if side == "left" else "start")
 
 
 def _spread(wanted: Sequence[float], least: float) -> list[float]:
@@ -307,8 +291,8 @@ def across(a: Across, scale: float, values: Values) -> list[Item]:
     items: list[Item] = [segment(before, p), segment(q, end), arrow(p, before, ARROW), arrow(q, end, ARROW)]
     shelf = 3.0
     items.append(segment(end, (end[0] + shelf, end[1])))
-    at = (end[0] + shelf + (0.0 if key else 1.0), end[1] - LETTER_HEIGHT / 2)
-    shown = Text(at, text, LETTER_HEIGHT)
+    at = (end[0] + shelf + (0.0 if key else 1.0), end[1] - LETTERS / 2)
+    shown = Text(at, text, LETTERS)
     return [*items, *(boxed(shown, key) if key else [shown])]
 
 

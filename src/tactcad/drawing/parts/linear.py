@@ -15,7 +15,7 @@ from ..engine.boxes import Point
 from .callouts import Group
 from .measures import Level, Span, level
 from .part_variables import OUTER, THICKNESS, Spot
-from .sheet_plan import Linear, Running, Side, View, seen
+from .sheet_plan import OUTWARDS, Linear, Running, Side, View, seen
 from .sketch import ALIKE, Coordinate, Sketch
 from .tolerances import places
 
@@ -150,9 +150,8 @@ def _with_stops(
 
 def _foot(view: View, side: Side, c: Coordinate) -> Point:
     """Where the extension line starts: at the feature's end that is nearer to the side."""
-    outwards = {"top": (0, 1), "bottom": (0, -1), "left": (-1, 0), "right": (1, 0)}[side]
-    ends = [seen(view, p) for p in (c.at, c.other) if p]
-    return max(ends, key=lambda p: p[0] * outwards[0] + p[1] * outwards[1])
+    (u, v), ends = OUTWARDS[side], [seen(view, p) for p in (c.at, c.other) if p]
+    return max(ends, key=lambda p: p[0] * u + p[1] * v)
 
 
 def _corner(view: View, c: Coordinate) -> Point:

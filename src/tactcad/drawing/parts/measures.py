@@ -8,13 +8,14 @@ their derivatives.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import atan2, degrees, hypot
 
 import numpy as np
 
-from tactcad.contour import Arc, Contour, Line
+from tactcad.contour import Contour, Line
+from tactcad.contour.necks import direction
 
 from .part_variables import Owner, Spot, Values, Variable, xy
 
@@ -22,15 +23,31 @@ STEP = 1e-6  # mm, for derivatives by central differences; measures are smooth a
 INDEPENDENT = 1e-6  # a row is independent where more than this share of its length is
 
 
-@dataclass(frozen=True)
-class Level:
-    """A coordinate along one axis, mm: the sum of coefficient x variable."""
-
-    terms: tuple[tuple[Variable, float], ...] = ()
+class OfVariables:
+    """What is measured on variables: those that its fields name, points by x and y."""
 
     @property
     def names(self) -> tuple[Variable, ...]:
-        return tuple(name for name, _ in self.terms)
+        return tuple(_named(tuple(vars(self).values())))
+
+
+def _named(value: object) -> Iterator[Variable]:
+    if isinstance(value, tuple):
+        for one in value:
+            yield from _named(one)
+    elif isinstance(value, Variable):
+        yield value
+    elif isinstance(value, Spot):
+        yield from xy(value)
+    elif isinstance(value, OfVariables):
+        yield from value.names
+
+
+@dataclass(frozen=True)
+class Level(OfVariables):
+    """A coordinate along one axis, mm: the sum of coefficient x variable."""
+
+    terms: tuple[tuple[Variable, float], ...] = ()
 
     def of(self, values: Values) -> float:
         return sum(c * values[name] for name, c in self.terms)
@@ -45,17 +62,11 @@ def halfway(a: Level, b: Level) -> Level:
 
 
 @dataclass(frozen=True)
-class Span:
-    """From one level to another, mm, positive where the second is larger; without a first level it is a
-    size.
-    """
+class Span(OfVariables):
+    """From one level to another, mm, positive where the second is larger; without a first level a size."""
 
     a: Level
     b: Level
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
         return self.b.of(values) - self.a.of(values)
@@ -67,7 +78,18 @@ def size(variable: Variable) -> Span:
 
 
 @dataclass(frozen=True)
-class Radius:
+class Given:
+    """A value of no variable, mm, such as an assembly's overall size."""
+
+    value: float
+    names = ()
+
+    def of(self, values: Values) -> float:
+        return self.value
+
+
+@dataclass(frozen=True)
+class Radius(OfVariables):
     """Radius of segment i of a contour, from its centre to its start, mm."""
 
     contour: Owner
@@ -83,15 +105,11 @@ class Radius:
 
 
 @dataclass(frozen=True)
-class Slope:
+class Slope(OfVariables):
     """Direction of a line from start to end, degrees from the x axis."""
 
     start: Spot
     end: Spot
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return (*xy(self.start), *xy(self.end))
 
     def of(self, values: Values) -> float:
         x0, y0, x1, y1 = (values[n] for n in self.names)
@@ -99,15 +117,11 @@ class Slope:
 
 
 @dataclass(frozen=True)
-class Distance:
+class Distance(OfVariables):
     """From one point to another, mm."""
 
     a: Spot
     b: Spot
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return (*xy(self.a), *xy(self.b))
 
     def of(self, values: Values) -> float:
         x0, y0, x1, y1 = (values[n] for n in self.names)
@@ -115,30 +129,22 @@ class Distance:
 
 
 @dataclass(frozen=True)
-class MeasureDifference:
+class MeasureDifference(OfVariables):
     """Of two measures: 0 where they are drawn as equal."""
 
     a: Measure
     b: Measure
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
         return self.a.of(values) - self.b.of(values)
 
 
 @dataclass(frozen=True)
-class CrossProduct:
+class CrossProduct(OfVariables):
     """Cross product of two directions, each from point to point: 0 where they are parallel."""
 
     points: tuple[Spot, Spot, Spot, Spot]
     along: bool = False  # the scalar product instead: 0 where they are at right angles
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return tuple(n for p in self.points for n in xy(p))
 
     def of(self, values: Values) -> float:
         a, b, c, d = ([values[n] for n in xy(p)] for p in self.points)
@@ -147,18 +153,13 @@ class CrossProduct:
 
 
 @dataclass(frozen=True)
-class Offset:
-    """Distance of a point, given by its levels, from the line through two points, mm; positive on the line's
-    left."""
+class Offset(OfVariables):
+    """Distance of a point, given by its levels, from the line through two points, mm; left of it positive."""
 
     start: Spot
     end: Spot
     x: Level
     y: Level
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return (*xy(self.start), *xy(self.end), *self.x.names, *self.y.names)
 
     def of(self, values: Values) -> float:
         x0, y0, x1, y1 = (values[n] for n in (*xy(self.start), *xy(self.end)))
@@ -167,23 +168,17 @@ class Offset:
 
 
 @dataclass(frozen=True)
-class Width:
-    """Sum of a point's offsets from two lines, mm: the width between two parallel lines on either side of
-    it.
-    """
+class Width(OfVariables):
+    """Sum of a point's offsets from two lines, mm: the width between parallel lines on either side of it."""
 
     a: Offset
     b: Offset
-
-    @property
-    def names(self) -> tuple[Variable, ...]:
-        return self.a.names + self.b.names
 
     def of(self, values: Values) -> float:
         return abs(self.a.of(values)) + abs(self.b.of(values))
 
 
-Measure = Span | Offset | Width | Radius | Slope | Distance | MeasureDifference | CrossProduct
+Measure = Given | Span | Offset | Width | Radius | Slope | Distance | MeasureDifference | CrossProduct
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:
@@ -208,7 +203,9 @@ def conventions(owner: Owner, contour: Contour) -> list[Measure]:
 def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
     """The convention that segment i is tangent to the one before it, where it is."""
     before, after = contour.segments[i - 1], contour.segments[i]
-    if isinstance(before, Line) and isinstance(after, Line) or not _smooth(before, after):
+    (ux, uy), (vx, vy) = direction(before, before.end), direction(after, after.start)
+    both_straight = isinstance(before, Line) and isinstance(after, Line)
+    if both_straight or abs(ux * vy - uy * vx) >= 1e-6:
         return None
     count = len(contour)
     p, q, r = (Spot(owner, n % count) for n in (i - 1, i, i + 1))
@@ -218,13 +215,6 @@ def _tangent(owner: Owner, contour: Contour, i: int) -> Measure | None:
     if isinstance(after, Line):
         return CrossProduct((q, r, q, centre_before), along=True)
     return CrossProduct((q, centre_before, q, centre_after))
-
-
-def _smooth(before: Line | Arc, after: Line | Arc) -> bool:
-    from tactcad.contour.necks import direction
-
-    (ux, uy), (vx, vy) = direction(before, before.end), direction(after, after.start)
-    return abs(ux * vy - uy * vx) < 1e-6
 
 
 @dataclass

@@ -18,7 +18,7 @@ from tactcad.parts.description import Characteristic, Extrusion, Part, Vector
 from ..engine.ink import Curve, DrawnSheet, preliminary
 from ..engine.layout_check import layout_faults
 from ..engine.paper import A0, A1, A2, A3, A4, SERIES, Paper, Scale, factor
-from ..engine.sheet_files import pdf_runs
+from ..engine.sheet_files import files_of, pdf_runs
 from ..engine.title import TitleBlock, block_of
 from ..engine.workers import Written
 from .broken import broken
@@ -33,6 +33,14 @@ SAME = 1e-9  # mm
 _VALUE = re.compile(
     r"^[⌀R]?(?P<nominal>\d+(?:\.\d+)?) (?:±(?P<both>[\d.]+)|(?P<upper>[+-]?[\d.]+)/(?P<lower>[+-]?[\d.]+))$"
 )
+
+
+@dataclass(frozen=True)
+class MadeFrom:
+    """The file that a shop makes the part from: its path in the export, and its SHA-256."""
+
+    path: str
+    sha256: str
 
 
 @dataclass(frozen=True)
@@ -142,59 +150,32 @@ def title_of(design: Design, part: Part, draft: bool, sample: bool = False) -> T
 
 def written(order: Order) -> Written:
     """The sheet as PDF and SVG, read back. Raises CheckFailure where it differs from the part."""
-    from ..engine.sheet_files import pdf_bytes, svg_bytes
-
-    sheet = part_sheet(order)
-    d = order.design.design
-    pdf = pdf_bytes(
-        [sheet], f"{order.part.part_no} revision {d.revision}: {order.part.name}", d.author or "", d.date
+    sheet, part, of = part_sheet(order), order.part, order.design.design
+    return files_of(
+        [sheet], part.part_no, part.name, of, lambda pdf: drawing_faults(pdf, sheet, part, of.revision)
     )
-    wrong = drawing_faults(pdf, sheet, order.part, d.revision)
-    if wrong:
-        raise CheckFailure(f"drawings: {order.part.part_no}: {'; '.join(wrong)}; no drawing was written")
-    return Written(pdf, svg_bytes(sheet))
-
-
-@dataclass(frozen=True)
-class MadeFrom:
-    """The file that a shop makes the part from: its path in the export, and its SHA-256."""
-
-    path: str
-    sha256: str
 
 
 def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
-    """Numbered notes of the part's sheet, which names the files that the part is made from."""
+    """Numbered notes of the part's sheet: its own, those that follow from how it is made, and the files that
+    it is made from."""
     keys = [f"K{n} {c.name}" for n, c in enumerate((c for c in part.characteristics if c.key), start=1)]
-    lines = [_capital(note) for note in part.notes]
+    lines = [note[:1].upper() + note[1:] for note in part.notes]
     if keys:
         lines.append(f"Key characteristics, framed, to be recorded on every piece: {', '.join(keys)}")
-    lines += _wire_cut(part) if part.process == "wire-cut" else []
-    return (
-        *lines,
-        *(f"{_use(part, file)} {file.path.rsplit('/', 1)[-1]}, SHA-256 {file.sha256}" for file in files),
-    )
-
-
-def _use(part: Part, file: MadeFrom) -> str:
-    if not file.path.endswith(".dxf"):
-        return "Model"
-    return "Cut from" if part.process == "wire-cut" else "Blank and plain through holes, cut from"
-
-
-def _wire_cut(part: Part) -> list[str]:
-    lines = [
-        "The DXF file holds the nominal contour, limits at their middle; wire compensation at the machine"
-    ]
-    if part.extrusion.openings:
-        lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
-    if harm := ELECTROLYSIS.get(family(part.material.density)):
-        lines.append(f"Anti-electrolysis supply: without it {part.material.name} {harm}")
-    return lines
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
+    cut = "Blank and plain through holes, cut from"
+    if part.process == "wire-cut":
+        cut = "Cut from"
+        nominal = "The DXF file holds the nominal contour, limits at their middle"
+        lines.append(f"{nominal}; wire compensation at the machine")
+        if part.extrusion.openings:
+            lines.append("Holes wire-cut before the outline, each from a start hole inside it; slugs removed")
+        if harm := ELECTROLYSIS.get(family(part.material.density)):
+            lines.append(f"Anti-electrolysis supply: without it {part.material.name} {harm}")
+    for file in files:
+        use = cut if file.path.endswith(".dxf") else "Model"
+        lines.append(f"{use} {file.path.rsplit('/', 1)[-1]}, SHA-256 {file.sha256}")
+    return tuple(lines)
 
 
 def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) -> list[str]:
@@ -241,9 +222,8 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
         longer = sum(k for other, k in frames.items() if len(other) > n and other[:n] == cells)
         if found - longer != meant:
             wrong.append(f"tolerance frame {' '.join(cells)} stands {found - longer} times, not {meant}")
-    wanted = Counter(
-        [*(d.letter for d in part.datums), *(x for cells in frames.elements() for x in cells[1:])]
-    )
+    wanted = Counter(d.letter for d in part.datums)
+    wanted.update(x for cells in frames.elements() for x in cells[1:])
     for letter in sorted({*wanted, *(run for run in runs if len(run) == 1 and run.isupper())}):
         found = runs.count(letter) - elsewhere.get(letter, 0)
         if found != wanted[letter]:
@@ -278,17 +258,12 @@ def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]
         if not match:
             wrong.append(f"K{n}: {text!r} is no value with limits")
             continue
-        nominal = float(match["nominal"])
-        upper, lower = (
-            (float(match["both"]), -float(match["both"]))
-            if match["both"]
-            else (float(match["upper"]), float(match["lower"]))
-        )
+        nominal, both = float(match["nominal"]), match["both"]
+        upper, lower = float(both or match["upper"]), -float(both) if both else float(match["lower"])
         read, meant = (nominal, nominal + upper, nominal + lower), (c.nominal, c.upper, c.lower)
         if max(abs(a - b) for a, b in zip(read, meant)) > SAME:
-            wrong.append(
-                f"K{n} ({c.name}) says {text}, the model has {c.nominal:g} in {c.lower:g} to {c.upper:g}"
-            )
+            has = f"{c.nominal:g} in {c.lower:g} to {c.upper:g}"
+            wrong.append(f"K{n} ({c.name}) says {text}, the model has {has}")
     wrong += [
         f"{text!r} stands {runs.count(text)} times, for {shown.count(text)} key characteristics"
         for text in sorted(set(shown))

@@ -83,8 +83,8 @@ class Variable:
         return self.of.contour if isinstance(self.of, Spot) else self.of
 
 
-WHOLE, OUTER = Owner(""), Owner("outer")
-THICKNESS = WHOLE.size(Quantity.THICKNESS)
+OUTER = Owner("outer")
+THICKNESS = Owner("").size(Quantity.THICKNESS)
 Values = Mapping[Variable, float]
 
 
@@ -114,19 +114,17 @@ def in_part(pocket: Pocket, contour: Contour) -> Contour:
     (ux, uy, _), sign = pocket.x_axis, pocket.axis[2]
     vx, vy = -uy * sign, ux * sign  # y_axis = axis x x_axis
 
-    def in_frame(p: tuple[float, float]) -> tuple[float, float]:
+    def at(p: tuple[float, float]) -> tuple[float, float]:
         # rounded to a picometre: turning may leave 1e-17 where a coordinate is 0
-        return (
-            round(pocket.at[0] + p[0] * ux + p[1] * vx, 12),
-            round(pocket.at[1] + p[0] * uy + p[1] * vy, 12),
-        )
+        x, y, _ = pocket.at
+        return (round(x + p[0] * ux + p[1] * vx, 12), round(y + p[0] * uy + p[1] * vy, 12))
 
     turned = ux * vy - uy * vx < 0
     return Contour(
         tuple(
-            Line(in_frame(s.start), in_frame(s.end), s.name)
+            Line(at(s.start), at(s.end), s.name)
             if isinstance(s, Line)
-            else Arc(in_frame(s.start), in_frame(s.end), in_frame(s.centre), s.ccw != turned, s.name)
+            else Arc(at(s.start), at(s.end), at(s.centre), s.ccw != turned, s.name)
             for s in contour
         )
     )
@@ -140,36 +138,27 @@ def variables(part: Part) -> dict[Variable, float]:
     """Every variable of an extruded part with its value (mm)."""
     values = {THICKNESS: part.extrusion.thickness}
     for owner, contour in contours(part):
-        _add_contour(values, owner, contour)
-    for k, feature in enumerate(part.features):
-        if isinstance(feature, Hole):
-            values |= _hole(k, feature)
-        else:
-            values[Owner("pocket", k).size(Quantity.DEPTH)] = feature.depth
-    return values
-
-
-def _add_contour(values: dict[Variable, float], owner: Owner, contour: Contour) -> None:
-    if circle := contour.as_circle():
-        (x, y), r = circle
-        values |= {owner.place(0): x, owner.place(1): y, owner.size(Quantity.DIAMETER): 2 * r}
-        return
-    for i, s in enumerate(contour):
-        values |= zip(xy(Spot(owner, i)), s.start)
-        if isinstance(s, Arc):
-            values |= zip(xy(Spot(owner, i, True)), s.centre)
-
-
-def _hole(k: int, hole: Hole) -> dict[Variable, float]:
-    owner = Owner("hole", k)
-    values = {owner.place(i): hole.at[i] for i in range(3) if i != axis_of(hole)}
-    values[owner.size(Quantity.DIAMETER)] = hole.diameter
-    if not hole.through:
-        values[owner.size(Quantity.DEPTH)] = hole.depth
-    if hole.counterbore:
-        values |= zip((owner.size(Quantity.WIDE), owner.size(Quantity.DEEP)), hole.counterbore)
-    if hole.thread and hole.thread_depth < hole.depth:
-        values[owner.size(Quantity.THREAD)] = hole.thread_depth
+        if circle := contour.as_circle():
+            (x, y), r = circle
+            values |= {owner.place(0): x, owner.place(1): y, owner.size(Quantity.DIAMETER): 2 * r}
+            continue
+        for i, s in enumerate(contour):
+            values |= zip(xy(Spot(owner, i)), s.start)
+            if isinstance(s, Arc):
+                values |= zip(xy(Spot(owner, i, True)), s.centre)
+    for k, f in enumerate(part.features):
+        if isinstance(f, Pocket):
+            values[Owner("pocket", k).size(Quantity.DEPTH)] = f.depth
+            continue
+        owner = Owner("hole", k)
+        values |= {owner.place(i): f.at[i] for i in range(3) if i != axis_of(f)}
+        values[owner.size(Quantity.DIAMETER)] = f.diameter
+        if not f.through:
+            values[owner.size(Quantity.DEPTH)] = f.depth
+        if f.counterbore:
+            values |= zip((owner.size(Quantity.WIDE), owner.size(Quantity.DEEP)), f.counterbore)
+        if f.thread and f.thread_depth < f.depth:
+            values[owner.size(Quantity.THREAD)] = f.thread_depth
     return values
 
 

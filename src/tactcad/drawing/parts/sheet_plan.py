@@ -13,6 +13,12 @@ from .measures import Measure
 from .part_variables import Values, Variable
 
 Side = Literal["top", "bottom", "left", "right"]
+OUTWARDS: dict[Side, Point] = {
+    "top": (0.0, 1.0),
+    "bottom": (0.0, -1.0),
+    "left": (-1.0, 0.0),
+    "right": (1.0, 0.0),
+}
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ and arcs; and the solid cut by the plane of a section.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, degrees, hypot
+from math import atan2, degrees, dist, hypot
 
 from OCP.Bnd import Bnd_Box
 from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
@@ -16,7 +16,7 @@ from OCP.BRepTools import BRepTools_WireExplorer
 from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Plane
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED, TopAbs_WIRE
-from OCP.TopoDS import TopoDS_Face, TopoDS_Shape, TopoDS_Wire
+from OCP.TopoDS import TopoDS_Shape, TopoDS_Wire
 
 from tactcad.design.messages import CheckFailure
 from tactcad.parts.description import Vector
@@ -40,14 +40,15 @@ def projected(shape: TopoDS_Shape, eye: Vector, right: Vector) -> list[Stroke | 
     Edges between tangent faces are left out, as ISO 128-3 allows.
     """
     result = exact([compound([shape])], projector(eye, right))
-    seen = _once(_curves((result.VCompound(), result.OutLineVCompound()), VISIBLE, "outline"))
-    behind = _once(_curves((result.HCompound(), result.OutLineHCompound()), HIDDEN, "hidden"))
+    seen = _curves((result.VCompound(), result.OutLineVCompound()), VISIBLE, "outline")
+    behind = _curves((result.HCompound(), result.OutLineHCompound()), HIDDEN, "hidden")
     return seen + [piece for curve in behind for piece in _uncovered(curve, seen)]
 
 
 def _curves(compounds: Sequence[TopoDS_Shape | None], line: LineType, role: Role) -> list[Stroke | DrawnArc]:
-    drawn = (_curve(curve, line, role) for compound in compounds for curve in curves_of(compound))
-    return [curve for curve in drawn if curve]
+    """Each curve once, in canonical order."""
+    drawn = {_curve(curve, line, role) for compound in compounds for curve in curves_of(compound)}
+    return sorted(filter(None, drawn), key=lambda c: (isinstance(c, DrawnArc), repr(c)))
 
 
 def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Stroke | DrawnArc | None:
@@ -62,18 +63,14 @@ def _curve(curve: BRepAdaptor_Curve, line: LineType, role: Role) -> Stroke | Dra
             a, b = b, a
         return DrawnArc(centre, round(circle.Radius(), 6), _angle(centre, a), _angle(centre, b), line, role)
     points = [_point(p) for p in on_curve(curve, CHORD)]
-    if _straight(points):
-        points = [points[0], points[-1]]
-    kept = tuple(p for i, p in enumerate(points) if i == 0 or p != points[i - 1])
-    if len(kept) < 2 or hypot(kept[0][0] - kept[-1][0], kept[0][1] - kept[-1][1]) < SAME and len(kept) < 4:
-        return None
-    return Stroke(min(kept, kept[::-1]), line, role)
-
-
-def _straight(points: Sequence[Point]) -> bool:
     (ax, ay), (bx, by) = points[0], points[-1]
     size = hypot(bx - ax, by - ay) or 1.0
-    return all(abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / size < SAME for x, y in points)
+    if all(abs((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / size < SAME for x, y in points):
+        points = [points[0], points[-1]]
+    kept = tuple(p for i, p in enumerate(points) if i == 0 or p != points[i - 1])
+    if len(kept) < 2 or dist(kept[0], kept[-1]) < SAME and len(kept) < 4:
+        return None
+    return Stroke(min(kept, kept[::-1]), line, role)
 
 
 def _point(p: gp_Pnt) -> Point:
@@ -84,21 +81,11 @@ def _angle(centre: Point, p: Point) -> float:
     return round(degrees(atan2(p[1] - centre[1], p[0] - centre[0])) % 360.0, 6)
 
 
-def _once(curves: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
-    """Each curve once, in canonical order."""
-    return sorted(set(curves), key=lambda c: (isinstance(c, DrawnArc), repr(c)))
-
-
 def _uncovered(curve: Stroke | DrawnArc, seen: Sequence[Stroke | DrawnArc]) -> list[Stroke | DrawnArc]:
     """The pieces of a hidden curve that no visible one covers."""
     if isinstance(curve, DrawnArc):
-        same = [
-            s
-            for s in seen
-            if isinstance(s, DrawnArc)
-            and _near(s.centre, curve.centre)
-            and abs(s.radius - curve.radius) < SAME
-        ]
+        arcs = [s for s in seen if isinstance(s, DrawnArc) and dist(s.centre, curve.centre) < SAME]
+        same = [s for s in arcs if abs(s.radius - curve.radius) < SAME]
         middle = curve.start + curve.sweep / 2
         return [] if any((middle - s.start) % 360.0 <= s.sweep + 1e-6 for s in same) else [curve]
     if len(curve.points) > 2:
@@ -125,10 +112,6 @@ def _uncovered(curve: Stroke | DrawnArc, seen: Sequence[Stroke | DrawnArc]) -> l
     ]
 
 
-def _near(p: Point, q: Point) -> bool:
-    return hypot(p[0] - q[0], p[1] - q[1]) < SAME
-
-
 def cut(shape: TopoDS_Shape, view: View, section: SectionPlane) -> tuple[TopoDS_Shape, Hatch]:
     """What lies behind the plane of a section, and its cut face in the view's plane (mm of the part).
 
@@ -142,31 +125,20 @@ def cut(shape: TopoDS_Shape, view: View, section: SectionPlane) -> tuple[TopoDS_
     (low if view.eye[k] < 0 else high)[k] = at
     kept = BRepPrimAPI_MakeBox(gp_Pnt(*low), gp_Pnt(*high)).Shape()
     half = BRepAlgoAPI_Common(shape, kept).Shape()
-    loops = [
-        _loop(as_wire(wire), view) for face in _faces(half, k, at) for wire in subshapes(face, TopAbs_WIRE)
-    ]
-    if not loops:
-        raise CheckFailure(
-            f"drawings: the section at {'xy'[k]} = {at:g} mm cuts nothing; no drawing was written"
-        )
-    return half, Hatch(tuple(sorted(loops)))
-
-
-def _faces(shape: TopoDS_Shape, k: int, at: float) -> list[TopoDS_Face]:
-    """Faces in the plane across axis k."""
-    faces = []
-    for face in map(as_face, subshapes(shape, TopAbs_FACE)):
+    loops = []
+    for face in map(as_face, subshapes(half, TopAbs_FACE)):
         surface = BRepAdaptor_Surface(face)
-        if surface.GetType() == GeomAbs_Plane:
-            plane = surface.Plane()
-            # OCC counts coordinates from 1
-            off = abs(plane.Location().Coord(k + 1) - at)
-            if (
-                abs(abs(plane.Axis().Direction().Coord(k + 1)) - 1.0) < KERNEL_TOLERANCE
-                and off < KERNEL_TOLERANCE
-            ):
-                faces.append(face)
-    return faces
+        if surface.GetType() != GeomAbs_Plane:
+            continue
+        plane = surface.Plane()
+        # OCC counts coordinates from 1
+        off, turn = (p.Coord(k + 1) for p in (plane.Location(), plane.Axis().Direction()))
+        if max(abs(off - at), abs(abs(turn) - 1.0)) < KERNEL_TOLERANCE:
+            loops += [_loop(as_wire(wire), view) for wire in subshapes(face, TopAbs_WIRE)]
+    if not loops:
+        where = f"{'xy'[k]} = {at:g} mm"
+        raise CheckFailure(f"drawings: the section at {where} cuts nothing; no drawing was written")
+    return half, Hatch(tuple(sorted(loops)))
 
 
 def _loop(wire: TopoDS_Wire, view: View) -> tuple[Point, ...]:

@@ -16,14 +16,14 @@ from tactcad.parts.limits import FACES, Geometric, Symbol
 
 from ..engine.boxes import Chord, Point, clipped, corners, grown
 from ..engine.fonts import width
-from ..engine.ink import LETTER_HEIGHT, THIN, DrawnArc, Fill, Item, Stroke, Text, rectangle, segment
+from ..engine.ink import LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, rectangle, segment
 from .part_variables import OUTER, Spot, Variable, rounds
 from .sheet_plan import Callout, Datum, Frame, View, seen
 
 # Where along an edge a frame's leader may end; so near to its ends broken views show it, too.
 SHARES = (0.5, 0.25, 0.75, 0.1, 0.9, 0.008, 0.992)
 ASIDE = 60.0  # degrees from the normal that its leader may lie
-FRAME = 2 * LETTER_HEIGHT  # height of a frame, and least width of its cells
+FRAME = 2 * LETTERS  # height of a frame, and least width of its cells
 PAD = 1.0  # beside the text of a cell
 STEM = 8.0  # from a datum's feature to the middle of its letter: shortest
 
@@ -123,10 +123,7 @@ def tolerance_frame(frame: Frame, corner: Point) -> list[Item]:
     x += FRAME
     for text in frame.cells:
         w = _cell_width(text)
-        items += [
-            _box(x, y, w),
-            Text((x + w / 2, y + LETTER_HEIGHT / 2), text, LETTER_HEIGHT, "middle", role="symbol"),
-        ]
+        items += [_box(x, y, w), Text((x + w / 2, y + LETTERS / 2), text, LETTERS, "middle", role="symbol")]
         x += w
     return items
 
@@ -141,7 +138,7 @@ def datum(at: Point, away: Point, reach: float, letter: str) -> list[Item]:
         Fill(((x - 1.75 * uy, y + 1.75 * ux), (x + 1.75 * uy, y - 1.75 * ux), tip), "symbol"),
         segment(tip, end, THIN, "symbol"),
         Stroke(corners(grown((*middle, *middle), FRAME / 2)), THIN, "symbol", True),
-        Text((middle[0], middle[1] - LETTER_HEIGHT / 2), letter, LETTER_HEIGHT, "middle", role="symbol"),
+        Text((middle[0], middle[1] - LETTERS / 2), letter, LETTERS, "middle", role="symbol"),
     ]
 
 
@@ -159,7 +156,7 @@ def block(frames: Sequence[Frame], letter: str, corner: Point, wide: float) -> l
 
 
 def _cell_width(text: str) -> float:
-    return max(FRAME, width(text, LETTER_HEIGHT) + 2 * PAD)
+    return max(FRAME, width(text, LETTERS) + 2 * PAD)
 
 
 def _box(x: float, y: float, w: float) -> Item:
