@@ -34,6 +34,8 @@ Role = Literal[
 HATCHING = (1.0, 3.0)  # least and largest distance of hatching lines; ISO 128-2 asks for 0.7 at least
 LETTERS = 2.5  # of dimension texts, mm
 
+Anchor = Literal["start", "middle", "end"]
+
 
 @dataclass(frozen=True)
 class LineType:
@@ -114,7 +116,7 @@ class Text:
     at: Point
     text: str
     height: float = 2.5
-    anchor: Literal["start", "middle", "end"] = "start"
+    anchor: Anchor = "start"
     angle: float = 0.0
     role: Role = "note"
 

@@ -177,49 +177,40 @@ class _Squeezed:
             return [replace(curve, loops=tuple(tuple(map(moved, loop)) for loop in loops if loop))]
         if isinstance(curve, DrawnArc) and all(self.shows(p) for chord in curve.chords() for p in chord):
             return [replace(curve, centre=moved(curve.centre))] if self.shows(curve.centre) else []
-        chords = fine(curve) if isinstance(curve, DrawnArc) else curve.chords()
-        pieces = (clipped(chord, band) for band in self._bands() for chord in chords)
+        pieces = (clipped(chord, band) for band in self._bands() for chord in fine(curve))
         return [Stroke(self._chord(piece), curve.line, curve.role) for piece in filter(None, pieces)]
 
     def _break_lines(self, whole: Sequence[Curve]) -> list[Curve]:
         """Two lines with a zigzag at each gap, across all edges that it cuts."""
         if self.k is None:
             return []
-        lines: list[Curve] = []
-        for gap in self.breaks.left_out:
-            for end in gap:
-                at = self.sign * end
-                across = [y for c in whole if c.role == "outline" for y in _crossings(c, self.k, at)]
-                if across:
-                    lines.append(
-                        self._zigzag(self.sign * self.breaks.squeezed(end), min(across), max(across))
-                    )
+        k, gap, lines = self.k, self.breaks.gap, []
+        for end in (end for left_out in self.breaks.left_out for end in left_out):
+            at, across = self.sign * end, []
+            for a, b in (chord for c in whole if c.role == "outline" for chord in c.chords()):
+                if (a[k] - at) * (b[k] - at) < 0:
+                    across.append(a[1 - k] + (at - a[k]) / (b[k] - a[k]) * (b[1 - k] - a[1 - k]))
+            if across:
+                low, high = min(across), max(across)
+                z = min(0.6 * gap, (high - low) / 4)
+                place = self.sign * self.breaks.squeezed(end)
+                lines.append(_zigzag(place, k, low, high, z, min(0.3 * gap, z), 0.5 * gap))
         return lines
 
-    def _zigzag(self, at: float, low: float, high: float) -> Stroke:
-        past, middle = 0.5 * self.breaks.gap, (low + high) / 2
-        z = min(0.6 * self.breaks.gap, (high - low) / 4)
-        w = min(0.3 * self.breaks.gap, z)
-        track = (
-            (0.0, low - past),
-            (0.0, middle - z),
-            (w, middle - z / 2),
-            (-w, middle + z / 2),
-            (0.0, middle + z),
-            (0.0, high + past),
-        )
-        points = tuple((at + u, v) if self.k == 0 else (v, at + u) for u, v in track)
-        return Stroke(points, THIN, "leader")
 
-
-def _crossings(curve: Curve, k: int, at: float) -> list[float]:
-    """Where straight pieces of a curve cross a coordinate of the paper's axis k: their other coordinate."""
-    crossings = []
-    for a, b in curve.chords():
-        if (a[k] - at) * (b[k] - at) < 0:
-            share = (at - a[k]) / (b[k] - a[k])
-            crossings.append(a[1 - k] + share * (b[1 - k] - a[1 - k]))
-    return crossings
+def _zigzag(at: float, k: int, low: float, high: float, z: float, w: float, past: float = 0.0) -> Curve:
+    """A break line at a coordinate of the paper's axis k, `past` either end, z high and w wide about its
+    middle."""
+    m = (low + high) / 2
+    track = [
+        (0.0, low - past),
+        (0.0, m - z),
+        (w, m - z / 2),
+        (-w, m + z / 2),
+        (0.0, m + z),
+        (0.0, high + past),
+    ]
+    return Stroke(tuple((at + u, v) if k == 0 else (v, at + u) for u, v in track), THIN, "leader")
 
 
 def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
@@ -239,46 +230,30 @@ def _cut_off(loop: Sequence[Point], band: Box) -> tuple[Point, ...]:
     return tuple(points)
 
 
-def windowed(curves: Sequence[Stroke | DrawnArc], window: Box) -> list[Stroke | DrawnArc]:
-    """What of the curves lies in the window, and thin lines where it cuts through the material."""
-    kept: list[Stroke | DrawnArc] = []
-    ends: list[Point] = []
-    for curve in curves:
-        if isinstance(curve, DrawnArc) and all(_inside(p, window) for chord in curve.chords() for p in chord):
-            kept.append(curve)
-            continue
-        chords = fine(curve) if isinstance(curve, DrawnArc) else curve.chords()
-        for chord in chords:
-            cut = clipped(chord, window)
-            if cut:
-                kept.append(Stroke(cut, curve.line, curve.role))
-                ends += [p for p in cut if curve.role == "outline" and _on_edge(p, window)]
-    return kept + _breaks(ends, window)
-
-
-def fine(arc: DrawnArc) -> list[Chord]:
-    """An arc as straight pieces to be clipped."""
-    points = [arc.at(arc.start + arc.sweep * i / 64) for i in range(65)]
-    return list(zip(points, points[1:]))
-
-
-def _breaks(ends: Sequence[Point], window: Box) -> list[Stroke | DrawnArc]:
-    """Break lines between pairs of cut edges on each side of the window, with a zigzag in the middle."""
+def windowed(curves: Sequence[Stroke | DrawnArc], window: Box) -> list[Curve]:
+    """What of the curves lies in the window, with break lines where it cuts through the material."""
     x0, y0, x1, y1 = window
-    lines: list[Stroke | DrawnArc] = []
+    shown: list[Curve] = []
+    ends: list[Point] = []  # of cut edges
+    for curve in curves:
+        points = [p for chord in curve.chords() for p in chord]
+        if isinstance(curve, DrawnArc) and all(x0 <= x <= x1 and y0 <= y <= y1 for x, y in points):
+            shown.append(curve)
+            continue
+        cuts = [cut for chord in fine(curve) if (cut := clipped(chord, window))]
+        shown += [Stroke(cut, curve.line, curve.role) for cut in cuts]
+        ends += [p for cut in cuts for p in cut if curve.role == "outline"]
     for fixed, k in ((x0, 0), (x1, 0), (y0, 1), (y1, 1)):
         along = sorted({round(p[1 - k], 6) for p in ends if abs(p[k] - fixed) < 1e-9})
         for low, high in zip(along[::2], along[1::2]):
-            m, z = (low + high) / 2, min((high - low) / 8, (x1 - x0) / 40)
-            track = [(0, low), (0, m - z), (z, m - z / 2), (-z, m + z / 2), (0, m + z), (0, high)]
-            points = tuple((fixed + u, v) if k == 0 else (v, fixed + u) for u, v in track)
-            lines.append(Stroke(points, THIN, "leader"))
-    return lines
+            z = min((high - low) / 8, (x1 - x0) / 40)
+            shown.append(_zigzag(fixed, k, low, high, z, z))
+    return shown
 
 
-def _inside(p: Point, window: Box) -> bool:
-    return window[0] <= p[0] <= window[2] and window[1] <= p[1] <= window[3]
-
-
-def _on_edge(p: Point, window: Box) -> bool:
-    return min(abs(p[k % 2] - window[k]) for k in range(4)) < 1e-9
+def fine(curve: Stroke | DrawnArc) -> Sequence[Chord]:
+    """A curve as straight pieces to be clipped."""
+    if isinstance(curve, Stroke):
+        return curve.chords()
+    points = [curve.at(curve.start + curve.sweep * i / 64) for i in range(65)]
+    return list(zip(points, points[1:]))

@@ -4,7 +4,7 @@ and a disc's outside.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, degrees, isclose
@@ -45,34 +45,19 @@ def groups(holes: Sequence[Round], values: Values, eye_of: Mapping[int, Vector],
     kinds: dict[tuple, list[Round]] = {}
     for r in holes:
         h = r.hole
-        side = h.axis if not _same_from_both_sides(h) else tuple(abs(a) for a in h.axis)
-        kinds.setdefault((side, (*_spec(h), *_stated(part, h.name))), []).append(r)
-    merged = _both_ends(kinds)
+        side = tuple(abs(a) for a in h.axis) if _same_from_both_sides(h) else h.axis
+        depth = 0.0 if h.through else round(h.depth, 9)
+        sizes = (round(h.diameter, 9), h.through, depth, h.counterbore, h.drill_point, h.tolerance)
+        stated = [g.name for g in part.geometric if h.name in g.features]
+        stated += [d.letter for d in part.datums if d.feature == h.name]
+        key = (side, (*sizes, h.thread, round(h.thread_depth, 9), *stated))
+        kinds.setdefault(key, []).append(r)
     own = {c.name: c for c in part.characteristics}
-    return [_group(some, both, values, eye_of, own) for some, both in merged]
+    return [_group(some, both, values, eye_of, own) for some, both in _both_ends(kinds)]
 
 
 def _same_from_both_sides(h: Hole) -> bool:
     return h.through and not h.counterbore and (not h.thread or isclose(h.thread_depth, h.depth))
-
-
-def _spec(h: Hole) -> tuple:
-    return (
-        round(h.diameter, 9),
-        h.through,
-        0.0 if h.through else round(h.depth, 9),
-        h.counterbore,
-        h.thread,
-        round(h.thread_depth, 9),
-        h.drill_point,
-        h.tolerance,
-    )
-
-
-def _stated(part: Part, name: str) -> Iterator[str]:
-    """What is stated of the holes of a name: geometric tolerances by their names, datums by their letters."""
-    yield from (g.name for g in part.geometric if name in g.features)
-    yield from (d.letter for d in part.datums if d.feature == name)
 
 
 def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]]:
@@ -80,20 +65,16 @@ def _both_ends(kinds: dict[tuple, list[Round]]) -> list[tuple[list[Round], bool]
     result: list[tuple[list[Round], bool]] = []
     left = dict(kinds)
     for (axis, spec), some in kinds.items():
-        if (axis, spec) not in left:
+        if left.pop((axis, spec), None) is None:
             continue
-        del left[(axis, spec)]
-        opposite = (tuple(-a + 0.0 for a in axis), spec)
-        other = opposite if opposite in left else None
         k = next(i for i, a in enumerate(axis) if a)
-
-        def places(rounds_: Sequence[Round]) -> set[tuple]:
-            return {tuple(round(v, 6) for i, v in enumerate(r.at) if i != k) for r in rounds_}
-
-        if other and places(left[other]) == places(some):
-            result.append((some + left.pop(other), True))
-        else:
-            result.append((some, False))
+        opposite = (tuple(-a + 0.0 for a in axis), spec)
+        places = [
+            {tuple(round(v, 6) for i, v in enumerate(r.at) if i != k) for r in rounds_}
+            for rounds_ in (some, left.get(opposite, ()))
+        ]
+        both = places[0] == places[1]
+        result.append((some + left.pop(opposite), True) if both else (some, False))
     return result
 
 
@@ -110,11 +91,16 @@ def _group(
         rows = tuple(size(r.owner.size(what)) for r in some)
         return Dimension(f"{label} {WORDS.get(what, what)}", rows, sign, counted=counted)
 
-    limits, modelled, words = _tolerance(h.tolerance)
-    fit, _, remark = words.partition(", ")
+    fit = remark = words = ""
+    try:  # limits: the model is made at the middle of them
+        upper, _, lower = h.tolerance.partition("/")
+        limits = (float(upper), float(lower))
+        modelled = round(sum(limits) / 2, 9)
+    except ValueError:  # a fit in words
+        limits, modelled, words = None, 0.0, h.tolerance
+        fit, _, remark = words.partition(", ")
     if fit:
-        # a fit belongs to the nominal size; the model is made within its field, hundredths of a millimetre
-        # away
+        # it belongs to the nominal size; the model is made within its field, hundredths of a millimetre away
         modelled = round(h.diameter - round(h.diameter, 1), 9)
     # the count of a thread stands before the thread, or before the counterbore that it is entered by
     bore = dimension(Quantity.DIAMETER, "⌀", counted=not h.thread)
@@ -178,17 +164,6 @@ def regular_rows(called: Sequence[Group], k: int) -> list[list[Round]]:
     return rows
 
 
-def _tolerance(text: str) -> tuple[tuple[float, float] | None, float, str]:
-    """Limits, how far the model lies from the number shown (it is made at the middle of them), or a fit in
-    words."""
-    upper, slash, lower = text.partition("/")
-    try:
-        limits = (float(upper), float(lower))
-    except ValueError:
-        return None, 0.0, text
-    return (limits, round(sum(limits) / 2, 9), "") if slash else (None, 0.0, text)
-
-
 def round_outline(sketch: Sketch, centre: Point, radius: float) -> Callout:
     """Outside diameter of a disc; its openings about the same axis are in line with it."""
     d = sketch.must(Dimension("outside", (size(OUTER.size(Quantity.DIAMETER)),), "⌀"))
@@ -232,7 +207,8 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
         pocket = Owner("pocket", k)
         for owner, c in ((pocket, f.contour), *((Owner("island", k, i), c) for i, c in enumerate(f.island))):
             diameter = owner.size(Quantity.DIAMETER)
-            if c.as_circle() and not (owner == pocket and _is_outline(part, f)):
+            whole = owner == pocket and in_part(f, c).as_circle() == part.extrusion.outer.as_circle()
+            if c.as_circle() and not whole:
                 lines.append(say(Dimension(f"{f.name} diameter", (size(diameter),), "⌀")))
             elif c.as_circle():
                 sketch.convention(Span(level(OUTER.size(Quantity.DIAMETER)), level(diameter)))
@@ -241,25 +217,20 @@ def pocket_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
         label = f.name.replace("_", " ")
         if f.island:
             label = f"{label} groove" if f.island[0].as_circle() else f"faced off {label}"
-        spots = _edge_targets(view, in_part(f, f.contour))
-        callouts.append(Callout((f"{label} {text} {depth}".replace("  ", " "),), spots, tuple(used)))
+        contour = in_part(f, f.contour)
+        if circle := contour.as_circle():  # a leader may touch it anywhere
+            spots = [(seen(view, (*circle[0], 0.0)), circle[1])]
+        else:
+            middles = [seen(view, (*s.at(0.5), 0.0)) for s in contour]
+            spots = [(p, 0.0) for p in sorted(middles, key=lambda p: _to_outside(view, p))]
+        callouts.append(Callout((f"{label} {text} {depth}".replace("  ", " "),), tuple(spots), tuple(used)))
     return callouts
 
 
-def _edge_targets(view: View, contour: Contour) -> tuple[tuple[Point, float], ...]:
-    """Where a leader may touch a contour: anywhere on a circle, else the middles of its segments."""
-    if circle := contour.as_circle():
-        return ((seen(view, (*circle[0], 0.0)), circle[1]),)
-    middles = [seen(view, (*s.at(0.5), 0.0)) for s in contour]
-    return tuple((p, 0.0) for p in sorted(middles, key=lambda p: _to_outside(view, p)))
-
-
 def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension | None:
-    """Width across flats of a regular polygon in the middle of the outline; None where the contour is not
-    one.
+    """Width across flats of a regular polygon in the middle of the outline; None for any other contour.
 
-    What is drawn as regular counts as such: sides at equal distances from the outline's middle, at equal
-    angles.
+    What is drawn as regular counts as such: equal angles, equal distances from the outline's middle.
     """
     sides = [i for i, s in enumerate(contour) if isinstance(s, Line)]
     if len(sides) < 6 or len(sides) % 2:
@@ -279,10 +250,6 @@ def _regular(sketch: Sketch, part: Part, k: int, contour: Contour) -> Dimension 
             sketch.convention(MeasureDifference(offset, offsets[0]))
     half = len(sides) // 2
     return Dimension(f"{part.features[k].name} across flats", (Width(offsets[0], offsets[half]),))
-
-
-def _is_outline(part: Part, f: Pocket) -> bool:
-    return in_part(f, f.contour).as_circle() == part.extrusion.outer.as_circle()
 
 
 def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
@@ -310,7 +277,7 @@ def equal_radii(
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))
     callouts = []
     for some in kinds.values():
-        if new := [one for one in some if sketch.account.takes(one[1])]:
+        if new := [one for one in some if sketch.determined.takes(one[1])]:
             name = " and ".join(dict.fromkeys(name for name, _, _ in new))
             rows = tuple(row for _, row, _ in new)
             d = replace(sketch.stating(states, rows, plain=name), sign="R")
@@ -321,16 +288,12 @@ def equal_radii(
 
 
 def _radius_callout(sketch: Sketch, view: View, d: Dimension, arcs: Sequence[Arc]) -> Callout:
-    targets: list[tuple[Point, float]] = []
-    spans: list[tuple[float, float]] = []
+    targets, spans = [], []
     for arc in arcs:
         centre = seen(view, (*arc.centre, 0.0))
-        angles = []
-        for p in (arc.start, arc.end) if arc.ccw else (arc.end, arc.start):
-            u, v = seen(view, (*p, 0.0))
-            angles.append(degrees(atan2(v - centre[1], u - centre[0])))
-        if view.right[0] < 0:
-            angles.reverse()
+        ends = [seen(view, (*p, 0.0)) for p in (arc.start, arc.end)]
+        start, end = (degrees(atan2(v - centre[1], u - centre[0])) for u, v in ends)
         targets.append((centre, arc.radius))
-        spans.append((angles[0], angles[1]))
+        # counter-clockwise as seen
+        spans.append((start, end) if arc.ccw == (view.right[0] >= 0) else (end, start))
     return Callout((d.text(sketch.values),), tuple(targets), (d,), tuple(spans))

@@ -7,11 +7,24 @@ everything is laid out in (s, o): s along the side, o outwards from the view's b
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from ..engine.boxes import Box, Point
 from ..engine.fonts import ink_box, width
-from ..engine.ink import CENTRE, LETTERS, THIN, DrawnArc, Fill, Item, Stroke, Text, arrow, polar, segment
+from ..engine.ink import (
+    CENTRE,
+    LETTERS,
+    THIN,
+    Anchor,
+    DrawnArc,
+    Fill,
+    Item,
+    Stroke,
+    Text,
+    arrow,
+    polar,
+    segment,
+)
 from .part_variables import Values
 from .sheet_plan import Across, Linear, Running, Side
 
@@ -26,15 +39,6 @@ CLEAR_OF_ARROW = 0.65  # from the dimension line to a text's ink: half an arrow 
 PAD = 1.1  # around the text of a key characteristic
 BASIC = 0.8  # around that of a theoretically exact dimension
 LABELS = 4.4  # least distance of running dimensions' texts, without their frames
-
-
-@dataclass
-class _Track:
-    offset: float
-    taken: list[tuple[float, float]] = field(default_factory=list)
-
-    def free(self, low: float, high: float) -> bool:
-        return all(high < a + 0.01 or low > b - 0.01 for a, b in self.taken)
 
 
 def placer(side: Side, box: Box) -> Callable[[float, float], Point]:
@@ -80,45 +84,61 @@ def _outline(start: Point, text: Text, length: float, pad: float) -> Stroke:
     return Stroke((at(0, low), at(length, low), at(length, high), at(0, high)), THIN, "symbol", closed=True)
 
 
-def boxed_width(text: str, key: int) -> float:
-    return width(text, LETTERS) + (width(f"K{key}", LETTERS) + 4 * PAD if key else 0.0)
-
-
 def stacked(
     linears: Sequence[Linear], side: Side, box: Box, scale: float, values: Values, start: float
 ) -> list[Item]:
-    """The dimensions on one side of a view, the short ones nearest to it, from the offset `start`
-    outwards."""
-    mine = [d for d in linears if d.side == side]
-    if not mine:
-        return []
-    on_paper = placer(side, box)
+    """The dimensions on one side of a view, the short ones nearest to it, from `start` outwards."""
+    on_paper, upright = placer(side, box), side in ("left", "right")
     spots = []
-    for d in mine:
-        (a, oa), (b, ob) = (local(side, box, (p[0] * scale, p[1] * scale)) for p in (d.p, d.q))
-        (a, oa), (b, ob) = sorted([(a, oa), (b, ob)])
-        spots.append((b - a, a, b, oa, ob, d))
+    for line in (line for line in linears if line.side == side):
+        ends = [local(side, box, (p[0] * scale, p[1] * scale)) for p in (line.p, line.q)]
+        (a, oa), (b, ob) = sorted(ends)
+        spots.append((b - a, a, b, oa, ob, line.dimension))
     spots.sort(key=lambda spot: (round(spot[0], 6), spot[1]))
     tracks: list[_Track] = []
     items: list[Item] = []
-    offset = max(start, FIRST)
     for n, (_, a, b, oa, ob, d) in enumerate(spots):
-        text, key, basic = d.dimension.text(values), d.dimension.key, d.dimension.basic
-        length = boxed_width(text, key) + (2 * BASIC if basic else 0.0)
+        text, key, basic = d.text(values), d.key, d.basic
+        length = width(text, LETTERS) + (width(f"K{key}", LETTERS) + 4 * PAD if key else 0.0)
+        length += 2 * BASIC if basic else 0.0
         # extension lines that pass this dimension on their way out: its own, and those of what stands outside
         # it
         feet = [s for spot in spots[n:] for s in spot[1:3]]
-        ends = (box[0], box[2]) if side in ("top", "bottom") else (box[1], box[3])
-        number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, ends), length)
+        sides = (box[1], box[3]) if upright else (box[0], box[2])
+        number, (t0, inside) = _first_free(tracks, a, b, _text_places(a, b, length, feet, sides), length)
         if number == len(tracks):
-            tracks.append(
-                _Track(offset if not tracks else tracks[-1].offset + (PITCH_BOXED if key or basic else PITCH))
-            )
+            further = tracks[-1].offset + (PITCH_BOXED if key or basic else PITCH) if tracks else 0.0
+            tracks.append(_Track(further or max(start, FIRST), []))
         tracks[number].taken.append(_interval(a, b, t0, length, inside))
         o = tracks[number].offset
-        items += _one(on_paper, side, o, a, b, oa, ob, t0, t0 + length, inside)
-        items += _text_on(on_paper, side, o, t0, text, key, basic)
+        for s, foot in ((a, oa), (b, ob)):
+            near, far = on_paper(s, min(foot + GAP, o - 1.0)), on_paper(s, o + OVERSHOOT)
+            items.append(segment(near, far, THIN, "extension"))
+        for s, towards in ((a, b if inside else a - 1), (b, a if inside else b + 1)):
+            items.append(arrow(on_paper(s, o), on_paper(towards, o), ARROW))
+        tail = 0.0 if inside else TAIL
+        items.append(segment(on_paper(min(a - tail, t0), o), on_paper(max(b + tail, t0 + length), o)))
+        # the text above its line, read from below or from the right; parentheses reach below the line of
+        # writing, down to the arrow heads
+        below = -ink_box(text, LETTERS)[1]
+        lift = max(ABOVE + (PAD - 0.2 if key or basic else 0.0), below + CLEAR_OF_ARROW)
+        x, y = on_paper(t0, o)
+        at = (x - lift, y) if upright else (x, y + lift)
+        shown = Text(at, text, LETTERS, angle=90.0 if upright else 0.0)
+        if basic:
+            shown = replace(shown, at=polar(at, BASIC, shown.angle))
+            items += [shown, _outline(at, shown, shown.width + 2 * BASIC, BASIC)]
+        else:
+            items += boxed(shown, key) if key else [shown]
     return items
+
+
+@dataclass(frozen=True)
+class _Track:
+    """A line on which dimensions stand beside each other, and what of it is taken."""
+
+    offset: float
+    taken: list[tuple[float, float]]
 
 
 def _interval(a: float, b: float, t0: float, length: float, inside: bool) -> tuple[float, float]:
@@ -140,7 +160,8 @@ def _first_free(
     )
     for n in range(least, len(tracks)):
         for t0, inside in choices:
-            if tracks[n].free(*_interval(a, b, t0, length, inside)):
+            low, high = _interval(a, b, t0, length, inside)
+            if all(high < lo + 0.01 or low > hi - 0.01 for lo, hi in tracks[n].taken):
                 return n, (t0, inside)
     return len(tracks), choices[0]
 
@@ -169,58 +190,12 @@ def _text_places(
     return clear or [(max([*feet, b + TAIL]) + 2.0, inside)]
 
 
-def _one(
-    on_paper: Callable[[float, float], Point],
-    side: Side,
-    o: float,
-    a: float,
-    b: float,
-    oa: float,
-    ob: float,
-    t0: float,
-    t1: float,
-    inside: bool,
-) -> list[Item]:
-    """Extension lines, dimension line and arrows of one dimension."""
-    items: list[Item] = [
-        segment(on_paper(s, min(os + GAP, o - 1.0)), on_paper(s, o + OVERSHOOT), THIN, "extension")
-        for s, os in ((a, oa), (b, ob))
-    ]
-    tail = 0.0 if inside else TAIL
-    for s, towards in ((a, b if inside else a - 1), (b, a if inside else b + 1)):
-        items.append(arrow(on_paper(s, o), on_paper(towards, o), ARROW))
-    return [*items, segment(on_paper(min(a - tail, t0), o), on_paper(max(b + tail, t1), o))]
-
-
-def _text_on(
-    on_paper: Callable[[float, float], Point],
-    side: Side,
-    o: float,
-    t0: float,
-    text: str,
-    key: int,
-    basic: bool,
-) -> list[Item]:
-    """The text above its dimension line, read from below or from the right."""
-    x, y = on_paper(t0, o)
-    below = -ink_box(text, LETTERS)[1]  # parentheses reach below the line of writing, down to the arrow heads
-    lift = max(ABOVE + (PAD - 0.2 if key or basic else 0.0), below + CLEAR_OF_ARROW)
-    upright = side in ("left", "right")
-    at = (x - lift, y) if upright else (x, y + lift)
-    shown = Text(at, text, LETTERS, angle=90.0 if upright else 0.0)
-    if basic:
-        shown = replace(shown, at=polar(at, BASIC, shown.angle))
-        return [shown, _outline(at, shown, shown.width + 2 * BASIC, BASIC)]
-    return boxed(shown, key) if key else [shown]
-
-
 def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST - 2.0) -> list[Item]:
     """Dimensions from one origin: one dimension line with an arrow at every stop, `o` from the box, texts in
     line with the extension."""
     on_paper = placer(r.side, box)
-    stops = sorted(
-        ((*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops), key=lambda stop: stop[0]
-    )
+    stops = [(*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops]
+    stops.sort(key=lambda stop: stop[0])
     origin = next(s for s, _, d in stops if d is None)
     framed = any(d and d.basic for _, _, d in stops)
     places = _spread([s for s, _, _ in stops], LABELS + (BASIC if framed else 0.0))
@@ -231,36 +206,25 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
         end = on_paper(label if aside else s, bend + 4.0)
         items.append(segment(on_paper(s, foot + GAP), on_paper(s, bend), THIN, "extension"))
         items.append(segment(on_paper(s, bend), end, THIN, "extension"))
-        items += _stop(on_paper, stops, n, origin, o)
-        text = "0" if d is None else d.text(values)
-        if d and d.basic:
-            shown = _label(on_paper, r.side, label, o + 8.0 + BASIC, text)
-            start = polar(shown.origin, -BASIC, shown.angle)
-            items += [shown, _outline(start, shown, shown.width + 2 * BASIC, BASIC)]
+        on_line = on_paper(s, o)
+        if abs(s - origin) < 1e-9:
+            items.append(DrawnArc(on_line, 1.0, line=THIN, role="symbol"))
+        elif abs(s - (inner := stops[n - 1 if s > origin else n + 1][0])) < ARROW + 1.2:
+            # a dot where the neighbour leaves no room for an arrow
+            items.append(Fill(tuple(polar(on_line, 0.6, a) for a in range(0, 360, 30))))
         else:
-            items.append(_label(on_paper, r.side, label, o + 8.0, text))
+            items.append(arrow(on_line, on_paper(inner, o), ARROW))
+        basic = d is not None and d.basic
+        x, y = on_paper(label, o + 8.0 + BASIC if basic else o + 8.0)
+        upright = r.side in ("top", "bottom")
+        at = (x + LETTERS / 2, y) if upright else (x, y - LETTERS / 2)
+        anchor: Anchor = "start" if r.side in ("top", "right") else "end"
+        shown = Text(at, d.text(values) if d else "0", LETTERS, anchor, 90.0 if upright else 0.0)
+        items.append(shown)
+        if basic:
+            start = polar(shown.origin, -BASIC, shown.angle)
+            items.append(_outline(start, shown, shown.width + 2 * BASIC, BASIC))
     return items
-
-
-def _stop(
-    on_paper: Callable[[float, float], Point], stops: Sequence[tuple], n: int, origin: float, o: float
-) -> list[Item]:
-    """Circle at the origin, arrow at a stop, a dot where its neighbour leaves no room for one."""
-    s = stops[n][0]
-    if abs(s - origin) < 1e-9:
-        return [DrawnArc(on_paper(s, o), 1.0, line=THIN, role="symbol")]
-    inner = stops[n - 1][0] if s > origin else stops[n + 1][0]
-    if abs(s - inner) < ARROW + 1.2:
-        x, y = on_paper(s, o)
-        return [Fill(tuple(polar((x, y), 0.6, a) for a in range(0, 360, 30)))]
-    return [arrow(on_paper(s, o), on_paper(inner, o), ARROW)]
-
-
-def _label(on_paper: Callable[[float, float], Point], side: Side, s: float, o: float, text: str) -> Text:
-    x, y = on_paper(s, o)
-    if side in ("top", "bottom"):
-        return Text((x + LETTERS / 2, y), text, LETTERS, "start" if side == "top" else "end", 90.0)
-    return Text((x, y - LETTERS / 2), text, LETTERS, "end" if side == "left" else "start")
 
 
 def _spread(wanted: Sequence[float], least: float) -> list[float]:

@@ -15,12 +15,12 @@ from tactcad.contour import Arc, Contour, Line
 from tactcad.parts.description import Part
 from tactcad.parts.element import LEDGE, PAD_HEIGHT
 
-from ..engine.boxes import Box, Point
+from ..engine.boxes import Point
 from .callouts import Group, equal_radii, groups, hole_callout
 from .measures import Level, Radius, Slope, Span, conventions, halfway, level, size
 from .part_variables import OUTER, THICKNESS, Round, Spot, rounds
 from .prism import FRONT, side_view
-from .sheet_plan import Across, Callout, Dimension, Linear, SheetPlan, View
+from .sheet_plan import Across, Callout, Dimension, Linear, SheetPlan, Side, View
 from .sketch import ALIKE, Coordinate, Sketch, closed, view_of
 from .tolerances import with_marks
 
@@ -53,11 +53,11 @@ class Outline:
     def segment(self, name: str) -> Line | Arc:
         return self.contour.segments[self.index[name]]
 
-    def x(self, name: str) -> Level:
-        return level(Spot(OUTER, self.index[name]).place(0))
+    def x(self, name: str, end: bool = False) -> Level:
+        return level(self.point(name, end).place(0))
 
     def y(self, name: str) -> Level:
-        return level(Spot(OUTER, self.index[name]).place(1))
+        return level(self.point(name, False).place(1))
 
     def start(self, name: str) -> Point:
         return self.segment(name).start
@@ -75,10 +75,10 @@ class Outline:
         at = self.end(before) if before in self else self.start(after)
         return OutlineCorner(level(point.place(0)), level(point.place(1)), at)
 
-    def arc(self, name: str) -> Arc:
-        segment = self.segment(name)
-        assert isinstance(segment, Arc)
-        return segment
+
+def _line(sketch: Sketch, name: str, a: Level, b: Level, side: Side, p: Point, q: Point) -> Linear:
+    """A dimension line from one level to another, which has to determine something new."""
+    return Linear(sketch.must(Dimension(name, (Span(a, b),))), side, p, q)
 
 
 def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetPlan:
@@ -101,7 +101,7 @@ def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetP
     arm = _arm_view(sketch, o, *left)
     front = _front_view(sketch, part, o, called, dowel)
     thickness = Dimension("sheet thickness", (size(THICKNESS),))
-    edge = replace(side_view(sketch, part, front, [], thickness), hidden=False)
+    edge = replace(side_view(sketch, part, front, thickness), hidden=False)
     views = with_marks(part, (front, edge, arm, hinge))
     closed(sketch, views)
     return SheetPlan(part, sketch.values, tuple(sketch.conventions), views, tuple(notes))
@@ -110,7 +110,6 @@ def element_plan(part: Part, notes: Sequence[str], tall: bool = False) -> SheetP
 def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group], dowel: Round) -> View:
     view = view_of(part, "front", *FRONT)
     x, at = level(dowel.owner.place(0)), dowel.at[:2]
-    top = o.start("clamp_edge")  # upper corner of the rear body, at the clamp edge
     linears = []
     for r in sorted((r for g in called for r in g.holes if r is not dowel), key=lambda r: r.at[0]):
         ends = (x, level(r.owner.place(0)))
@@ -119,25 +118,18 @@ def _front_view(sketch: Sketch, part: Part, o: Outline, called: Sequence[Group],
         basic = sketch.locates(origin, there, 0)
         d = sketch.must(Dimension(f"{r.label} from dowel hole", (row,), basic=basic))
         linears.append(Linear(d, "top", at, r.at[:2]))
-    for name, row, q in (
-        ("clamp edge from dowel hole", Span(o.x("clamp_edge"), x), top),
-        ("rear end from dowel hole", Span(x, o.x("rear_end")), o.end("rear_end")),
-        ("tip from dowel hole", Span(o.x("tip"), x), o.start("tip")),
-    ):
-        linears.append(Linear(sketch.must(Dimension(name, (row,))), "top", at, q))
     face = "body_face" if "body_face" in o else "flat_face"
-    step = o.corner(face, "recess_wall")
-    recess = sketch.must(Dimension("length of the recess", (Span(step.x, o.x("rear_end")),)))
-    linears.append(Linear(recess, "bottom", step.at, o.start("rear_end")))
-    for name, other, q in (
-        ("depth of the recess", "recess_face", o.start("rear_end")),
-        ("height of the rear body", "rear_top", o.end("rear_end")),
-    ):
-        row = Span(o.y(face), o.y(other))
-        linears.append(Linear(sketch.must(Dimension(name, (row,))), "right", step.at, q))
-    over = (Span(o.y("pad_face"), level(dowel.owner.place(1))),)
-    pad = sketch.must(Dimension(PAD_HEIGHT, over))
-    linears.append(Linear(pad, "left", o.start("pad_face"), at))
+    step, foot, rear = o.corner(face, "recess_wall"), o.start("rear_end"), o.end("rear_end")
+    tip, pad, y = o.start("tip"), o.start("pad_face"), level(dowel.owner.place(1))
+    linears += [
+        _line(sketch, "clamp edge from dowel hole", o.x("clamp_edge"), x, "top", at, o.start("clamp_edge")),
+        _line(sketch, "rear end from dowel hole", x, o.x("rear_end"), "top", at, rear),
+        _line(sketch, "tip from dowel hole", o.x("tip"), x, "top", at, tip),
+        _line(sketch, "length of the recess", step.x, o.x("rear_end"), "bottom", step.at, foot),
+        _line(sketch, "depth of the recess", o.y(face), o.y("recess_face"), "right", step.at, foot),
+        _line(sketch, "height of the rear body", o.y(face), o.y("rear_top"), "right", step.at, rear),
+        _line(sketch, PAD_HEIGHT, o.y("pad_face"), y, "left", pad, at),
+    ]
     callouts = [hole_callout(sketch, view, g) for g in called]
     callouts += _radii(sketch, view, o, ("ledge_root", "recess_root"))
     return replace(
@@ -175,56 +167,42 @@ def _hinge_view(
     one = "body_face" not in o
     flat = o.start("flat_face")[1]
     face = flat if one else o.start("body_face")[1]
-    side = max(0.55 * (xb - xa), 0.35 * back)
-    window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
-    if tall:
-        window = _around_web(o, xa, xb, flat if one else None)
-    view = View(
-        "hinge",
-        *FRONT,
-        o.contour.box,
-        label="Z",
-        window=window,
-        room=WIDE_ROOM if tall else HINGE_ROOM,
-        least=HINGE_LEAST,
-    )
-    middle = (xa + xb) / 2
-    linears, across, callouts = [], [], []
     near, low = (o.y("flat_face"), flat) if one else _floor(o, "hinge_face", "front_slot_")
     floor, floor_y = _floor(o, "slot_floor", "slot_")
+    middle, side = (xa + xb) / 2, max(0.55 * (xb - xa), 0.35 * back)
+    window = (xa - side, min(flat, face) - 0.25 * back, xb + side, max(ledge, back) + 0.2 * back)
+    if tall:
+        # the leaf, of a long one its middle
+        over = min(max(2.0 * (floor_y - low), 1.0), 3.0)
+        half = min((xb - xa) / 2 + over, MOST_LEAF)
+        window = (middle - half, low - (0.5 * over if one else over), middle + half, floor_y + over)
+    room = WIDE_ROOM if tall else HINGE_ROOM
+    view = View("hinge", *FRONT, o.contour.box, label="Z", window=window, room=room, least=HINGE_LEAST)
     web = sketch.must(Dimension("hinge thickness", (Span(near, floor),)))
-    across.append(Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1])))
-    length = sketch.must(Dimension("slot length", (Span(arm.x, body.x),)))
-    along = Linear(length, "top", (xa, back), (xb, ledge))
+    across = Across(web, (middle, floor_y), (middle, low), low - max(min(flat, face), window[1]))
+    along = _line(sketch, "slot length", arm.x, body.x, "top", (xa, back), (xb, ledge))
     heights = _heights(sketch, o, arm, body, near)
-    if not tall:
-        linears.append(along)
-        linears += [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
+    beside = [replace(h, p=(window[0 if h.side == "left" else 2], h.p[1])) for h in heights]
     fillets = ("slot_arm_fillet", "slot_body_fillet", "front_slot_arm_fillet", "front_slot_body_fillet")
     called = _radii(sketch, view, o, fillets, "fillet radius")
     if "slot_floor" not in o:
-        arc = o.arc(next(n for n in fillets if n in o))
+        arc = _arc(o, fillets)
         ends = "full round" if one else "full round, both slots"
         called.append(Callout((ends,), ((arc.centre, arc.radius),), spans=((180.0, 360.0),)))
-    callouts += [] if tall else called
+    callouts = [] if tall else [*called]
     if rough := re.search(r"Ra [\d.]+", part.finish):
-        callouts.append(
-            Callout(
-                (f"{rough[0]}, both hinge faces",), (((middle - 0.2 * min(xb - xa, MOST_LEAF), low), 0.0),)
-            )
-        )
-    view = replace(view, linears=tuple(linears), across=tuple(across), callouts=tuple(callouts))
+        spot = (middle - 0.2 * min(xb - xa, MOST_LEAF), low)
+        callouts.append(Callout((f"{rough[0]}, both hinge faces",), ((spot, 0.0),)))
+    linears = () if tall else (along, *beside)
+    view = replace(view, linears=linears, across=(across,), callouts=tuple(callouts))
     return view, ([*heights, along], called) if tall else ([], [])
 
 
-def _around_web(o: Outline, xa: float, xb: float, flat: float | None) -> Box:
-    """The window of a hinge alone: its leaf, of a long one its middle; `flat` is None for two slots."""
-    floor = _floor(o, "slot_floor", "slot_")[1]
-    low = _floor(o, "hinge_face", "front_slot_")[1] if flat is None else flat
-    over = min(max(2.0 * (floor - low), 1.0), 3.0)
-    half = min((xb - xa) / 2 + over, MOST_LEAF)
-    middle = (xa + xb) / 2
-    return (middle - half, low - (over if flat is None else 0.5 * over), middle + half, floor + over)
+def _arc(o: Outline, names: Sequence[str]) -> Arc:
+    """The first of these that the outline has, a fillet."""
+    segment = o.segment(next(n for n in names if n in o))
+    assert isinstance(segment, Arc)
+    return segment
 
 
 def _heights(
@@ -233,25 +211,24 @@ def _heights(
     """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
     right."""
     flat = o.start("flat_face")
-    height = sketch.must(Dimension("arm height", (Span(o.y("flat_face"), arm.y),)))
+    height = _line(sketch, "arm height", o.y("flat_face"), arm.y, "left", flat, arm.at)
     one = "body_face" not in o
     foot = flat if one else o.corner("front_slot_body_wall", "body_face").at
     # the ledge is measured from the pad; this follows
     rows = (Span(o.y("flat_face") if one else o.y("body_face"), body.y),)
     high = Dimension("body height", rows, auxiliary=True)
-    heights = [Linear(height, "left", flat, arm.at), Linear(high, "right", foot, body.at)]
+    heights = [height, Linear(high, "right", foot, body.at)]
     if one:
         return heights
     sketch.convention(Span(o.corner("flat_face", "front_slot_arm_wall").x, arm.x))
     sketch.convention(Span(o.corner("front_slot_body_wall", "body_face").x, body.x))
-    depth = sketch.must(Dimension("front slot", (Span(o.y("flat_face"), near),)))
-    web = _floor(o, "hinge_face", "front_slot_")[1]
-    heights.append(Linear(depth, "left", flat, (arm.at[0], web)))
+    web = (arm.at[0], _floor(o, "hinge_face", "front_slot_")[1])
+    heights.append(_line(sketch, "front slot", o.y("flat_face"), near, "left", flat, web))
     if abs(foot[1] - flat[1]) < ALIKE:
         sketch.convention(Span(o.y("flat_face"), o.y("body_face")))
     else:
-        step = sketch.must(Dimension("body below the arm", (Span(o.y("body_face"), o.y("flat_face")),)))
-        heights.append(Linear(step, "left", flat, foot))
+        levels = (o.y("body_face"), o.y("flat_face"))
+        heights.append(_line(sketch, "body below the arm", *levels, "left", flat, foot))
     return heights
 
 
@@ -260,14 +237,11 @@ def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
     side."""
     if face in o:
         return o.y(face), o.start(face)[1]
-    arc = next(n for n in (f"{slot}body_fillet", f"{slot}arm_fillet") if n in o)
-    i, s = o.index[arc], o.arc(arc)
-    half = 0.5 if (s.end[0] > s.start[0]) == slot.startswith("front") else -0.5
-    up = slot.startswith("front")
-    ends = ((Spot(OUTER, i).place(0), -half), (o.point(arc, True).place(0), half))
-    return Level(((Spot(OUTER, i, centre=True).place(1), 1.0), *ends)), s.centre[1] + (
-        s.radius if up else -s.radius
-    )
+    s, up = _arc(o, (f"{slot}body_fillet", f"{slot}arm_fillet")), slot.startswith("front")
+    half = 0.5 if (s.end[0] > s.start[0]) == up else -0.5
+    ends = ((o.point(s.name, False).place(0), -half), (o.point(s.name, True).place(0), half))
+    level_ = Level(((Spot(OUTER, o.index[s.name], centre=True).place(1), 1.0), *ends))
+    return level_, s.centre[1] + (s.radius if up else -s.radius)
 
 
 def _arm_view(sketch: Sketch, o: Outline, more: Sequence[Linear], called: Sequence[Callout]) -> View:
@@ -279,29 +253,21 @@ def _arm_view(sketch: Sketch, o: Outline, more: Sequence[Linear], called: Sequen
     margin = 0.2 * back
     window = (tip[0] - margin, pad[1] - margin, xb + 0.5 * back, max(ledge, back) + margin)
     view = View("arm", *FRONT, o.contour.box, label="X", window=window, room=ARM_ROOM)
-    tip_x = o.x("tip")
-    middle = (xa + xb) / 2
-    arm = sketch.must(Dimension("arm length", (Span(tip_x, halfway(slot.x, body.x)),)))
-    length = sketch.must(Dimension("pad length", (Span(tip_x, level(o.point("pad_face", True).place(0))),)))
-    height = sketch.must(Dimension("pad height", (Span(o.y("pad_face"), o.y("flat_face")),)))
-    lands = sketch.must(Dimension("stop land", (Span(tip_x, level(o.point("stop_land", False).place(0))),)))
-    gap = sketch.must(Dimension("stop gap", (Span(o.y("stop_land"), body.y),)))
-    seat = sketch.must(Dimension(LEDGE, (Span(o.y("pad_face"), body.y),)))
+    tip_x, middle, pad_end, face = o.x("tip"), (xa + xb) / 2, o.end("pad_face"), o.y("pad_face")
+    over = (middle, max(ledge, back) + margin / 2)
     linears = (
-        Linear(lands, "top", land.end, land.start),
-        Linear(arm, "top", land.end, (middle, max(ledge, back) + margin / 2)),
-        Linear(length, "bottom", o.start("pad_face"), o.end("pad_face")),
-        Linear(height, "right", o.end("pad_face"), (window[2], o.start("flat_face")[1])),
-        Linear(gap, "left", land.end, (xb, ledge)),
-        Linear(seat, "right", o.end("pad_face"), (xb, ledge)),
+        _line(sketch, "stop land", tip_x, o.x("stop_land"), "top", land.end, land.start),
+        _line(sketch, "arm length", tip_x, halfway(slot.x, body.x), "top", land.end, over),
+        _line(sketch, "pad length", tip_x, o.x("pad_face", True), "bottom", pad, pad_end),
+        _line(sketch, "pad height", face, o.y("flat_face"), "right", pad_end, (window[2], flat)),
+        _line(sketch, "stop gap", o.y("stop_land"), body.y, "left", land.end, (xb, ledge)),
+        _line(sketch, LEDGE, face, body.y, "right", pad_end, (xb, ledge)),
     )
-    ramp = Dimension(
-        "ramp of the stop land", (Slope(o.point("land_ramp", True), o.point("land_ramp", False)),), unit="°"
-    )
+    slope = Slope(o.point("land_ramp", True), o.point("land_ramp", False))
+    ramp = sketch.must(Dimension("ramp of the stop land", (slope,), unit="°"))
     callouts = _radii(sketch, view, o, ("pad_root", "land_root"))
     spot = o.segment("land_ramp").at(0.5)
-    sketch.must(ramp)
     angle = ramp.text(sketch.values).removeprefix("-")
     callouts.append(Callout((f"ramp {angle}",), ((spot, 0.0),), (ramp,)))
-    centre_line = ((middle, flat - 0.1 * back), (middle, max(ledge, back) + margin / 2))
+    centre_line = ((middle, flat - 0.1 * back), over)
     return replace(view, linears=(*linears, *more), callouts=(*callouts, *called), axes=(centre_line,))

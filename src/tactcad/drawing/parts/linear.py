@@ -6,9 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
-from tactcad.contour import Arc, Line, Segment
-from tactcad.parts.description import Characteristic, Part
+from tactcad.contour import Arc, Line
+from tactcad.parts.description import Part
 from tactcad.parts.limits import FACES
 
 from ..engine.boxes import Point
@@ -48,33 +49,36 @@ def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequen
         return Running(side, ())
     features = [c for c in points if not c.corner]
     edges = [c for c in features if c.contour == OUTER]
-    first = _first_datum(sketch.part, features)
+    # the first datum, where one of the points is at it
+    data = [variable for d in sketch.part.datums for _, variable in places(sketch.part, (d.feature,))]
+    first = next((c for variable in data for c in points if c.variable == variable and not c.corner), None)
     origin = first or min(edges or features, key=lambda c: _right_or_up(view, k) * c.at[k])
-    way = _way(sketch, view, k, origin)
     sketch.known[k].append(origin)
+    way = _way(sketch, view, k)
     # the outline first: what is centred on it follows from it
     features.sort(key=lambda c: (c not in edges, round(way * c.at[k], 6), str(c.variable)))
     start = _foot(view, side, origin)
-    return _with_stops(Running(side, ((None, start),)), sketch, view, k, origin, way, features)
+    return _with_stops(Running(side, ((None, start),)), sketch, view, k, way, features)
 
 
 def filled(sketch: Sketch, view: View, r: Running, k: int, points: Sequence[Coordinate]) -> Running:
     """The running dimensions, with stops for corners and centres that still determine something."""
     if not r.stops:
         return r
-    origin = sketch.known[k][0]
-    return _with_stops(r, sketch, view, k, origin, _way(sketch, view, k, origin), points)
+    return _with_stops(r, sketch, view, k, _way(sketch, view, k), points)
 
 
 def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequence[Group]) -> Running:
     """Holes of a side face along the face (axis k), from the same edge as in the front view."""
     known, origin = sketch.known[k], sketch.known[k][0]
-    way = _way(sketch, view, k, origin)
+    way = _way(sketch, view, k)
     holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[k], str(r.owner)))
     points = [Coordinate(f"{r.label} {'xyz'[k]}", r.owner.place(k), r.at) for r in holes]
     sketch.known[k] = [origin]
-    bare = Running(side, ((None, _corner(view, origin)),))
-    r = _with_stops(bare, sketch, view, k, origin, way, points)
+    u0, v0, u1, v1 = view.box
+    u, v = seen(view, origin.at)
+    foot = (min(max(u, u0), u1), v0 if v < v0 else v1 if v > v1 else v)
+    r = _with_stops(Running(side, ((None, foot),)), sketch, view, k, way, points)
     sketch.known[k] = known
     return r
 
@@ -92,19 +96,11 @@ def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Se
     way = 1.0 if origin.variable is None else -1.0
     sketch.known[2] = [origin]
     holes = sorted((r for g in called for r in g.holes), key=lambda r: (way * r.at[2], str(r.owner)))
-    points = [
-        Coordinate(f"{r.label} z", r.owner.place(2), r.at, states=HEIGHTS.get(r.label, "")) for r in holes
-    ]
-    points += faces.values()
+    heights = [(r, HEIGHTS.get(r.label, "")) for r in holes]
+    points = [Coordinate(f"{r.label} z", r.owner.place(2), r.at, states=states) for r, states in heights]
     # the origin may be the upper edge of the view: the numbers still count from it
     bare = Running(side, ((None, seen(view, origin.at)),))
-    return _with_stops(bare, sketch, view, 2, origin, way, points)
-
-
-def _first_datum(part: Part, points: Sequence[Coordinate]) -> Coordinate | None:
-    """Of the points the one that the first datum stands on."""
-    on = [variable for d in part.datums for _, variable in places(part, (d.feature,))]
-    return next((c for variable in on for c in points if c.variable == variable), None)
+    return _with_stops(bare, sketch, view, 2, way, [*points, *faces.values()])
 
 
 def _right_or_up(view: View, k: int) -> float:
@@ -112,25 +108,19 @@ def _right_or_up(view: View, k: int) -> float:
     return (view.right if k == 0 else view.up)[k] or 1.0
 
 
-def _way(sketch: Sketch, view: View, k: int, origin: Coordinate) -> float:
+def _way(sketch: Sketch, view: View, k: int) -> float:
     """Sign of counting along axis k: to the right or up, from an edge at that end the other way."""
     way, box = _right_or_up(view, k), sketch.part.extrusion.outer.box
     last = max(way * box[k], way * box[k + 2])
-    return -way if abs(way * origin.at[k] - last) < ALIKE else way
+    return -way if abs(way * sketch.known[k][0].at[k] - last) < ALIKE else way
 
 
 def _with_stops(
-    r: Running,
-    sketch: Sketch,
-    view: View,
-    k: int,
-    origin: Coordinate,
-    way: float,
-    points: Sequence[Coordinate],
+    r: Running, sketch: Sketch, view: View, k: int, way: float, points: Sequence[Coordinate]
 ) -> Running:
     """One more dimension from the origin for every point that is not in line with one that has it, and does
     not follow from it."""
-    stops = list(r.stops)
+    origin, stops = sketch.known[k][0], list(r.stops)
     for c in points:
         if c is origin:
             continue
@@ -154,12 +144,6 @@ def _foot(view: View, side: Side, c: Coordinate) -> Point:
     return max(ends, key=lambda p: p[0] * u + p[1] * v)
 
 
-def _corner(view: View, c: Coordinate) -> Point:
-    u0, v0, u1, v1 = view.box
-    u, v = seen(view, c.at)
-    return (min(max(u, u0), u1), v0 if v < v0 else v1 if v > v1 else v)
-
-
 @dataclass(frozen=True)
 class EdgeStand:
     """Where a dimension stands on an outline's edge: its level along an axis, and a point of it, mm."""
@@ -170,31 +154,20 @@ class EdgeStand:
 
 
 def edge_spans(sketch: Sketch, view: View, part: Part) -> list[Linear]:
-    """Dimension lines for what the part limits between two edges of its outline that are square to x or y."""
+    """Dimension lines for what the part limits between two edges of its outline, square to x or y, that are
+    the limit's nominal size apart."""
     linears = []
-    for c in part.characteristics:
-        found = _between(part, c)
-        if found is None:
-            continue
-        k, (a, b) = found
-        a, b = sorted((a, b), key=lambda stand: stand.value)
-        d = sketch.must(sketch.stating(c.name, (Span(a.level, b.level),)))
-        linears.append(Linear(d, SIDES[k], seen(view, (*a.at, 0.0)), seen(view, (*b.at, 0.0))))
+    for c in (c for c in part.characteristics if len(c.between) == 2):
+        for k in (0, 1):
+            firsts, seconds = (list(_stands(part, name, k)) for name in c.between)
+            pairs = [sorted(pair, key=lambda stand: stand.value) for pair in product(firsts, seconds)]
+            apart = [(a, b) for a, b in pairs if abs(b.value - a.value - c.nominal) < ALIKE]
+            if apart:
+                a, b = apart[0]
+                d = sketch.must(sketch.stating(c.name, (Span(a.level, b.level),)))
+                linears.append(Linear(d, SIDES[k], seen(view, (*a.at, 0.0)), seen(view, (*b.at, 0.0))))
+                break
     return linears
-
-
-def _between(part: Part, c: Characteristic) -> tuple[int, tuple[EdgeStand, EdgeStand]] | None:
-    """Axis and stands of a limit between two edges that are its nominal size apart; None where it is no such
-    limit."""
-    if len(c.between) != 2:
-        return None
-    for k in (0, 1):
-        firsts, seconds = (list(_stands(part, name, k)) for name in c.between)
-        for a in firsts:
-            for b in seconds:
-                if abs(abs(a.value - b.value) - c.nominal) < ALIKE:
-                    return k, (a, b)
-    return None
 
 
 def _stands(part: Part, name: str, k: int) -> Iterator[EdgeStand]:
@@ -204,21 +177,11 @@ def _stands(part: Part, name: str, k: int) -> Iterator[EdgeStand]:
             continue
         if isinstance(s, Line) and abs(s.start[k] - s.end[k]) < ALIKE:
             yield EdgeStand(level(Spot(OUTER, i).place(k)), s.start[k], s.start)
-        elif isinstance(s, Arc) and _half_turn(s, k):
-            yield _summit(s, i, k)
-
-
-def _half_turn(s: Segment, k: int) -> bool:
-    """Whether an arc is half a turn about axis k: it starts and ends beside its centre."""
-    return isinstance(s, Arc) and all(abs(p[k] - s.centre[k]) < ALIKE for p in (s.start, s.end))
-
-
-def _summit(s: Arc, i: int, k: int) -> EdgeStand:
-    """The summit of half a turn: its centre and its radius, which its start has across the axis."""
-    start, centre = Spot(OUTER, i), Spot(OUTER, i, centre=True)
-    across = 1 - k
-    out = 1.0 if s.start[across] > s.centre[across] else -1.0
-    top = s.at(0.5)
-    way = 1.0 if top[k] > s.centre[k] else -1.0
-    terms = ((centre.place(k), 1.0), (start.place(across), way * out), (centre.place(across), -way * out))
-    return EdgeStand(Level(terms), top[k], top)
+        elif isinstance(s, Arc) and all(abs(p[k] - s.centre[k]) < ALIKE for p in (s.start, s.end)):
+            # half a turn: its summit is a radius, which its start has across the axis, from its centre
+            start, centre, across = Spot(OUTER, i), Spot(OUTER, i, centre=True), 1 - k
+            out = 1.0 if s.start[across] > s.centre[across] else -1.0
+            top = s.at(0.5)
+            way = out if top[k] > s.centre[k] else -out
+            terms = ((centre.place(k), 1.0), (start.place(across), way), (centre.place(across), -way))
+            yield EdgeStand(Level(terms), top[k], top)

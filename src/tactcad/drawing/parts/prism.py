@@ -61,11 +61,14 @@ def prism_plan(
         for row in conventions(name, contour):
             sketch.convention(row)
     holes = rounds(part)
-    eye, up = _front(
-        [r.axis for r in holes] + [f.axis for f in part.features if isinstance(f, Pocket)] * (len(holes) + 1)
-    )
+    # the front view shows the face with more features, pockets first; their axes lead into the material
+    pockets = [f.axis[2] for f in part.features if isinstance(f, Pocket)]
+    sunk = [r.axis[2] for r in holes] + pockets * (len(holes) + 1)
+    eye, up = BACK if sum(z > 0 for z in sunk) > sum(z < 0 for z in sunk) else FRONT
     right = View("", eye, up, (0, 0, 0, 0)).right
-    below = _below_eye(holes, up)
+    # where holes are sunk into the y faces: the eye that sees more of them, the upper face first
+    upper, lower = sum(r.axis[1] < 0 for r in holes), sum(r.axis[1] > 0 for r in holes)
+    below = None if not upper + lower else up if upper >= lower else opposite(up)
     eyes = {2: eye, 1: below or up, 0: opposite(right)}
     called = groups(holes, sketch.values, eyes, part)
     breaks, rows = None, []
@@ -76,16 +79,17 @@ def prism_plan(
         if breaks is None:
             return None
         notes = (*notes, "Views are broken; dimensions are those of the whole part")
-    front = _front_view(sketch, part, eye, up, called, rows)
+    front = _front_view(sketch, view_of(part, "front", eye, up), part, called, rows)
     views = [front]
     if below:
-        views.append(_sunk_view(sketch, part, front, "below" if below == up else "above", below, called))
+        views.append(_sunk_view(sketch, part, front, below, called))
     section = section_of(part, holes, front, below) if cut else None
     if section and breaks and section.axis == breaks.axis and not breaks.shows(section.at):
         section = None
-    aside = [g for g in called if g.axis[0]]
-    if aside or not below:
-        side = side_view(sketch, part, front, called if aside else [])
+    if any(g.axis[0] for g in called):
+        raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")
+    if not below:
+        side = side_view(sketch, part, front)
         views.append(replace(side, section=section, hidden=False) if section and section.axis == 0 else side)
     if section and (below or section.axis == 1):
         views.append(section_view(part, front, below, section))
@@ -94,47 +98,21 @@ def prism_plan(
     return SheetPlan(part, sketch.values, tuple(sketch.conventions), marked, tuple(notes), breaks)
 
 
-def _front(axes: Sequence[Vector]) -> tuple[Vector, Vector]:
-    """The front view shows the face with more features; their axes lead into the material."""
-    from_top = sum(1 for axis in axes if axis[2] < 0)
-    from_below = sum(1 for axis in axes if axis[2] > 0)
-    return BACK if from_below > from_top else FRONT
-
-
-def _below_eye(holes: Sequence, up: Vector) -> Vector | None:
-    """Where holes are sunk into the y faces: the eye that sees more of them, the upper face first; else
-    None."""
-    upper = sum(1 for r in holes if r.axis[1] < 0)
-    lower = sum(1 for r in holes if r.axis[1] > 0)
-    if not upper + lower:
-        return None
-    return up if upper >= lower else opposite(up)
-
-
 def _front_view(
-    sketch: Sketch,
-    part: Part,
-    eye: Vector,
-    up: Vector,
-    called: Sequence[Group],
-    rows: Sequence[Sequence[Round]],
+    sketch: Sketch, view: View, part: Part, called: Sequence[Group], rows: Sequence[Sequence[Round]]
 ) -> View:
-    view = view_of(part, "front", eye, up)
     along_z = [g for g in called if g.axis[2]]
     callouts = [hole_callout(sketch, view, g) for g in along_z]
     callouts += pocket_callouts(sketch, view, part)
     points = [c for name, contour in contours(part) for c in _coordinates(name, contour)]
-    points += [
-        Coordinate(f"{r.label} {'xy'[k]}", r.owner.place(k), r.at)
-        for g in along_z
-        for r in g.holes
-        for k in (0, 1)
-    ]
-    outer = part.extrusion.outer
-    disc = outer.as_circle()
+    round_ones = [r for g in along_z for r in g.holes]
+    points += [Coordinate(f"{r.label} {'xy'[k]}", r.owner.place(k), r.at) for r in round_ones for k in (0, 1)]
+    centres = [(seen(view, r.at), widest(r.hole)) for r in round_ones]
+    disc = part.extrusion.outer.as_circle()
     linears: list[Linear] = []
     if disc:
         callouts.insert(0, round_outline(sketch, *disc))
+        centres.append((seen(view, (*disc[0], 0.0)), 2 * disc[1]))
         linears = _lands(sketch, view, part)
     linears += edge_spans(sketch, view, part)
     along = 0 if rows and rows[0][0].at[1] == rows[0][1].at[1] else 1
@@ -143,8 +121,7 @@ def _front_view(
     runnings = []
     sides: tuple[Side, Side] = ("top", "right")
     for k, side in enumerate(sides):
-        own = [c for c in points if c.quantity == PLACES[k] and not _is_centre(c)]
-        new = [c for c in own if c.variable not in repeated]
+        new = [c for c in points if c.quantity == PLACES[k] and not c.centre and c.variable not in repeated]
         runnings.append(running_along(sketch, view, side, k, new))
     if rows:
         linears += _spaces(sketch, view, rows, along)
@@ -157,8 +134,7 @@ def _front_view(
         linears=tuple(linears),
         runnings=tuple(r for r in runnings if len(r.stops) > 1),
         callouts=tuple(callouts),
-        centres=tuple((seen(view, r.at), widest(r.hole)) for g in along_z for r in g.holes)
-        + (((seen(view, (*disc[0], 0.0)), 2 * disc[1]),) if disc else ()),
+        centres=tuple(centres),
         threads=_threads(view, along_z),
     )
 
@@ -175,20 +151,13 @@ def _spaces(sketch: Sketch, view: View, rows: Sequence[Sequence[Round]], k: int)
             sketch.convention(Span(beside[-1], a))
         count = len(row) - 1
         ends = [Level(((places[n].names[0], 1 / count),)) for n in (0, -1)]
-        space = Dimension(
-            f"{row[0].label} spaces", (Span(*ends),), sign=f"{count} equal spaces ", auxiliary=True
-        )
+        name, sign = f"{row[0].label} spaces", f"{count} equal spaces "
+        space = Dimension(name, (Span(*ends),), sign=sign, auxiliary=True)
         p, q = (seen(view, r.at) for r in (row[0], row[-1]))
         # rows beside each other that are spaced alike say it once
-        shown.setdefault(
-            (count, round(row[0].at[k], 6), round(row[-1].at[k], 6)),
-            Linear(space, "bottom" if k == 0 else "left", p, q),
-        )
+        key = (count, round(row[0].at[k], 6), round(row[-1].at[k], 6))
+        shown.setdefault(key, Linear(space, "bottom" if k == 0 else "left", p, q))
     return list(shown.values())
-
-
-def _is_centre(c: Coordinate) -> bool:
-    return c.variable is not None and isinstance(c.variable.of, Spot) and c.variable.of.centre
 
 
 def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
@@ -206,9 +175,8 @@ def _coordinates(owner: Owner, contour: Contour) -> list[Coordinate]:
                     edges.append(Coordinate(label, start.place(k), (*s.start, 0.0), (*s.end, 0.0)))
         else:
             centres += [Coordinate(f"{label} centre", centre.place(k), (*s.centre, 0.0)) for k in (0, 1)]
-        corners += [
-            Coordinate(f"{label} start", start.place(k), (*s.start, 0.0), corner=True) for k in (0, 1)
-        ]
+        corner = (*s.start, 0.0)
+        corners += [Coordinate(f"{label} start", start.place(k), corner, corner=True) for k in (0, 1)]
     return edges + corners + centres
 
 
@@ -220,11 +188,9 @@ def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
             continue
         name = part.features[owner.number or 0].name.removeprefix("around_")
         x0, y0, x1, y1 = contour.box
-        sides: tuple[tuple[Side, Point, Point], ...] = (
-            ("top", (x0, y1), (x1, y1)),
-            ("right", (x1, y0), (x1, y1)),
-        )
-        for k, (side, p, q) in enumerate(sides):
+        sides: tuple[tuple[Side, Point], ...] = (("top", (x0, y1)), ("right", (x1, y0)))
+        for k, (side, p) in enumerate(sides):
+            q = (x1, y1)
             a, b = (edge_level(sketch, owner, k, end[k]) for end in (p, q))
             sketch.convention(Span(halfway(a, b), level(OUTER.place(k))))
             d = sketch.must(sketch.stating(f"{name} along {'xy'[k]}", (Span(a, b),)))
@@ -232,14 +198,11 @@ def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
     return linears
 
 
-def _sunk_view(
-    sketch: Sketch, part: Part, front: View, name: str, eye: Vector, called: Sequence[Group]
-) -> View:
+def _sunk_view(sketch: Sketch, part: Part, front: View, eye: Vector, called: Sequence[Group]) -> View:
     """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of
     them."""
-    sign = 1.0 if name == "below" else -1.0
-    up = opposite(front.eye, sign)
-    view = view_of(part, name, eye, up)
+    name, sign = ("below", 1.0) if eye == front.up else ("above", -1.0)
+    view = view_of(part, name, eye, opposite(front.eye, sign))
     mine = [g for g in called if g.axis[1]]
     callouts = [hole_callout(sketch, view, g) for g in mine]
     side: Side = "bottom" if name == "below" else "top"
@@ -262,14 +225,9 @@ def _threads(view: View, called: Sequence[Group]) -> tuple[tuple[Point, float], 
     return tuple(threads)
 
 
-def side_view(
-    sketch: Sketch, part: Part, front: View, called: Sequence[Group], thickness: Dimension | None = None
-) -> View:
-    """The view from the left, beside the front view: thickness, and holes of the x faces."""
+def side_view(sketch: Sketch, part: Part, front: View, thickness: Dimension | None = None) -> View:
+    """The view from the left, beside the front view, with the thickness."""
     view = view_of(part, "right", opposite(front.right), front.up)
-    mine = [g for g in called if g.axis[0]]
-    if mine:
-        raise CheckFailure(f"drawings: {part.part_no}: holes in the x faces have no view yet")
     d = sketch.must(thickness or sketch.stating("thickness", (size(THICKNESS),)))
     x0, y0, x1, y1 = view.box
     return replace(view, linears=(Linear(d, "bottom", (x0, y0), (x1, y0)),))

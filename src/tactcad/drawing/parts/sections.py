@@ -9,11 +9,11 @@ such plane is possible, y = constant, seen from the side whose place above or be
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from math import hypot, isclose
 
-from tactcad.contour import Arc, Line
+from tactcad.contour import Arc
 from tactcad.parts.description import Feature, Hole, Part, Pocket, Vector, drill_point_height, vector
 
 from ..engine.boxes import Box, Chord, Point
@@ -71,21 +71,28 @@ def _sight(front: View, below: Vector | None, k: int) -> tuple[Vector, Vector]:
 def _best(part: Part, sunk: Sequence[Feature], holes: Sequence[Round], k: int, way: float) -> float | None:
     box = part.extrusion.outer.box
     low, high = box[k], box[k + 2]
-    planes = sorted(
-        {round(v, 9) for f in sunk if (v := _middle(f, k)) is not None and low + ON_AXIS < v < high - ON_AXIS}
-    )
+    walls = []
+    for s in (s for _, contour in contours(part) for s in contour):
+        if isinstance(s, Arc):
+            walls += [s.centre[k] - s.radius, s.centre[k] + s.radius]
+        elif abs(s.start[k] - s.end[k]) < ON_AXIS:
+            walls.append(s.start[k])
+    middles = {f: middle for f in sunk if (middle := _middle(f, k)) is not None}
+    planes = sorted({round(v, 9) for v in middles.values() if low + ON_AXIS < v < high - ON_AXIS})
 
     def worth(v: float) -> tuple[int, float, int, float, float]:
-        shown = [f for f in sunk if _through(f, k, v)]
-        return (
-            len({_kind(f) for f in shown}),
-            max(map(_depth, shown)),
-            len(shown),
-            -round(abs(v - (low + high) / 2), 6),
-            -way * v,
-        )
+        shown = [f for f, middle in middles.items() if abs(middle - v) < ON_AXIS]
+        off_middle = round(abs(v - (low + high) / 2), 6)
+        return (len(set(map(_kind, shown))), max(map(_depth, shown)), len(shown), -off_middle, -way * v)
 
-    clean = [v for v in planes if not _cuts_off_axis(holes, k, v) and not _runs_along(part, k, v)]
+    # nor a plane that would show a hole narrower than it is
+    across = [(r.at[k], max(widest(r.hole), r.hole.thread_diameter) / 2) for r in holes if not r.hole.axis[k]]
+    clean = [
+        v
+        for v in planes
+        if not any(ON_AXIS < abs(at - v) < radius + ON_AXIS for at, radius in across)
+        and not any(abs(wall - v) < ON_AXIS for wall in walls)
+    ]
     return max(clean, key=worth, default=None)
 
 
@@ -102,11 +109,6 @@ def _middle(f: Feature, k: int) -> float | None:
     return (box[k] + box[k + 2]) / 2
 
 
-def _through(f: Feature, k: int, at: float) -> bool:
-    middle = _middle(f, k)
-    return middle is not None and abs(middle - at) < ON_AXIS
-
-
 def _kind(f: Feature) -> tuple:
     if isinstance(f, Pocket):
         return (f.name,)
@@ -116,30 +118,6 @@ def _kind(f: Feature) -> tuple:
 def _depth(f: Feature) -> float:
     """Depth of the floor that hidden lines would show, mm."""
     return f.counterbore[1] if isinstance(f, Hole) and f.through and f.counterbore else f.depth
-
-
-def _cuts_off_axis(holes: Sequence[Round], k: int, at: float) -> bool:
-    """Whether the plane would show a hole narrower than it is."""
-    return any(
-        ON_AXIS < abs(r.at[k] - at) < max(widest(r.hole), r.hole.thread_diameter) / 2 + ON_AXIS
-        for r in holes
-        if not r.hole.axis[k]
-    )
-
-
-def _runs_along(part: Part, k: int, at: float) -> bool:
-    """Whether a wall of the part lies in the plane, or touches it."""
-    return any(
-        abs(place - at) < ON_AXIS for _, contour in contours(part) for s in contour for place in _walls(s, k)
-    )
-
-
-def _walls(s: Line | Arc, k: int) -> Iterator[float]:
-    if isinstance(s, Arc):
-        yield s.centre[k] - s.radius
-        yield s.centre[k] + s.radius
-    elif abs(s.start[k] - s.end[k]) < ON_AXIS:
-        yield s.start[k]
 
 
 def _bore(view: View, h: Hole) -> Bore:

@@ -39,6 +39,11 @@ class Coordinate:
         return self.variable.contour if self.variable else None
 
     @property
+    def centre(self) -> bool:
+        """Whether it is of an arc's centre."""
+        return self.variable is not None and isinstance(self.variable.of, Spot) and self.variable.of.centre
+
+    @property
     def quantity(self) -> Quantity | None:
         return self.variable.quantity if self.variable else None
 
@@ -53,7 +58,7 @@ class Sketch:
     def __init__(self, part: Part) -> None:
         self.part = part
         self.values = variables(part)
-        self.account = Determined(self.values)
+        self.determined = Determined(self.values)
         self.conventions: list[Measure] = []
         self.known: dict[int, list[Coordinate]] = {0: [], 1: [], 2: []}
         self.unstated = {c.name: c for c in part.characteristics}
@@ -66,16 +71,16 @@ class Sketch:
 
     def convention(self, row: Measure) -> None:
         self.conventions.append(row)
-        self.account.takes(row)
+        self.determined.takes(row)
 
     def new(self, dimension: Dimension) -> bool:
         """Add a dimension if every one of its rows determines something new; returns whether it did."""
-        before = self.account.basis
-        if all([self.account.takes(row) for row in dimension.rows]):
+        before = self.determined.basis
+        if all([self.determined.takes(row) for row in dimension.rows]):
             if dimension.characteristic:
                 del self.unstated[dimension.characteristic.name]
             return True
-        self.account.basis = before
+        self.determined.basis = before
         return False
 
     def _spots(self, features: Iterable[str]) -> set[tuple[int, float]]:
@@ -104,10 +109,8 @@ class Sketch:
         """A dimension that has to determine something new, with the limits of the characteristic of its name.
         Raises CheckFailure where it repeats others."""
         if dimension.characteristic is None and dimension.name in self.unstated:
-            stated = self.stating(dimension.name, dimension.rows)
-            dimension = replace(
-                dimension, limits=stated.limits, key=stated.key, characteristic=stated.characteristic
-            )
+            s = self.stating(dimension.name, dimension.rows)
+            dimension = replace(dimension, limits=s.limits, key=s.key, characteristic=s.characteristic)
         if not self.new(dimension):
             raise CheckFailure(f"drawings: {self.part.part_no}: {dimension.name} is given twice")
         return dimension
@@ -123,17 +126,13 @@ def closed(sketch: Sketch, views: Sequence[View]) -> None:
     number = sketch.part.part_no
     if sketch.unstated:
         raise CheckFailure(f"drawings: {number}: no dimension states {', '.join(sketch.unstated)}")
-    missing = len(sketch.values) - 2 - sketch.account.rank
+    missing = len(sketch.values) - 2 - sketch.determined.rank
     if missing:
         raise CheckFailure(f"drawings: {number}: {missing} dimensions are missing")
     if sketch.unlocated:
         open_ = ", ".join(f"{'xyz'[k]} = {at:g}" for k, at in sorted(sketch.unlocated))
         raise CheckFailure(f"drawings: {number}: nothing locates {open_} from a datum")
-    _marked_once(sketch.part, views)
-
-
-def _marked_once(part: Part, views: Sequence[View]) -> None:
-    called = [c for view in views for c in view.callouts]
+    part, called = sketch.part, [c for view in views for c in view.callouts]
     framed = Counter(f.geometric.name for c in called for f in c.frames)
     # of a letter that several views offer one is drawn
     lettered = Counter(c.datum for c in called) + Counter({d.letter for view in views for d in view.datums})
@@ -142,7 +141,7 @@ def _marked_once(part: Part, views: Sequence[View]) -> None:
     if wrong := [
         f"{what} stands {found} times, not {meant}" for what, found, meant in shown if found != meant
     ]:
-        raise CheckFailure(f"drawings: {part.part_no}: {'; '.join(wrong)}")
+        raise CheckFailure(f"drawings: {number}: {'; '.join(wrong)}")
 
 
 def view_of(part: Part, name: str, eye: Vector, up: Vector) -> View:

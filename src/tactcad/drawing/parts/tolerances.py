@@ -6,7 +6,7 @@ The symbols of characteristics are drawn as strokes (proportions of ISO 7083): n
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import atan2, degrees, hypot
 
@@ -119,7 +119,7 @@ def frame_width(frame: Frame) -> float:
 def tolerance_frame(frame: Frame, corner: Point) -> list[Item]:
     """Symbol, zone and datum letters in their cells, from the upper left corner."""
     x, y = corner[0], corner[1] - FRAME
-    items = [_box(x, y, FRAME), *_SYMBOLS[frame.geometric.symbol]((x + FRAME / 2, y + FRAME / 2))]
+    items = [_box(x, y, FRAME), *_symbol(frame.geometric.symbol, x + FRAME / 2, y + FRAME / 2)]
     x += FRAME
     for text in frame.cells:
         w = _cell_width(text)
@@ -163,34 +163,13 @@ def _box(x: float, y: float, w: float) -> Item:
     return rectangle(x, y, w, FRAME, THIN, "symbol")
 
 
-def _position(at: Point) -> list[Item]:
-    x, y = at
-    arms = (((x - 1.8, y), (x + 1.8, y)), ((x, y - 1.8), (x, y + 1.8)))
-    return [DrawnArc(at, 1.1, line=THIN, role="symbol"), *(segment(*arm, THIN, "symbol") for arm in arms)]
-
-
-def _flatness(at: Point) -> list[Item]:
-    x, y = at
-    points = ((x - 1.9, y - 0.9), (x + 0.9, y - 0.9), (x + 1.9, y + 0.9), (x - 0.9, y + 0.9))
-    return [Stroke(points, THIN, "symbol", True)]
-
-
-def _parallelism(at: Point) -> list[Item]:
-    x, y = at
-    return [
-        segment((x + off - 0.7, y - 1.3), (x + off + 0.7, y + 1.3), THIN, "symbol") for off in (-0.65, 0.65)
-    ]
-
-
-def _perpendicularity(at: Point) -> list[Item]:
-    x, y = at
-    foot, post = ((x - 1.6, y - 1.4), (x + 1.6, y - 1.4)), ((x, y - 1.4), (x, y + 1.6))
-    return [segment(*foot, THIN, "symbol"), segment(*post, THIN, "symbol")]
-
-
-_SYMBOLS: dict[Symbol, Callable[[Point], list[Item]]] = {
-    "position": _position,
-    "flatness": _flatness,
-    "parallelism": _parallelism,
-    "perpendicularity": _perpendicularity,
-}
+def _symbol(symbol: Symbol, x: float, y: float) -> list[Item]:
+    """The symbol of a characteristic about its middle."""
+    ways = {
+        "position": (((x - 1.8, y), (x + 1.8, y)), ((x, y - 1.8), (x, y + 1.8))),
+        "flatness": (((x - 1.9, y - 0.9), (x + 0.9, y - 0.9), (x + 1.9, y + 0.9), (x - 0.9, y + 0.9)),),
+        "parallelism": tuple(((x + u - 0.7, y - 1.3), (x + u + 0.7, y + 1.3)) for u in (-0.65, 0.65)),
+        "perpendicularity": (((x - 1.6, y - 1.4), (x + 1.6, y - 1.4)), ((x, y - 1.4), (x, y + 1.6))),
+    }
+    circle = [DrawnArc((x, y), 1.1, line=THIN, role="symbol")] if symbol == "position" else []
+    return [*circle, *(Stroke(points, THIN, "symbol", len(points) > 2) for points in ways[symbol])]
