@@ -8,7 +8,7 @@ descriptions, without a kernel.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from html import escape
 from math import ceil
 
@@ -37,7 +37,6 @@ from .engine.ink import (
 )
 from .engine.sheet_files import svg_bytes
 
-_SCREW = re.compile(r"ISO(4762|4026|4032)-(M[\d.]+)[x-]")
 MAP = "sensing-face"  # label of the picture that shows which element stands where
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; \
@@ -92,33 +91,26 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
 
 
 def torque(part: Part, design: Design) -> float | None:
-    """Tightening torque of a cap screw, nut or set screw, N m; None for other parts, 0 for a set screw that
-    only touches."""
-    match = _SCREW.match(part.part_no)
-    if not match:
-        return None
-    return seating.torque(Layout(design)) if match[1] == "4026" else METRIC[match[2]].torque
+    """Tightening torque of a screw or nut, N m; None for other parts, 0 for a set screw that only touches."""
+    if part.kind == "set screw":
+        return seating.torque(Layout(design))
+    return METRIC[part.thread].torque if part.thread else None
 
 
 def tools(design: Design, scene: Scene) -> list[str]:
     """What the steps need: drivers of the screws and nuts that they place, torques, and their other tools."""
     ready = {d for step in scene.steps for d in step.ready}
     drivers: dict[tuple[str, float], list[str]] = {}
-    torques: dict[float, None] = {}
+    torques: set[float] = set()
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
-        if match := _SCREW.match(part.part_no):
-            m = METRIC[match[2]]
-            sizes = {
-                "4762": ("hex key", m.key),
-                "4026": ("hex key", m.set_key),
-                "4032": ("two spanners", m.nut),
-            }
-            threads = drivers.setdefault(sizes[match[1]], [])
-            kind = {"4762": "cap screws", "4026": "set screws", "4032": "nuts"}[match[1]]
-            if f"{match[2]} {kind}" not in threads:
-                threads.append(f"{match[2]} {kind}")
+        if part.thread:
+            m = METRIC[part.thread]
+            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two spanners", m.nut)}
+            driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
+            if turned not in drivers.setdefault(driver, []):
+                drivers[driver].append(turned)
             if tight := torque(part, design):
-                torques[tight] = None
+                torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
         lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
@@ -137,13 +129,14 @@ def page(design: Design, scene: Scene) -> bytes:
     """The guide as one HTML page; its pictures lie beside it."""
     d = design.design
     title = f"{d.title}: {scene.name}"
+    needed = "".join(f"<li>{escape(line)}</li>" for line in tools(design, scene))
     body = [
         f"<h1>{escape(title)}</h1>",
         f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}'
         + (f", {escape(d.organisation)}" if d.organisation else "")
         + ". Made from the scene; parts as in its bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
-        _list("Tools", tools(design, scene)),
+        f"<section><h2>Tools</h2><ul>{needed}</ul></section>",
     ]
     body += [_section(design, scene, n, step) for n, step in enumerate(scene.steps, start=1)]
     before = [s for ready in scene.ready for s in ready.supplies]
@@ -160,12 +153,6 @@ def page(design: Design, scene: Scene) -> bytes:
         + "\n".join(body)
         + "\n</body>\n</html>\n"
     ).encode()
-
-
-def _list(title: str, lines: Iterable[str]) -> str:
-    return (
-        f"<section><h2>{title}</h2><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul></section>"
-    )
 
 
 def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
@@ -232,14 +219,12 @@ def middle(p: Placement) -> float:
 
 def pad(p: Placement) -> Box | None:
     """The element's contact pad in the view, mm; None of a blank."""
-    faces = [s for s in p.part.extrusion.outer if s.name == "pad_face"]
-    ends = [
-        placed(p, (*end, z))
-        for s in faces
-        for end in (s.start, s.end)
-        for z in (0.0, p.part.extrusion.thickness)
-    ]
-    return bounds((x, -y) for x, y, _ in ends) if ends else None
+    if p.part.kind != "element":
+        return None
+    body = p.part.extrusion
+    face = body.outer.named("pad_face")
+    ends = [placed(p, (*end, z)) for end in (face.start, face.end) for z in (0.0, body.thickness)]
+    return bounds((x, -y) for x, y, _ in ends)
 
 
 def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Text]:
@@ -254,13 +239,10 @@ def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Tex
     for row, sign in zip(rows, (1.0, -1.0)):
         for p in _spaced(row, (height + BELOW_EACH_OTHER) / f):
             at = (sign * (half + BESIDE), middle(p) * f - height / 2)
-            name = f"{p.designator}{_arm(p)}" if arms else p.designator
+            arm = f", {p.part.name.rpartition(', ')[2]}" if pad(p) else " (blank)"
+            name = f"{p.designator}{arm if arms else ''}"
             texts.append(Text(at, name, height, "start" if sign > 0 else "end"))
     return texts
-
-
-def _arm(p: Placement) -> str:
-    return f", {p.part.name.rpartition(', ')[2]}" if pad(p) else " (blank)"
 
 
 def _spaced(row: Sequence[Placement], least: float) -> list[Placement]:
@@ -289,8 +271,7 @@ def axes(at: Point, length: float = 8.0) -> list[Item]:
 
 
 def face_map(array: Scene, name: str) -> DrawnSheet:
-    """The map of an array: outlines of elements, blanks and end plates, pads filled, numbers and arms beside
-    them."""
+    """The map of an array: outlines of elements, blanks and end plates; pads filled, numbers and arms."""
     plates = [p for p in array.placements if p.designator in ("EP1", "EP2")]
     x0, y0, x1, y1 = bounds_of(corners(seen_box(p)) for p in [*plates, *in_stack(array)])
     f = min(MAP_SIZE[0] / (x1 - x0), MAP_SIZE[1] / (y1 - y0))
@@ -311,10 +292,6 @@ def face_map(array: Scene, name: str) -> DrawnSheet:
         items.append(Text((0.0, y), f"{plate.designator}: {plate.part.name.lower()}", LETTERS, "middle"))
     items += axes((x0 * f, under - LETTERS))
     bx0, by0, bx1, by1 = bounds_of_items(items)
-    title = "Sensing face, pads towards you"
-    return DrawnSheet(
-        name,
-        title,
-        (round(bx1 - bx0 + 4.0, 3), round(by1 - by0 + 4.0, 3)),
-        tuple(moved(i, 2.0 - bx0, 2.0 - by0) for i in items),
-    )
+    size = (round(bx1 - bx0 + 4.0, 3), round(by1 - by0 + 4.0, 3))
+    shown = tuple(moved(i, 2.0 - bx0, 2.0 - by0) for i in items)
+    return DrawnSheet(name, "Sensing face, pads towards you", size, shown)

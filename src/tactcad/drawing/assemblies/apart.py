@@ -32,9 +32,7 @@ TOUCH = 0.01  # mm: boxes that overlap by no more meet face to face
 
 @dataclass(frozen=True)
 class Piece:
-    """What moves as one in a view: a part, equal parts that lie on each other, or a sub-assembly under the
-    letter of its own view.
-    """
+    """What moves as one in a view: a part, equal parts on each other, or a sub-assembly under its letter."""
 
     placements: tuple[Placement, ...]
     letter: str = ""
@@ -66,9 +64,7 @@ def pieces_of(scene: Scene, placements: Sequence[Placement]) -> list[Piece]:
 
 
 def pulled_apart(scene: Scene, pieces: Sequence[Piece], gap: float, more: Mapping[int, float]) -> list[Piece]:
-    """The pieces of a scene moved apart along their joints by at least `gap` mm, or by `more` for a piece
-    (by index).
-    """
+    """The pieces moved apart along their joints by `gap` mm or more, a piece (by index) by `more`."""
     owner = {p.designator: n for n, piece in enumerate(pieces) for p in piece.placements}
     boxes = {p.designator: box_of(p) for p in scene.placements}
     joints = joints_of(scene.placements, scene.contacts)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.parts import seating
+from tactcad.parts.description import Kind
 from tactcad.parts.layout import Layout
 from tactcad.scenes.array_steps import COPLANAR
 from tactcad.scenes.scene import Scene
@@ -47,8 +48,7 @@ LONGEST_ROW = 8  # elements named on the sheet
 
 
 def arrangement(design: Design, scene: Scene, shapes: Mapping[str, TopoDS_Shape], block: TitleBlock) -> Page:
-    """Front, plan below it, view from the left to its right; of the array the sensing face, seen from below,
-    over the front."""
+    """Front, plan below it, view from the left to its right; of the array its sensing face over the front."""
     from tactcad.solids.place import placed_shape
 
     from ..engine.picture import EXACT_UP_TO, Viewpoint, drawing
@@ -185,12 +185,12 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
         if 0 < len(own) <= LONGEST_ROW:
             order = ", ".join(f"{p.designator} arm {p.arm:g}" for p in own)
             lines.append(f"Row {row}, its bodies on the side of {side}x, from -y to +y: {order}")
-    if torques := _torques(design, scene, "ISO4762-"):
+    if torques := _torques(design, scene, "cap screw"):
         lines.append(f"Tighten cap screws of property class A2-70, lubricated, to {torques}")
-    if torques := _torques(design, scene, "ISO4032-"):
+    if torques := _torques(design, scene, "nut"):
         lines.append(f"Tighten nuts of property class A2-70, lubricated, to {torques}")
-    if any(part.part_no.startswith("ISO4026-") for part in scene.parts):
-        torques = _torques(design, scene, "ISO4026-")
+    if any(part.kind == "set screw" for part in scene.parts):
+        torques = _torques(design, scene, "set screw")
         how = f"to {torques}" if torques else seating.words(Layout(design))
         lines.append(f"Turn set screws in {how}, locked with thread lacquer")
     for step in scene.steps:
@@ -204,15 +204,11 @@ def notes_of(design: Design, scene: Scene) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def _torques(design: Design, scene: Scene, standard: str) -> str:
-    """ "M3 0.55 N·m, M4 1.2 N·m" of the screws of that standard placed."""
-    torques = {}
-    for part in scene.parts:
-        if part.part_no.startswith(standard) and (tight := torque(part, design)):
-            torques[part.part_no.split("-")[1].split("x")[0]] = tight
-    return ", ".join(
-        f"{thread} {value:g} N·m" for thread, value in sorted(torques.items(), key=lambda pair: pair[1])
-    )
+def _torques(design: Design, scene: Scene, kind: Kind) -> str:
+    """ "M3 0.55 N·m, M4 1.2 N·m" of the screws or nuts of that kind."""
+    torques = {part.thread: torque(part, design) or 0.0 for part in scene.parts if part.kind == kind}
+    ascending = sorted(torques.items(), key=lambda pair: pair[1])
+    return ", ".join(f"{thread} {tight:g} N·m" for thread, tight in ascending if tight)
 
 
 def _sensing_face(array: Scene, view: Box, f: float) -> list[Item]:

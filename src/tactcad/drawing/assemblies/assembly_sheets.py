@@ -37,25 +37,10 @@ def assembly_sheets(
     draft: bool = False,
     sample: bool = False,
 ) -> list[DrawnSheet]:
-    """All sheets of a scene, their layout clean.
+    """All sheets of a scene, their layout clean: `rows` are its bill of materials, `shapes` the solids by
+    part number, each in its own frame (mm).
 
-    Parameters
-    ----------
-    design, scene
-        What is drawn.
-    rows
-        The scene's bill of materials.
-    shapes
-        Solids by part number, each in its own frame, mm.
-    draft
-        Marks every sheet PRELIMINARY.
-    sample
-        Has every title block say that nothing is to be ordered by it.
-
-    Raises
-    ------
-    CheckFailure
-        Where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
+    Raises CheckFailure where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
     """
     name = f"Assembly: {scene.name.replace('-', ' ')}"
     block = block_of(design.design, f"{design.name}-{scene.name}", name, draft, sample)
@@ -90,8 +75,7 @@ def _list_pages(list_: parts_list.Laid) -> list[Page]:
 
 @dataclass(frozen=True)
 class AssemblyOrder:
-    """One scene to draw: its bill of materials, and every part's solid as the kernel's text, by part
-    number."""
+    """One scene to draw: its bill of materials, and every part's solid by number, as the kernel's text."""
 
     design: Design
     scene: Scene
@@ -125,23 +109,8 @@ def assembly_written(order: AssemblyOrder) -> Written:
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
-    """What is wrong with an assembly's PDF.
-
-    Parameters
-    ----------
-    pdf
-        The written file.
-    number, revision
-        That every page has to name.
-    rows
-        The scene's bill of materials.
-
-    Returns
-    -------
-    list of str
-        Pages without number, revision or sheet count; items that have a solid and not just one balloon; rows
-        that are not in the parts list as the bill has them. Empty where nothing is wrong.
-    """
+    """What is wrong with an assembly's PDF: pages without number, revision or sheet count; items that have a
+    solid and not just one balloon; rows of the bill that are not in the parts list as the bill has them."""
     pages = pdf_runs(pdf)
     wrong = []
     for n, runs in enumerate(pages, start=1):

@@ -32,8 +32,7 @@ FORBIDDEN = 1e6
 
 @dataclass(frozen=True)
 class Balloon:
-    """An item number, or the letter of a sub-assembly's own view; the middle of its circle, and the point
-    where its leader ends; mm of paper."""
+    """An item number or a view's letter; the middle of its circle, and where its leader ends, mm of paper."""
 
     item: int | str
     centre: Point
@@ -55,12 +54,8 @@ def height(number: str) -> float:
 def place(
     own: Mapping[int | str, Sequence[Sequence[Point]]], lines: Sequence[Sequence[Point]], area: Box
 ) -> list[Balloon] | None:
-    """A balloon for each item, in their order; None where they find no place.
-
-    own    the visible lines of each item (mm of paper)
-    lines  every line that a balloon must keep clear of
-    area   where the balloons may stand
-    """
+    """A balloon in the area (mm of paper) for each item, at its own visible lines and clear of all `lines`;
+    None where they find no place."""
     places = _places(lines, area)
     tips = {item: _tips(some, own, item) for item, some in own.items()}
     if len(places) < len(own) or not all(tips.values()):
@@ -128,9 +123,7 @@ def _without_faults(
     tips: Sequence[Sequence[Point]],
     places: Sequence[Point],
 ) -> list[Balloon] | None:
-    """The shortest solution without faults; of two leaders that disturb each other the longer one is
-    forbidden.
-    """
+    """The shortest solution without faults; of two leaders that meet the longer one is forbidden."""
     from scipy.optimize import linear_sum_assignment
 
     cost = np.array([own.min(axis=1) for own in lengths])
@@ -151,8 +144,7 @@ def _without_faults(
 
 
 def faults(balloons: Sequence[Balloon]) -> list[tuple[int, int]]:
-    """Pairs (by index) of balloons whose leaders cross or run closer than APART, or of which one's leader
-    comes too close to the other's circle."""
+    """Pairs (by index) of balloons whose leaders meet, or one's that comes near the other's circle."""
     return [
         (i, k)
         for (i, a), (k, b) in combinations(enumerate(balloons), 2)

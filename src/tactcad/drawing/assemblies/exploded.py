@@ -143,8 +143,7 @@ def _heading(lines: Sequence[str], area: Box) -> tuple[list[Item], Box]:
 
 
 def room(paper: Paper, with_list: bool) -> Box:
-    """Where an exploded view may stand: left of the list, else left of or over the title block, whichever is
-    larger."""
+    """Where an exploded view may stand: left of the list, else left of or over the title block."""
     x0, y0, x1, y1 = paper.area
     beside, over = (x0, y0, x1 - WIDTH, y1), (x0, y0 + HEIGHT, x1, y1)
     sizes = [(b[2] - b[0]) * (b[3] - b[1]) for b in (beside, over)]

@@ -112,9 +112,7 @@ def numbered_pages(
 
 
 def _taken_apart(unit: UnitView, item: Mapping[str, int], shapes: Mapping[str, TopoDS_Shape]) -> Exploded:
-    """The unit exploded; parts that are hardly seen are pulled out farther, as long as that shows more of
-    them.
-    """
+    """The unit exploded; parts that are hardly seen are pulled out farther, where that shows more of them."""
     from ..engine.picture import ABOVE
 
     if not unit.pieces:
@@ -225,8 +223,7 @@ def side_by_side(own: Mapping[int, Sequence[Polyline]], area: Box) -> list[list[
 def _laid(
     own: Mapping[int, Sequence[Polyline]], scales: Mapping[int, Scale], area: Box
 ) -> list[list[Shown]] | None:
-    """The parts in rows from the left, the rows below each other; None where one is too large for the
-    area."""
+    """The parts in rows from the left, below each other; None where one is too large for the area."""
     x0, y0, x1, y1 = area
     cells = {item: _cell(lines, factor(scales[item])) for item, lines in own.items()}
     if any(w > x1 - x0 or h > y1 - y0 for w, h in cells.values()):
@@ -270,8 +267,7 @@ def _topmost(lines: Sequence[Polyline]) -> Point:
 
 
 def _placed(item: int, lines: Sequence[Polyline], scale: Scale, corner: Point) -> Shown:
-    """A part whose cell has its lower left corner there; the leader goes straight down to its topmost
-    point."""
+    """A part whose cell's lower left corner is given; the leader goes straight down to its topmost point."""
     f = factor(scale)
     left, right = _sides(lines, f)
     dx, dy = corner[0] + CELL_GAP / 2 - left, corner[1] + CELL_GAP / 2 + UNDER - f * bounds_of(lines)[1]

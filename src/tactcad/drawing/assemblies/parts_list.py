@@ -78,8 +78,7 @@ def columns(list_: Laid, rooms: Sequence[float]) -> list[range]:
 
 
 def drawn(list_: Laid, rows: range, at: Point) -> tuple[list[Item], float]:
-    """The rows below each other from the upper left corner `at`, under a heading; the items, and their height
-    (mm)."""
+    """The rows under a heading, from the upper left corner `at`; the items, and their height (mm)."""
     x0, top = at
     size = list_.size
     y = top - heading(size)

@@ -146,9 +146,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Hatch:
-    """A cut face between closed polygons (by the even-odd rule, so that holes are among them), hatched at 45
-    degrees (ISO 128-50).
-    """
+    """A cut face between closed polygons (even-odd: holes are among them), hatched at 45 degrees."""
 
     loops: tuple[tuple[Point, ...], ...]
     line: LineType = THIN

@@ -32,8 +32,7 @@ class _Straight:
 
 
 def layout_faults(sheet: DrawnSheet) -> list[str]:
-    """Every fault, a line each: texts over texts, lines or hatching, anything outside the frame, dimension
-    lines across others."""
+    """Faults: texts over texts, lines or hatching; items outside the frame; dimension lines across others."""
     texts = [t for t in sheet.texts if t.role != "watermark" and t.text.strip()]
     drawn = [
         _Straight(chord, 0.0 if isinstance(item, Fill) else item.line.width / 2, item.role, n)

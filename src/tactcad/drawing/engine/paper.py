@@ -97,8 +97,7 @@ def factor(scale: Scale) -> float:
 
 
 def largest_fitting(width: float, height: float, room: tuple[float, float]) -> Scale | None:
-    """The largest scale for an assembly at which width x height (mm of it) fits the room (mm of paper); None
-    where none does."""
+    """The largest scale at which width x height (mm of an assembly) fits the room (mm of paper), or None."""
     return next(
         (s for s in ASSEMBLIES if width * factor(s) <= room[0] and height * factor(s) <= room[1]), None
     )

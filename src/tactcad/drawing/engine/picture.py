@@ -94,21 +94,9 @@ class Drawing:
 
 
 def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
-    """Visible lines of placed shapes, in canonical order.
+    """Visible lines of placed shapes (mm, y up in the picture plane), in canonical order.
 
     Exact curves for up to EXACT_UP_TO shapes; beyond, the kernel's removal on triangles, window by window.
-
-    Parameters
-    ----------
-    shapes
-        Each at its place, mm.
-    view
-        Where from.
-
-    Returns
-    -------
-    Drawing
-        Lines in the picture plane, mm, y up.
     """
     onto = projector(view.eye, view.right)
     if len(shapes) <= EXACT_UP_TO:
@@ -132,8 +120,7 @@ def drawing(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> Drawing:
 
 
 def _boxes(shapes: Sequence[TopoDS_Shape], view: Viewpoint) -> np.ndarray:
-    """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm; nothing of a shape is
-    outside."""
+    """Least and largest corner of meshed shapes in the picture, (n, 2, 2) in mm."""
     right, eye = np.array(view.right), np.array(view.eye) / np.linalg.norm(view.eye)
     plane = np.stack([right, np.cross(eye, right)], axis=1)
     boxes = np.empty((len(shapes), 2, 2))
@@ -170,9 +157,7 @@ def _lines(result: HLRBRep_HLRToShape | HLRBRep_PolyHLRToShape) -> Lines:
 
 
 def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
-    """All shapes as one. Added one by one they would be compared pair by pair, with the same lines as the
-    result.
-    """
+    """All shapes as one: added one by one they would be compared pair by pair, for the same lines."""
     builder, whole = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(whole)
     for shape in shapes:
@@ -181,21 +166,12 @@ def compound(shapes: Sequence[TopoDS_Shape]) -> TopoDS_Compound:
 
 
 def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = None) -> bytes:
-    """A drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white.
+    """A drawing at 1:1 as SVG: lines 0.35 mm, smooth ones 0.13 mm, on white; `marked` lines over it in blue.
 
-    Parameters
-    ----------
-    drawn
-        Visible lines, mm; a drawing smaller than a hand is shown enlarged.
-    title, description
-        Of the file.
-    marked
-        Lines drawn over it in blue.
-    """
+    One smaller than a hand is shown enlarged; its lines keep their share of the width."""
     x0, y0, x1, y1 = drawn.box
     left, top = x0 - MARGIN, y1 + MARGIN
     width, height = x1 - x0 + 2 * MARGIN, y1 - y0 + 2 * MARGIN
-    # a picture smaller than a hand is shown enlarged; its lines keep their share of the width
     scale = max(1.0, ceil(120 / max(width, height)))
     pen = 0.35 / scale
 
@@ -226,18 +202,8 @@ def svg(drawn: Drawing, title: str, description: str, marked: Drawing | None = N
 def check_picture(data: bytes, placements: Sequence[Placement], view: Viewpoint) -> None:
     """Hold a written picture against the descriptions of what it shows.
 
-    Parameters
-    ----------
-    data
-        The SVG file.
-    placements, view
-        What it shows, and where from.
-
-    Raises
-    ------
-    CheckFailure
-        Where it does not span what the descriptions project to (within 0.05 mm); where models from files
-        stand among them it spans the others at least, and all boxes at most.
+    Raises CheckFailure where it does not span what the descriptions project to (within 0.05 mm); where models
+    from files stand among them it spans the others at least, and all boxes at most.
     """
     text = data.decode()
     points = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+),(-?[\d.]+)", text)]
@@ -282,8 +248,7 @@ def polylines(compound: TopoDS_Shape | None) -> list[Polyline]:
 
 
 def on_curve(curve: BRepAdaptor_Curve, chord: float) -> list[gp_Pnt]:
-    """Points along a curve of the kernel: a line's ends, else so close that chords stay within `chord` mm of
-    it."""
+    """Points along a curve of the kernel: a line's ends, else so close that chords stay within `chord` mm."""
     first, last = curve.FirstParameter(), curve.LastParameter()
     if curve.GetType() == GeomAbs_Line:
         return [curve.Value(first), curve.Value(last)]

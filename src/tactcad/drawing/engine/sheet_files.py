@@ -148,8 +148,7 @@ def _polyline(points: tuple[Point, ...], h: float) -> str:
 
 @lru_cache(maxsize=16)  # a release asks several things of each of its sheets
 def pdf_texts(data: bytes) -> tuple[tuple[tuple[str, float], ...], ...]:
-    """Texts of every page with the size of their letters (points), in the order in which they were drawn, as
-    pypdf reads them."""
+    """Texts of every page with their letters' size (points), in the order drawn, as pypdf reads them."""
     from pypdf import PdfReader
 
     pages = []

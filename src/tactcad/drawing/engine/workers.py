@@ -65,26 +65,10 @@ def all_written(
     make: Callable[..., Written],
     say: Callable[[int, int, str], None] = lambda *_: None,
 ) -> list[Written]:
-    """Make drawings side by side on the machine's cores.
+    """Make drawings side by side on the machine's cores, each by `make` in a process of its own.
 
-    Parameters
-    ----------
-    orders
-        What each drawing is made of.
-    make
-        Makes one; called in a process of its own.
-    say
-        Receives (done, total, text) at least every EVERY seconds.
-
-    Returns
-    -------
-    list of Written
-        In the orders' order.
-
-    Raises
-    ------
-    CheckFailure
-        For the first that cannot be drawn, or where a process was killed.
+    `say` receives (done, total, text) at least every EVERY seconds. Raises CheckFailure for the first that
+    cannot be drawn, or where a process was killed.
     """
     if not orders:
         return []

@@ -1,6 +1,4 @@
-"""A sheet while it is composed: the items on it, and the search for a free place for a text with its
-leader.
-"""
+"""A sheet while it is composed: the items on it, and the search for free places for texts and leaders."""
 
 from __future__ import annotations
 
@@ -135,8 +133,7 @@ class Board:
         return False
 
     def _tried(self, c: Callout, tip: Point, angle: float, reach: float) -> tuple[list[Item], float]:
-        """The callout's items with a leader in this direction and of this length, and their cost; none where
-        they do not fit."""
+        """The callout's items with a leader of this direction and length, and their cost; or none."""
         elbow = polar(tip, reach, angle)
         towards = 1.0 if cos(radians(angle)) >= -1e-9 else -1.0
         start = (elbow[0] + towards * SHELF, elbow[1])
@@ -214,8 +211,7 @@ class Board:
 
 
 def _ways(c: Callout, n: int, scale: float, origin: Point) -> list[tuple[Point, float, float]]:
-    """Points of the n-th target that a leader may end at, the directions (degrees) in which it leaves them,
-    and what they cost."""
+    """Where a leader may end on the n-th target, its directions there (degrees), and what they cost."""
     (x, y), radius = c.targets[n]
     centre = (origin[0] + x * scale, origin[1] + y * scale)
     if not c.spans:

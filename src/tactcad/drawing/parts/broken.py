@@ -27,22 +27,8 @@ FAR = 1e9  # mm: beyond any part
 
 
 def breaks_of(part: Part, holes: Sequence[Round], regular: Collection[Owner]) -> Breaks | None:
-    """What a broken view of a part leaves out.
-
-    Parameters
-    ----------
-    part
-        An extruded part; its views are broken along the longer side of its outline.
-    holes
-        Every round hole of the part.
-    regular
-        Holes that need not be shown, because they repeat what is shown.
-
-    Returns
-    -------
-    Breaks | None
-        None where too little could be left out.
-    """
+    """What views of an extruded part leave out along the longer side of its outline; None where too little
+    could be. Holes that are `regular` need not be shown, because they repeat what is shown."""
     box = part.extrusion.outer.box
     sides = (box[2] - box[0], box[3] - box[1])
     axis = 0 if sides[0] > sides[1] else 1
@@ -199,8 +185,7 @@ class _Squeezed:
 
 
 def _zigzag(at: float, k: int, low: float, high: float, z: float, w: float, past: float = 0.0) -> Curve:
-    """A break line at a coordinate of the paper's axis k, `past` either end, z high and w wide about its
-    middle."""
+    """A break line at a place of the paper's axis k, z high and w wide in the middle, `past` its ends."""
     m = (low + high) / 2
     track = [
         (0.0, low - past),

@@ -149,8 +149,7 @@ def _group(
 
 
 def regular_rows(called: Sequence[Group], k: int) -> list[list[Round]]:
-    """Rows of at least LEAST_ROW equal holes along z, evenly spaced along the part's axis k (0 or 1), in
-    order."""
+    """Rows of at least LEAST_ROW equal holes along z, evenly spaced along the part's axis k, in order."""
     rows = []
     for group in called:
         lines: dict[float, list[Round]] = {}
@@ -181,9 +180,7 @@ def hole_callout(sketch: Sketch, view: View, g: Group) -> Callout:
 
 
 def _to_outside(view: View, p: Point) -> float:
-    """Distance from a point of the view to the nearest side of its box, mm; leaders are shortest where it
-    is small.
-    """
+    """From a point of the view to the nearest side of its box, mm; leaders are shortest where it is small."""
     u0, v0, u1, v1 = view.box
     return round(min(p[0] - u0, u1 - p[0], p[1] - v0, v1 - p[1]), 6)
 
@@ -270,8 +267,7 @@ def radius_callouts(sketch: Sketch, view: View, part: Part) -> list[Callout]:
 def equal_radii(
     sketch: Sketch, view: View, arcs: Sequence[tuple[str, Radius, Arc]], states: str = ""
 ) -> list[Callout]:
-    """Named arcs of a contour whose radii are not determined yet, equal ones in one callout, under the
-    name of the characteristic that they state."""
+    """Named arcs whose radii are not determined yet, equal ones in one callout, which `states` names."""
     kinds: dict[float, list[tuple[str, Radius, Arc]]] = {}
     for name, row, arc in arcs:
         kinds.setdefault(round(arc.radius, 6), []).append((name, row, arc))

@@ -1,6 +1,4 @@
-"""From a plan to a finished sheet: on the first of the preferred papers and scales on which everything
-fits.
-"""
+"""From a plan to a finished sheet: on the first of the preferred papers and scales on which all fits."""
 
 from __future__ import annotations
 
@@ -70,24 +68,10 @@ def compose(
     papers: Sequence[Paper],
     scales: Sequence[Scale] = SERIES,
 ) -> DrawnSheet:
-    """The sheet of a plan at the largest preferred scale, and on the first paper, at which its layout is
-    clean.
+    """The sheet of a plan at the largest preferred scale, and on the first paper, with a clean layout.
 
-    Parameters
-    ----------
-    plan
-        Views and what is written on them.
-    curves
-        Each view's curves by its name, mm of the part.
-    block
-        Contents of the title block; the scale is filled in.
-    papers, scales
-        To try, the best first.
-
-    Raises
-    ------
-    NoPlace
-        Where no scale fits, or none leaves a clean layout.
+    `curves` are each view's by its name, mm of the part; the title block's scale is filled in; papers and
+    scales are tried in turn. Raises NoPlace where no scale fits, or none leaves a clean layout.
     """
     x0, y0, x1, y1 = plan.views[0].box
     wide, high = x1 - x0, y1 - y0
@@ -198,8 +182,7 @@ def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool)
 def _drawn(
     view: View, curves: Sequence[Curve], scale: Scale, values: Values, spread: Mapping[str, float]
 ) -> _Drawn:
-    """The view at its scale; dimensions on a side stand `spread` mm further off, for the end of a cutting
-    plane."""
+    """The view at its scale; dimensions on a side stand `spread` mm further off."""
     f = factor(scale)
     if view.window:
         curves = windowed([c for c in curves if not isinstance(c, Hatch)], view.window)
@@ -242,8 +225,7 @@ def _detail_scale(view: View, window: Box, shrunk: float) -> Scale:
 
 
 def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Point] | None:
-    """First-angle places: the first view, `right` beside it, `below` and `above` it; None where they do not
-    fit."""
+    """First-angle places: the first view, `right` beside it, `below` and `above` it; or None."""
     boxes = {d.view.name: d.box for d in drawn}
     front = drawn[0].view.name
     shifts: dict[str, Point] = {front: (0.0, 0.0)}

@@ -142,9 +142,7 @@ class _Track:
 
 
 def _interval(a: float, b: float, t0: float, length: float, inside: bool) -> tuple[float, float]:
-    """The stretch that a dimension occupies along its line; two that end at one extension line may share
-    the line.
-    """
+    """The stretch that a dimension takes along its line; two that end at one extension line may share it."""
     low, high = (a, b) if inside else (a - TAIL, b + TAIL)
     return (min(low, t0 - 1.5) if t0 < a else low, max(high, t0 + length + 1.5) if t0 + length > b else high)
 
@@ -191,8 +189,7 @@ def _text_places(
 
 
 def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST - 2.0) -> list[Item]:
-    """Dimensions from one origin: one dimension line with an arrow at every stop, `o` from the box, texts in
-    line with the extension."""
+    """Dimensions from one origin on one line, `o` from the box; texts in line with the extension lines."""
     on_paper = placer(r.side, box)
     stops = [(*local(r.side, box, (p[0] * scale, p[1] * scale)), d) for d, p in r.stops]
     stops.sort(key=lambda stop: stop[0])
@@ -228,9 +225,7 @@ def running(r: Running, box: Box, scale: float, values: Values, o: float = FIRST
 
 
 def _spread(wanted: Sequence[float], least: float) -> list[float]:
-    """Places nearest to the wanted ones (ascending) at least the given distance apart; places that touch move
-    as a group.
-    """
+    """Places nearest to the wanted ones (ascending), at least so far apart; touching ones move together."""
     groups: list[list[float]] = []  # sum of (wanted - own offset), count
     for n, s in enumerate(wanted):
         groups.append([s - n * least, 1.0])

@@ -208,8 +208,7 @@ def _arc(o: Outline, names: Sequence[str]) -> Arc:
 def _heights(
     sketch: Sketch, o: Outline, arm: OutlineCorner, body: OutlineCorner, near: Level
 ) -> list[Linear]:
-    """Heights beside the slot: arm and, of two slots, the lower one's on the left, the body's on the
-    right."""
+    """Heights beside the slot: arm and, the lower slot's on the left, the body's on the right."""
     flat = o.start("flat_face")
     height = _line(sketch, "arm height", o.y("flat_face"), arm.y, "left", flat, arm.at)
     one = "body_face" not in o
@@ -233,8 +232,7 @@ def _heights(
 
 
 def _floor(o: Outline, face: str, slot: str) -> tuple[Level, float]:
-    """Level of a slot's floor; of a full round: half the slot's width beyond its centre, on the hinge's
-    side."""
+    """Level of a slot's floor; of a full round half the slot's width from its centre, on the hinge's side."""
     if face in o:
         return o.y(face), o.start(face)[1]
     s, up = _arc(o, (f"{slot}body_fillet", f"{slot}arm_fillet")), slot.startswith("front")

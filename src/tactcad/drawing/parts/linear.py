@@ -26,24 +26,10 @@ SIDES: tuple[Side, Side] = ("bottom", "left")  # of distances along x and along 
 
 
 def running_along(sketch: Sketch, view: View, side: Side, k: int, points: Sequence[Coordinate]) -> Running:
-    """Running dimensions of edges and holes along an axis.
+    """Running dimensions along the part's axis k (0 or 1) of the points there; mere corners are left to
+    `filled`, what determines nothing new is left out.
 
-    Parameters
-    ----------
-    sketch
-        Receives the dimensions; those that determine nothing new are left out.
-    view, side
-        Where they stand.
-    k
-        The part's axis, 0 or 1.
-    points
-        Coordinates along it; mere corners are left to `filled`.
-
-    Returns
-    -------
-    Running
-        From the datum across the axis; without one from the view's left or lower edge, of a disc from its
-        centre. Without points it has no stops.
+    From the datum across the axis; without one from the view's left or lower edge, of a disc from its centre.
     """
     if not points:
         return Running(side, ())
@@ -84,8 +70,7 @@ def face_running(sketch: Sketch, view: View, side: Side, k: int, called: Sequenc
 
 
 def depth_running(sketch: Sketch, view: View, part: Part, side: Side, called: Sequence[Group]) -> Running:
-    """Holes of a side face across the thickness, from the face that is a datum, otherwise from z = 0, and the
-    thickness itself."""
+    """Holes of a side face across the thickness, from a datum face or z = 0; and the thickness."""
     body = part.extrusion
     x0 = body.outer.box[0]
     faces = {
@@ -118,8 +103,7 @@ def _way(sketch: Sketch, view: View, k: int) -> float:
 def _with_stops(
     r: Running, sketch: Sketch, view: View, k: int, way: float, points: Sequence[Coordinate]
 ) -> Running:
-    """One more dimension from the origin for every point that is not in line with one that has it, and does
-    not follow from it."""
+    """One more dimension from the origin for every point that does not follow from those that have one."""
     origin, stops = sketch.known[k][0], list(r.stops)
     for c in points:
         if c is origin:
@@ -154,8 +138,7 @@ class EdgeStand:
 
 
 def edge_spans(sketch: Sketch, view: View, part: Part) -> list[Linear]:
-    """Dimension lines for what the part limits between two edges of its outline, square to x or y, that are
-    the limit's nominal size apart."""
+    """Dimension lines for limits between two edges of the outline that are the nominal size apart."""
     linears = []
     for c in (c for c in part.characteristics if len(c.between) == 2):
         for k in (0, 1):

@@ -182,9 +182,7 @@ Measure = Given | Span | Offset | Width | Radius | Slope | Distance | MeasureDif
 
 
 def conventions(owner: Owner, contour: Contour) -> list[Measure]:
-    """What a drawn contour implies without dimensions: level and upright lines, circular arcs, tangent
-    joints.
-    """
+    """What a drawn contour implies: level and upright lines, circular arcs, tangent joints."""
     if contour.as_circle():
         return []
     count = len(contour)

@@ -45,9 +45,7 @@ class MadeFrom:
 
 @dataclass(frozen=True)
 class Order:
-    """One sheet to make: the part, its solid as the kernel's text, and the files from which the shop makes
-    it.
-    """
+    """One sheet to make: the part, its solid as the kernel's text, the files from which the shop makes it."""
 
     design: Design
     part: Part
@@ -64,27 +62,16 @@ class Order:
 def part_plan(
     part: Part, files: Sequence[MadeFrom], spare: bool = False, shortened: bool = False
 ) -> SheetPlan | None:
-    """What a part's sheet shows.
+    """What a part's sheet shows, and the files that it is made from.
 
-    Parameters
-    ----------
-    files
-        What the part is made from.
-    spare
-        Asks for less: of an element as of a tall one, of any other part without section.
-    shortened
-        Asks for broken views; None where these would leave out too little.
-
-    Raises
-    ------
-    CheckFailure
-        Where the part cannot be drawn, or not fully dimensioned.
+    `spare` asks for less: of an element as of a tall one, of any other part without section. `shortened` asks
+    for broken views; None where these would leave out too little. Raises CheckFailure where the part cannot
+    be drawn, or not fully dimensioned.
     """
     if not isinstance(part.body, Extrusion):
         raise CheckFailure(f"drawings: {part.part_no} is no extrusion; no drawing was written")
-    names = {s.name for s in part.body.outer}
     notes = notes_of(part, files)
-    if {"pad_face", "stop_land"} <= names:
+    if part.kind == "element":
         return None if shortened else element_plan(part, notes, spare)
     return prism_plan(part, notes, not spare, shortened)
 
@@ -157,8 +144,7 @@ def written(order: Order) -> Written:
 
 
 def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
-    """Numbered notes of the part's sheet: its own, those that follow from how it is made, and the files that
-    it is made from."""
+    """Numbered notes: the part's own, what follows from how it is made, the files that it is made from."""
     keys = [f"K{n} {c.name}" for n, c in enumerate((c for c in part.characteristics if c.key), start=1)]
     lines = [note[:1].upper() + note[1:] for note in part.notes]
     if keys:
@@ -196,22 +182,11 @@ def drawing_faults(data: bytes, sheet: DrawnSheet, part: Part, revision: str) ->
 
 
 def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, int]) -> list[str]:
-    """What is wrong with tolerance frames and datum letters on a sheet.
+    """Tolerance frames and datum letters that stand on a sheet more often or less than at each of the part's
+    features once.
 
-    Parameters
-    ----------
-    runs
-        Texts of the page in the order in which they were drawn.
-    part
-        Whose geometric tolerances and datums have to stand there, at each feature once, and no others.
-    elsewhere
-        How often a text stands on the sheet outside of frames and datum symbols, as letters of the paper's
-        zones do.
-
-    Returns
-    -------
-    list of str
-        Zones with their datums, and letters, that stand more often or less.
+    `runs` are the page's texts in the order in which they were drawn, `elsewhere` how often a text stands
+    outside of frames and datum symbols, as letters of the paper's zones do.
     """
     frames = Counter(frame_of(part, g).cells for g in part.geometric for _ in range(times(part, g)))
     wrong = []
@@ -232,20 +207,8 @@ def geometric_faults(runs: Sequence[str], part: Part, elsewhere: Mapping[str, in
 
 
 def key_faults(runs: Sequence[str], keys: Sequence[Characteristic]) -> list[str]:
-    """What is wrong with the key characteristics on a sheet.
-
-    Parameters
-    ----------
-    runs
-        Texts of the page in the order in which they were drawn.
-    keys
-        The part's key characteristics, in order.
-
-    Returns
-    -------
-    list of str
-        Those that do not stand exactly once, framed with their number, or not with the model's value.
-    """
+    """Key characteristics, in the part's order, that do not stand exactly once on a sheet (its texts in the
+    order in which they were drawn), framed with their number, or not with the model's value."""
     wrong, shown = [], []
     for n, c in enumerate(keys, start=1):
         at = [i for i, run in enumerate(runs) if run == f"K{n}"]

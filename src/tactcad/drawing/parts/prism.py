@@ -40,20 +40,10 @@ BACK = ((0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
 def prism_plan(
     part: Part, notes: Sequence[str], cut: bool = True, shortened: bool = False
 ) -> SheetPlan | None:
-    """The plan of any extruded part.
+    """The plan of any extruded part, `cut` with a section where it is of use; `shortened` with broken views
+    and regular rows of holes by their ends and their number; None where too little could be left out.
 
-    Parameters
-    ----------
-    cut
-        With a section, where it is of use.
-    shortened
-        With broken views, and regular rows of holes by their ends and their number; None where too little
-        could be left out.
-
-    Raises
-    ------
-    CheckFailure
-        Where a variable or a limit of the part does not stand on the sheet, or a limit twice.
+    Raises CheckFailure where a variable or a limit of the part does not stand on the sheet, or a limit twice.
     """
     body = part.extrusion
     sketch = Sketch(part)
@@ -199,8 +189,7 @@ def _lands(sketch: Sketch, view: View, part: Part) -> list[Linear]:
 
 
 def _sunk_view(sketch: Sketch, part: Part, front: View, eye: Vector, called: Sequence[Group]) -> View:
-    """The view onto a y face with its holes: x and z by running dimensions, the thickness the last of
-    them."""
+    """The view onto a y face with its holes: x and z by running dimensions, the thickness the last."""
     name, sign = ("below", 1.0) if eye == front.up else ("above", -1.0)
     view = view_of(part, name, eye, opposite(front.eye, sign))
     mine = [g for g in called if g.axis[1]]

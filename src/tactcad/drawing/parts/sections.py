@@ -208,8 +208,7 @@ def mark_plane(board: Board, section: SectionPlane, at: float, sight: float, vie
 def _end(
     board: Board, letter: str, thick: Chord, sight: Point, tail: float
 ) -> tuple[float, Sequence[Item]] | None:
-    """One end of the plane's line with an arrow at its outer point, and what it costs; None where it is not
-    free."""
+    """One end of the plane's line, an arrow at its outer point, and what it costs; None if it is not free."""
     (x, y), (ux, uy) = thick[1], sight
     start, tip = (x - tail * ux, y - tail * uy), (x - CUTTING.width / 2 * ux, y - CUTTING.width / 2 * uy)
     beyond = ABOVE + (LETTER / 2 if uy else 0.0)

@@ -86,8 +86,7 @@ def _signed(value: float) -> str:
 
 @dataclass(frozen=True)
 class Linear:
-    """A dimension line on a side of the view; its extension lines start at p and q (mm of the part, in the
-    view)."""
+    """A dimension line on a side of the view; its extension lines start at p and q (mm, in the view)."""
 
     dimension: Dimension
     side: Side
@@ -97,8 +96,7 @@ class Linear:
 
 @dataclass(frozen=True)
 class Across:
-    """A dimension line across a thin web or slot, arrows from outside, its text beyond q: from p to q in the
-    view."""
+    """A dimension line across a web or slot from p to q in the view, arrows outside, text beyond q."""
 
     dimension: Dimension
     p: Point
@@ -108,8 +106,7 @@ class Across:
 
 @dataclass(frozen=True)
 class Running:
-    """Running dimensions along a side from one origin (ISO 129-1): each stop with its dimension, None for the
-    origin."""
+    """Running dimensions from one origin (ISO 129-1): each stop with its dimension, None for the origin."""
 
     side: Side
     stops: tuple[tuple[Dimension | None, Point], ...]
@@ -146,8 +143,7 @@ class Callout:
 
 @dataclass(frozen=True)
 class Datum:
-    """A datum triangle somewhere on an edge of the view, its letter `away` from it (unit vector on the
-    paper)."""
+    """A datum triangle somewhere on an edge of the view, its letter `away` from it (unit vector)."""
 
     letter: str
     start: Point
@@ -174,8 +170,7 @@ class Bore:
 
 @dataclass(frozen=True)
 class SectionPlane:
-    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and the holes whose axes
-    lie in its plane."""
+    """A cut across an axis of the part (0 or 1) at a coordinate (mm), its letter, and holes in it."""
 
     letter: str
     axis: int

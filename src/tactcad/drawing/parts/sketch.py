@@ -95,8 +95,7 @@ class Sketch:
         return True
 
     def stating(self, name: str, rows: tuple[Measure, ...], plain: str = "") -> Dimension:
-        """The dimension that states the characteristic of that name; a plain one where the part has none, or
-        it is stated."""
+        """The dimension that states the characteristic of that name; a plain one where none is left."""
         c = self.unstated.get(name)
         if c is None:
             return Dimension(plain or name, rows)

@@ -38,8 +38,7 @@ def frame_of(part: Part, g: Geometric) -> Frame:
 
 
 def times(part: Part, g: Geometric) -> int:
-    """How often the frame of a geometric tolerance stands on the sheet: once for all its holes, and once at
-    each of its edges and faces."""
+    """How often a tolerance's frame stands on the sheet: for all its holes once, at each edge and face."""
     holes = _holes(part, g)
     return bool(holes) + len({*g.features} - {*holes})
 
@@ -54,8 +53,7 @@ def letter_of(part: Part, names: Sequence[str]) -> str:
 
 
 def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
-    """The views with the datums that each can show on an edge or face, and with the frames of edges and faces
-    where these are seen first."""
+    """The views with the datums that each can show, and frames of edges and faces where first seen."""
     marked = []
     framed: set[str] = set()
     for view in views:
@@ -78,8 +76,7 @@ def with_marks(part: Part, views: Sequence[View]) -> tuple[View, ...]:
 
 
 def _lines(part: Part, view: View, feature: str) -> Iterator[tuple[Chord, Point]]:
-    """The lines as which a view shows a straight edge of the outline, or a face, seen along it; with the
-    direction out of the material."""
+    """The lines as which a view shows a straight edge, or a face seen along it; and the way out of it."""
     if feature in FACES and not view.eye[2]:
         # where the face lies along the view's own axes
         k = 0 if view.right[2] else 1
@@ -143,8 +140,7 @@ def datum(at: Point, away: Point, reach: float, letter: str) -> list[Item]:
 
 
 def block(frames: Sequence[Frame], letter: str, corner: Point, wide: float) -> list[Item]:
-    """Frames below each other from the upper left corner; a datum's symbol below them, or below a line
-    `wide` mm long where there are none."""
+    """Frames from the upper left corner down, a datum's symbol below them, or below a line `wide` mm long."""
     items: list[Item] = []
     x, y = corner
     for frame in frames:
