@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from math import isclose
 from typing import TYPE_CHECKING
 
+from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.scenes.bom import BomRow
 from tactcad.scenes.scene import Scene
@@ -99,13 +100,11 @@ def assembly_written(order: AssemblyOrder) -> Written:
     shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
     sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)
     of = order.design.design
-    return files_of(
-        sheets,
-        order.name,
-        "assembly",
-        of,
-        lambda pdf: assembly_faults(pdf, order.name, of.revision, order.rows),
-    )
+    made = files_of(sheets, order.name, "assembly", of)
+    wrong = assembly_faults(made.pdf, order.name, of.revision, order.rows)
+    if wrong:
+        raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")
+    return made
 
 
 def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:

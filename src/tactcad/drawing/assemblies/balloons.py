@@ -8,6 +8,7 @@ a leader close to another balloon, is forbidden and the next best solution is tr
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -57,10 +58,20 @@ def place(
     """A balloon in the area (mm of paper) for each item, at its own visible lines and clear of all `lines`;
     None where they find no place."""
     places = _places(lines, area)
-    tips = {item: _tips(some, own, item) for item, some in own.items()}
+    shared = Counter(line for some in own.values() for line in {*map(tuple, some)})
+    tips = {}
+    for item, some in own.items():
+        # middles of its visible lines, the longest first; lines that are another item's too come last
+        ranked = sorted(
+            some, key=lambda line: (shared[tuple(line)] > 1, -round(length(line), 6), tuple(line))
+        )
+        tips[item] = [_middle(line) for line in ranked[:TIPS]]
     if len(places) < len(own) or not all(tips.values()):
         return None
-    lengths = [_lengths(np.array(places), np.array(some)) for some in tips.values()]
+    lengths = []  # from each place to each of an item's tips
+    for ends in tips.values():
+        leaders = np.hypot(*(np.array(places)[:, None, :] - np.array(ends)[None, :, :]).transpose(2, 0, 1))
+        lengths.append(np.where(leaders < RADIUS + SHORTEST, FORBIDDEN, leaders))
     return _without_faults(list(own), lengths, list(tips.values()), places)
 
 
@@ -91,15 +102,6 @@ def _places(lines: Sequence[Sequence[Point]], area: Box) -> list[Point]:
     return places
 
 
-def _tips(
-    some: Sequence[Sequence[Point]], own: Mapping[int | str, Sequence[Sequence[Point]]], item: int | str
-) -> list[Point]:
-    """Middles of the item's visible lines, the longest first; lines that are another item's too come last."""
-    others = {tuple(line) for other, theirs in own.items() if other != item for line in theirs}
-    ranked = sorted(some, key=lambda line: (tuple(line) in others, -round(length(line), 6), tuple(line)))
-    return [_middle(line) for line in ranked[:TIPS]]
-
-
 def _middle(line: Sequence[Point]) -> Point:
     left = round(length(line), 6) / 2
     for a, b in zip(line, line[1:]):
@@ -108,13 +110,6 @@ def _middle(line: Sequence[Point]) -> Point:
             return (a[0] + left / step * (b[0] - a[0]), a[1] + left / step * (b[1] - a[1]))
         left -= step
     return line[-1]
-
-
-def _lengths(places: np.ndarray, tips: np.ndarray) -> np.ndarray:
-    """Length of the leader from each place to each of an item's tips; FORBIDDEN where it is too short."""
-    lengths = np.hypot(*(places[:, None, :] - tips[None, :, :]).transpose(2, 0, 1))
-    lengths[lengths < RADIUS + SHORTEST] = FORBIDDEN
-    return lengths
 
 
 def _without_faults(
@@ -149,15 +144,10 @@ def faults(balloons: Sequence[Balloon]) -> list[tuple[int, int]]:
         (i, k)
         for (i, a), (k, b) in combinations(enumerate(balloons), 2)
         if crossing(a.leader, b.leader, 0.0)
-        or _closest(a.leader, b.leader) < APART
+        or min(_to_segment(p, other.leader) for one, other in ((a, b), (b, a)) for p in one.leader) < APART
         or _to_segment(a.centre, b.leader) < RADIUS + APART
         or _to_segment(b.centre, a.leader) < RADIUS + APART
     ]
-
-
-def _closest(a: Chord, b: Chord) -> float:
-    """Distance of two segments that do not cross."""
-    return min(*(_to_segment(p, b) for p in a), *(_to_segment(p, a) for p in b))
 
 
 def _to_segment(p: Point, s: Chord) -> float:

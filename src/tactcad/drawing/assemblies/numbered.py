@@ -225,7 +225,11 @@ def _laid(
 ) -> list[list[Shown]] | None:
     """The parts in rows from the left, below each other; None where one is too large for the area."""
     x0, y0, x1, y1 = area
-    cells = {item: _cell(lines, factor(scales[item])) for item, lines in own.items()}
+    cells: dict[int, tuple[float, float]] = {}  # with its balloon, its scale and the gap
+    for item, lines in own.items():
+        (_, low, _, high), f = bounds_of(lines), factor(scales[item])
+        left, right = _sides(lines, f)
+        cells[item] = (right - left + CELL_GAP, (high - low) * f + OVER + UNDER + CELL_GAP)
     if any(w > x1 - x0 or h > y1 - y0 for w, h in cells.values()):
         return None
     rows: list[list[int]] = [[]]
@@ -242,21 +246,21 @@ def _laid(
             top = y1
         x = x0
         for item in row:
-            filled[-1].append(_placed(item, own[item], scales[item], (x, top - high)))
+            lines, f = own[item], factor(scales[item])
+            left, right = _sides(lines, f)
+            dx, dy = x + CELL_GAP / 2 - left, top - high + CELL_GAP / 2 + UNDER - f * bounds_of(lines)[1]
+            placed = tuple(tuple((u * f + dx, v * f + dy) for u, v in line) for line in lines)
+            tip = _topmost(placed)  # the leader goes straight down to it
+            balloon = Balloon(item, (tip[0], tip[1] + RADIUS + SHORTEST), tip)
+            below = ((left + right) / 2 + dx, top - high + CELL_GAP / 2)
+            filled[-1].append(Shown(placed, balloon, scales[item], below))
             x += cells[item][0]
         top -= high
     return filled
 
 
-def _cell(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
-    """Width and height that a part takes with its balloon, its scale and the gap."""
-    x0, y0, x1, y1 = bounds_of(lines)
-    left, right = _sides(lines, f)
-    return right - left + CELL_GAP, (y1 - y0) * f + OVER + UNDER + CELL_GAP
-
-
 def _sides(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
-    """Of the part at its scale and the balloon over its topmost point."""
+    """Left and right side of the part at its scale and the balloon over its topmost point."""
     x0, _, x1, _ = bounds_of(lines)
     tip = _topmost(lines)[0] * f
     return min(x0 * f, tip - RADIUS), max(x1 * f, tip + RADIUS)
@@ -264,14 +268,3 @@ def _sides(lines: Sequence[Polyline], f: float) -> tuple[float, float]:
 
 def _topmost(lines: Sequence[Polyline]) -> Point:
     return max((p for line in lines for p in line), key=lambda p: (round(p[1], 6), -p[0]))
-
-
-def _placed(item: int, lines: Sequence[Polyline], scale: Scale, corner: Point) -> Shown:
-    """A part whose cell's lower left corner is given; the leader goes straight down to its topmost point."""
-    f = factor(scale)
-    left, right = _sides(lines, f)
-    dx, dy = corner[0] + CELL_GAP / 2 - left, corner[1] + CELL_GAP / 2 + UNDER - f * bounds_of(lines)[1]
-    placed = tuple(tuple((x * f + dx, y * f + dy) for x, y in line) for line in lines)
-    tip = _topmost(placed)
-    below = ((left + right) / 2 + dx, corner[1] + CELL_GAP / 2)
-    return Shown(placed, Balloon(item, (tip[0], tip[1] + RADIUS + SHORTEST), tip), scale, below)

@@ -16,24 +16,12 @@ from .boxes import Box, Chord, Point, bounds_of, corners, grown
 from .fonts import ink_box, width
 
 # Role of a line or text. Texts of the part and texts of the paper may not touch any line; a watermark may.
-Role = Literal[
-    "outline",
-    "hidden",
-    "centre",
-    "extension",
-    "dimension",
-    "leader",
-    "symbol",
-    "frame",
-    "table",
-    "note",
-    "watermark",
-    "hatch",
-    "cutting",
-]
+Role = (
+    Literal["outline", "hidden", "cutting", "hatch", "centre", "extension", "dimension", "leader", "symbol"]
+    | Literal["frame", "table", "note", "watermark"]
+)
 HATCHING = (1.0, 3.0)  # least and largest distance of hatching lines; ISO 128-2 asks for 0.7 at least
-LETTERS = 2.5  # of dimension texts, mm
-
+LETTERS = 2.5  # height of the usual letters, mm (ISO 3098)
 Anchor = Literal["start", "middle", "end"]
 
 

@@ -7,12 +7,11 @@ from __future__ import annotations
 import io
 import os
 from calendar import timegm
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from typing import TYPE_CHECKING
 
-from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Identity
 
 from .fonts import FAMILY, em, font_file
@@ -185,14 +184,7 @@ def stacked_svg(sheets: Sequence[DrawnSheet]) -> bytes:
     return (head + "".join(pieces) + "</svg>\n").encode()
 
 
-def files_of(
-    sheets: Sequence[DrawnSheet], name: str, what: str, of: Identity, faults: Callable[[bytes], list[str]]
-) -> Written:
-    """Sheets of a design as PDF and SVG.
-
-    Raises CheckFailure, naming them, where the PDF read back has `faults`.
-    """
+def files_of(sheets: Sequence[DrawnSheet], name: str, what: str, of: Identity) -> Written:
+    """Sheets of a design as PDF and SVG."""
     pdf = pdf_bytes(sheets, f"{name} revision {of.revision}: {what}", of.author or "", of.date)
-    if wrong := faults(pdf):
-        raise CheckFailure(f"drawings: {name}: {'; '.join(wrong)}; no drawing was written")
     return Written(pdf, stacked_svg(sheets) if len(sheets) > 1 else svg_bytes(sheets[0]))

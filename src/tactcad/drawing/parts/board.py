@@ -67,10 +67,6 @@ class Board:
                 self._roles.append(item.role if not isinstance(item, Fill) else "arrow")
         self._array = None
 
-    def keep_out(self, box: Box) -> None:
-        """Reserve an area: no callout's text is placed there."""
-        self.kept.append(box)
-
     def _keep_clear(self, quad: Quad) -> None:
         self._boxes.append(quad)
         self._bounds.append(bounds(quad))

@@ -17,7 +17,7 @@ from tactcad.parts.description import Part, drill_point_height
 from ..engine.boxes import Box, Chord, Point, clipped
 from ..engine.ink import THIN, Curve, DrawnArc, Hatch, Stroke
 from .part_variables import Owner, Round, contours, widest
-from .sheet_plan import Breaks, Callout, Datum, SheetPlan, View
+from .sheet_plan import Breaks, SheetPlan, View
 
 LEAST_LEFT_OUT = 1 / 3  # of a part's length: less is not worth a broken view
 MARGIN = 1 / 2  # of the part's width, shown beside every feature, so that each is seen in its surroundings
@@ -114,13 +114,20 @@ class _Squeezed:
             )
             at = self.breaks.squeezed(section.at) if section.axis == self.breaks.axis else section.at
             section = replace(section, at=at, bores=bores)
+        callouts = []
+        for c in v.callouts:
+            shown = [n for n, (p, _) in enumerate(c.targets) if self.shows(p)]
+            targets = tuple((moved(c.targets[n][0]), c.targets[n][1]) for n in shown)
+            spans = tuple(c.spans[n] for n in shown) if c.spans else ()
+            callouts.append(replace(c, targets=targets, spans=spans))
+        pieces = [(d, clipped((d.start, d.end), band)) for d in v.datums for band in self._bands()]
         return replace(
             v,
             box=(*moved((x0, y0)), *moved((x1, y1))),
             linears=tuple(replace(d, p=moved(d.p), q=moved(d.q)) for d in v.linears),
             runnings=tuple(replace(r, stops=tuple((d, moved(p)) for d, p in r.stops)) for r in v.runnings),
-            callouts=tuple(self._callout(c) for c in v.callouts),
-            datums=tuple(piece for d in v.datums for piece in self._datums(d)),
+            callouts=tuple(callouts),
+            datums=tuple(replace(d, start=moved(p[0]), end=moved(p[1])) for d, p in pieces if p),
             centres=tuple((moved(p), d) for p, d in v.centres if self.shows(p)),
             threads=tuple((moved(p), d) for p, d in v.threads if self.shows(p)),
             axes=tuple(map(self._chord, v.axes)),
@@ -129,19 +136,6 @@ class _Squeezed:
 
     def _chord(self, chord: Chord) -> Chord:
         return self.moved(chord[0]), self.moved(chord[1])
-
-    def _callout(self, c: Callout) -> Callout:
-        shown = [n for n, (p, _) in enumerate(c.targets) if self.shows(p)]
-        return replace(
-            c,
-            targets=tuple((self.moved(c.targets[n][0]), c.targets[n][1]) for n in shown),
-            spans=tuple(c.spans[n] for n in shown) if c.spans else (),
-        )
-
-    def _datums(self, d: Datum) -> list[Datum]:
-        """The pieces of a datum's edge that are shown."""
-        pieces = (clipped((d.start, d.end), band) for band in self._bands())
-        return [replace(d, start=self.moved(p), end=self.moved(q)) for p, q in filter(None, pieces)]
 
     def _bands(self) -> list[Box]:
         """What is shown of the view's plane."""

@@ -31,7 +31,7 @@ from .broken import windowed
 from .dimension_lines import FIRST, across, centre_lines, running, stacked
 from .part_variables import Values
 from .sections import bore_lines, letters, mark_plane
-from .sheet_plan import OUTWARDS, Callout, SectionPlane, SheetPlan, View, seen
+from .sheet_plan import OUTWARDS, Callout, SheetPlan, View, seen
 
 MARGIN = 4.0  # distance of anything from the frame
 APART = 12.0  # between views, their dimensions included
@@ -110,8 +110,14 @@ def _attempt(
     board.add(frame(paper))
     board.add(title_block(paper, replace(block, scale=shown(scale))))
     x0, y0, x1, y1 = paper.area
-    board.keep_out((x1 - WIDTH, y0, x1, y0 + HEIGHT))
-    _place_notes(board, plan.notes, paper, beside)
+    board.kept.append((x1 - WIDTH, y0, x1, y0 + HEIGHT))
+    # notes stand left of the title block, or above it
+    room = (x1 - x0 - WIDTH if beside else WIDTH) - 2 * MARGIN
+    left = x0 if beside else x1 - WIDTH
+    items, height = notes((0, 0), plan.notes, room)
+    top = y0 + height + MARGIN + (0.0 if beside else HEIGHT)
+    board.add(moved(item, left + MARGIN, top) for item in items)
+    board.kept.append((left, y0, left + room + 2 * MARGIN, top + MARGIN))
     spread = {"top" if v.section.axis == 0 else "right": PLANE for v in plan.views if v.section}
     drawn = []
     for n, v in enumerate(plan.views):
@@ -130,7 +136,7 @@ def _attempt(
             if spot is None:
                 raise NoPlace(f"detail {d.view.label} finds no place")
             places[d.view.name] = spot
-            board.keep_out(shifted(_view_box(d), spot))
+            board.kept.append(shifted(_view_box(d), spot))
             board.taken.append(shifted(d.box, spot))
     for d in drawn:
         board.add(moved(item, *places[d.view.name]) for item in d.items)
@@ -139,8 +145,13 @@ def _attempt(
         window = shifted(scaled(d.view.window, factor(scale)), front) if d.view.window else None
         if window and not _mark_window(board, window, d.view.label):
             raise NoPlace(f"the letter {d.view.label} finds no place")
-        if d.view.section and not _mark_section(board, d.view, d.view.section, drawn[0], front):
-            raise NoPlace(f"the cutting plane {letters(d.view.section)} finds no place")
+        if section := d.view.section:
+            v, k = drawn[0].view, section.axis
+            on = seen(v, (section.at, 0.0, 0.0) if k == 0 else (0.0, section.at, 0.0))
+            at = on[k] * factor(scale) + front[k]
+            sight = -sum(a * b for a, b in zip(d.view.eye, (v.right, v.up)[k]))
+            if not mark_plane(board, section, at, sight, shifted(scaled(v.box, factor(scale)), front)):
+                raise NoPlace(f"the cutting plane {letters(section)} finds no place")
     lettered: dict[str, bool] = {}
     edged = [(edge, factor(d.scale), places[d.view.name]) for d in drawn for edge in d.view.datums]
     for edge, f, place in edged:
@@ -166,17 +177,6 @@ def _attempt(
     if faults := layout_faults(sheet):
         raise NoPlace(faults[0])
     return sheet
-
-
-def _place_notes(board: Board, lines: Sequence[str], paper: Paper, beside: bool) -> None:
-    """Left of the title block, or above it."""
-    x0, y0, x1, _ = paper.area
-    room = (x1 - x0 - WIDTH if beside else WIDTH) - 2 * MARGIN
-    left = x0 if beside else x1 - WIDTH
-    items, height = notes((0, 0), lines, room)
-    top = y0 + height + MARGIN + (0.0 if beside else HEIGHT)
-    board.add(moved(item, left + MARGIN, top) for item in items)
-    board.keep_out((left, y0, left + room + 2 * MARGIN, top + MARGIN))
 
 
 def _drawn(
@@ -251,7 +251,7 @@ def _arranged(drawn: Sequence[_Drawn], board: Board, views: int) -> dict[str, Po
     places = {name: (s[0] + spot[0], s[1] + spot[1]) for name, s in shifts.items()}
     board.taken.append(shifted(whole, spot))
     for name, place in places.items():
-        board.keep_out(shifted(_view_box(next(d for d in drawn if d.view.name == name)), place))
+        board.kept.append(shifted(_view_box(next(d for d in drawn if d.view.name == name)), place))
     return places
 
 
@@ -295,11 +295,3 @@ def _mark_window(board: Board, window: Box, label: str) -> bool:
                     board.add([letter])
                     return True
     return False
-
-
-def _mark_section(board: Board, view: View, section: SectionPlane, front: _Drawn, place: Point) -> bool:
-    f = factor(front.scale)
-    on = (section.at, 0.0, 0.0) if section.axis == 0 else (0.0, section.at, 0.0)
-    at = seen(front.view, on)[section.axis] * f + place[section.axis]
-    sight = -sum(a * b for a, b in zip(view.eye, (front.view.right, front.view.up)[section.axis]))
-    return mark_plane(board, section, at, sight, shifted(scaled(front.view.box, f), place))

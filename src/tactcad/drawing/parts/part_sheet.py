@@ -138,9 +138,11 @@ def title_of(design: Design, part: Part, draft: bool, sample: bool = False) -> T
 def written(order: Order) -> Written:
     """The sheet as PDF and SVG, read back. Raises CheckFailure where it differs from the part."""
     sheet, part, of = part_sheet(order), order.part, order.design.design
-    return files_of(
-        [sheet], part.part_no, part.name, of, lambda pdf: drawing_faults(pdf, sheet, part, of.revision)
-    )
+    made = files_of([sheet], part.part_no, part.name, of)
+    wrong = drawing_faults(made.pdf, sheet, part, of.revision)
+    if wrong:
+        raise CheckFailure(f"drawings: {part.part_no}: {'; '.join(wrong)}; no drawing was written")
+    return made
 
 
 def notes_of(part: Part, files: Sequence[MadeFrom]) -> tuple[str, ...]:
