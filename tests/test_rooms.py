@@ -33,6 +33,8 @@ ROOMS = (
     "sweep",
     "cli",
 )
+# Inner rooms, the lowest first: a folder or a module of the room each.
+INNER_ROOMS = {"drawing": ("engine", "guide", "circuit", "parts", "assemblies")}
 KERNEL = {"build123d", "OCP", "cadquery", "bd_warehouse", "trimesh", "manifold3d", "vtkmodules", "vtk"}
 # Modules above `solids` that work on solids themselves. Adding one here is a decision: whatever imports it
 # at its top waits seconds for the kernel.
@@ -43,10 +45,8 @@ NEED_SOLIDS = {
     "tactcad.checks.motion",
     "tactcad.checks.run",
     "tactcad.checks.tools",
-    "tactcad.drawing.assembly_lines",
-    "tactcad.drawing.section_cut",
-    "tactcad.drawing.hidden_lines",
-    "tactcad.drawing.picture",
+    "tactcad.drawing.engine.picture",
+    "tactcad.drawing.parts.solid_views",
     "tactcad.export.step_file",
     "tactcad.export.step_pmi",
     "tactcad.export.stl",
@@ -111,6 +111,31 @@ def test_no_room_imports_a_higher_one():
         # the package itself and __main__, which starts the command, know no other room than cli
         above = ROOMS[ROOMS.index(here) + 1 :] if here else ROOMS[:-1]
         wrong += [(dotted(path), name) for name in imports_of(path) if room(name) in above]
+    assert wrong == []
+
+
+def inner_room(module: str) -> str:
+    """The inner room of a dotted name, "" for a room's own file and for rooms that have none."""
+    parts = module.split(".")
+    return parts[2] if len(parts) > 2 and parts[2] in INNER_ROOMS.get(room(module), ()) else ""
+
+
+def test_a_room_with_inner_rooms_has_no_file_beside_them():
+    for name, inner in INNER_ROOMS.items():
+        assert {p.stem for p in (SOURCE / "tactcad" / name).glob("[!_]*")} == set(inner)
+
+
+def test_no_inner_room_imports_a_higher_one():
+    wrong = []
+    for path in MODULES:
+        here, inner = room(dotted(path)), inner_room(dotted(path))
+        order = INNER_ROOMS[here] if inner else ()
+        above = order[order.index(inner) + 1 :] if inner else ()
+        wrong += [
+            (dotted(path), name)
+            for name in imports_of(path)
+            if room(name) == here and inner_room(name) in above
+        ]
     assert wrong == []
 
 

@@ -38,7 +38,7 @@ def refused(place: Path, capsys, *arguments: str) -> tuple[int, str]:
 
 @pytest.mark.parametrize("command", [("export", "--drawings"), ("release", "--sample")], ids=" ".join)
 def test_a_missing_font(command, place, capsys, monkeypatch):
-    from tactcad.drawing import fonts
+    from tactcad.drawing.engine import fonts
 
     monkeypatch.setattr(fonts, "_FILE", Path("mpl-data", "fonts", "ttf", "Gone.ttf"))
     status, said = refused(place, capsys, *command)
@@ -86,8 +86,8 @@ def test_plates_of_two_metres_are_drawn_whole(place):
 
 def test_a_sheet_that_is_too_small_for_a_part(place, capsys, monkeypatch):
     """The same refusal where the only scale left is one at which a plate of 58 mm cannot fit."""
-    from tactcad.drawing import compose
-    from tactcad.drawing import part_sheet as sheets
+    from tactcad.drawing.parts import compose
+    from tactcad.drawing.parts import part_sheet as sheets
 
     for module in (compose, sheets):
         monkeypatch.setattr(module, "SERIES", ((30, 1),))

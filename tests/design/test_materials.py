@@ -13,7 +13,7 @@ from tactcad.cli.main import main
 from tactcad.design.load import from_table
 from tactcad.design.materials import ALLOYS, MOST_DIFFERENCE, PROPERTIES, family, modulus_per_kelvin
 from tactcad.design.messages import InputError
-from tactcad.drawing.notes import notes_of
+from tactcad.drawing.parts.part_sheet import notes_of
 from tactcad.paper import array_model
 from tactcad.parts.consumables import array_supplies
 from tactcad.parts.element import element

@@ -13,15 +13,14 @@ from scipy.spatial import cKDTree
 from variants import variant
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import assembly_file, parts_list
-from tactcad.drawing.assembly import assembly_sheets
-from tactcad.drawing.assembly_file import assembly_faults, stacked_svg
-from tactcad.drawing.extent import placed
-from tactcad.drawing.gate import pdf_runs
-from tactcad.drawing.ink import DrawnArc, Fill, Stroke, Text, preliminary
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.page import MOST_DRAWN, fewer
-from tactcad.drawing.pdf import pdf_bytes
+from tactcad.drawing.assemblies import assembly_sheets as assembly_file
+from tactcad.drawing.assemblies import parts_list
+from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
+from tactcad.drawing.engine.extent import placed
+from tactcad.drawing.engine.ink import DrawnArc, Fill, Stroke, Text, preliminary
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, stacked_svg
+from tactcad.drawing.engine.title import MOST_DRAWN, fewer
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
@@ -127,7 +126,7 @@ def _away(p, a, b) -> float:
 def test_every_leader_ends_on_a_part_with_that_number(assembly):
     """Around the end of the leader lie the lines of the part's own picture, drawn alone from the same eye and
     at the sheet's scale."""
-    from tactcad.drawing.picture import ABOVE, drawing
+    from tactcad.drawing.engine.picture import ABOVE, drawing
     from tactcad.solids.place import placed_shape
 
     _, scene, rows, shapes, sheets = assembly

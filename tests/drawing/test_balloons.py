@@ -9,7 +9,7 @@ from math import cos, dist, hypot, pi, sin
 import numpy as np
 import pytest
 
-from tactcad.drawing.balloons import APART, CLEAR, RADIUS, SHORTEST, Balloon, drawn, faults, place
+from tactcad.drawing.assemblies.balloons import APART, CLEAR, RADIUS, SHORTEST, Balloon, drawn, faults, place
 
 AREA = (0.0, 0.0, 200.0, 270.0)
 

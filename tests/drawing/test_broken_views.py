@@ -8,14 +8,12 @@ import pytest
 from variants import variant
 
 from tactcad.contour import rectangle
-from tactcad.drawing.gate import drawing_faults, pdf_runs
-from tactcad.drawing.ink import DrawnArc, Stroke
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.paper import A0, A1, A2, A3, A4, frame
-from tactcad.drawing.part_sheet import Order, part_sheet
-from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.sheet_plan import Breaks
+from tactcad.drawing.engine.ink import DrawnArc, Stroke
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.paper import A0, A1, A2, A3, A4, frame
+from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
+from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, part_sheet
+from tactcad.drawing.parts.sheet_plan import Breaks
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 

@@ -16,12 +16,11 @@ from variants import IN_SLOT, variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.keys import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot
-from tactcad.drawing.measures import Radius, Slope, Span, level, variables
-from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.part_sheet import part_plan
-from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.sheet_plan import Dimension, number
+from tactcad.drawing.parts.measures import Radius, Slope, Span, level
+from tactcad.drawing.parts.part_sheet import MadeFrom, part_plan
+from tactcad.drawing.parts.part_variables import OUTER, PLACES, THICKNESS, Owner, Quantity, Spot, variables
+from tactcad.drawing.parts.prism import prism_plan
+from tactcad.drawing.parts.sheet_plan import Dimension, number
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.limits import FACES, Characteristic
 from tactcad.parts.rules import refuse_broken

@@ -12,9 +12,9 @@ from variants import variant
 
 from tactcad.contour import rectangle
 from tactcad.design.load import from_table
-from tactcad.drawing.apart import Piece, pieces_of, pulled_apart
-from tactcad.drawing.extent import projected_box
-from tactcad.drawing.units import unit_views
+from tactcad.drawing.assemblies.apart import Piece, pieces_of, pulled_apart
+from tactcad.drawing.assemblies.exploded import unit_views
+from tactcad.drawing.engine.extent import projected_box
 from tactcad.parts.description import Extrusion, Part
 from tactcad.parts.library.screws import cap_screw
 from tactcad.parts.part_materials import STAINLESS

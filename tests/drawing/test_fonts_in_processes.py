@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 from concurrent.futures import ProcessPoolExecutor
 
-from tactcad.drawing import fonts
+from tactcad.drawing.engine import fonts
 
 LETTERS = [
     chr(code)

@@ -6,9 +6,9 @@ import re
 
 import pytest
 
-from tactcad.drawing.ink import THIN, VISIBLE, DrawnArc, DrawnSheet, Hatch, Text, arrow, segment
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.paper import A4, frame
+from tactcad.drawing.engine.ink import THIN, VISIBLE, DrawnArc, DrawnSheet, Hatch, Text, arrow, segment
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.paper import A4, frame
 
 
 def faults(*items) -> list[str]:

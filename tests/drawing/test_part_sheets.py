@@ -20,19 +20,24 @@ import tactcad
 from tactcad.cli.main import main
 from tactcad.contour import rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import fonts
-from tactcad.drawing import part_sheet as sheets
-from tactcad.drawing.compose import compose
-from tactcad.drawing.gate import drawing_faults, key_faults, pdf_runs
-from tactcad.drawing.ink import DrawnArc, Stroke, Text
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.paper import A3, A4
-from tactcad.drawing.part_sheet import Order, part_sheet, title_of, written
-from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.scale import SERIES
-from tactcad.drawing.workers import all_written
+from tactcad.drawing.engine import fonts
+from tactcad.drawing.engine.ink import DrawnArc, Stroke, Text
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.paper import A3, A4, SERIES
+from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
+from tactcad.drawing.engine.workers import all_written
+from tactcad.drawing.parts import part_sheet as sheets
+from tactcad.drawing.parts.compose import compose
+from tactcad.drawing.parts.part_sheet import (
+    MadeFrom,
+    Order,
+    drawing_faults,
+    key_faults,
+    part_sheet,
+    title_of,
+    written,
+)
+from tactcad.drawing.parts.prism import prism_plan
 from tactcad.export.manifest import check_manifest, read_manifest, sha256_of
 from tactcad.export.pipeline import ExportOptions, export
 from tactcad.parts.description import Characteristic, Extrusion, Material, Part
@@ -174,7 +179,7 @@ def test_the_gate_sees_a_sheet_that_says_something_else(orders, finished, macro)
 
 
 def test_a_sheet_written_without_a_text_is_not_let_out(orders, finished, monkeypatch):
-    from tactcad.drawing import pdf
+    from tactcad.drawing.engine import sheet_files as pdf
 
     sheet = finished[ELEMENT]
     lost = next(t for t in sheet.texts if t.text == "K1")
@@ -193,7 +198,7 @@ def test_side_by_side_or_one_by_one_the_bytes_are_the_same(orders, tmp_path):
     assert [written(order) for order in some[:2]] == side_by_side[:2]
     (tmp_path / "orders").write_bytes(pickle.dumps(some[:2]))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.parts.part_sheet import written\n"
         "done = [written(o) for o in reversed(pickle.load(open(sys.argv[1], 'rb')))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in reversed(done)))"
     )

@@ -20,16 +20,13 @@ from variants import variant
 import tactcad
 from tactcad.contour import Arc as ArcSegment
 from tactcad.contour import circle, rectangle
-from tactcad.drawing import compose
-from tactcad.drawing.contours import in_part
-from tactcad.drawing.gate import pdf_runs
-from tactcad.drawing.ink import Fill, Hatch, Stroke, Text
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.part_sheet import Order, part_sheet, written
-from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.prism import prism_plan
-from tactcad.drawing.svg import svg_bytes
+from tactcad.drawing.engine.ink import Fill, Hatch, Stroke, Text
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs, svg_bytes
+from tactcad.drawing.parts import compose
+from tactcad.drawing.parts.part_sheet import MadeFrom, Order, part_sheet, written
+from tactcad.drawing.parts.part_variables import in_part
+from tactcad.drawing.parts.prism import prism_plan
 from tactcad.parts.description import Extrusion, Hole, Material, Part, Pocket, drill_point_height
 from tactcad.scenes import make_scene
 
@@ -356,7 +353,7 @@ def test_equal_bytes_in_other_processes(orders, tmp_path):
     here = [hashlib.sha256(w.pdf + w.svg).hexdigest() for w in map(written, some)]
     (tmp_path / "orders").write_bytes(pickle.dumps(some))
     script = (
-        "import hashlib, pickle, sys\nfrom tactcad.drawing.part_sheet import written\n"
+        "import hashlib, pickle, sys\nfrom tactcad.drawing.parts.part_sheet import written\n"
         "done = [written(o) for o in pickle.load(open(sys.argv[1], 'rb'))]\n"
         "print(*(hashlib.sha256(d.pdf + d.svg).hexdigest() for d in done))"
     )

@@ -14,13 +14,12 @@ import pytest
 from pypdf import PdfReader
 
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import fonts
-from tactcad.drawing.ink import DrawnArc, DrawnSheet, Stroke, Text, arrow, preliminary
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.paper import A3, A4, frame
-from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.svg import svg_bytes
-from tactcad.drawing.title import TitleBlock, notes, title_block, wrapped
+from tactcad.drawing.engine import fonts
+from tactcad.drawing.engine.ink import DrawnArc, DrawnSheet, Stroke, Text, arrow, preliminary
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.paper import A3, A4, frame
+from tactcad.drawing.engine.sheet_files import pdf_bytes, svg_bytes
+from tactcad.drawing.engine.title import TitleBlock, notes, title_block, wrapped
 
 SIGNS = "0.25 ±0.005 ⌀3.4 ↧8 R0.3 Ra 0.8 µm 45° 4×"
 

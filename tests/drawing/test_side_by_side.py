@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 from variants import variant
 
-from tactcad.drawing import family, numbered
-from tactcad.drawing.assembly import assembly_sheets
-from tactcad.drawing.assembly_file import assembly_faults
-from tactcad.drawing.pdf import pdf_bytes
+from tactcad.drawing.assemblies import numbered
+from tactcad.drawing.assemblies.assembly_sheets import assembly_faults, assembly_sheets
+from tactcad.drawing.engine.sheet_files import pdf_bytes
 from tactcad.scenes import make_scene
 from tactcad.scenes.bom import bom_rows
 
@@ -34,7 +33,7 @@ def box(lines) -> np.ndarray:
 def test_every_part_at_its_scale_inside_the_sheet_and_clear_of_the_others(seed):
     rng = np.random.default_rng(seed)
     sides = {n: float(10 ** rng.uniform(0.3, 2.6)) for n in range(1, int(rng.integers(5, 60)))}
-    (page,) = family.pages({n: square(a) for n, a in sides.items()}, AREA)
+    (page,) = numbered.side_by_side({n: square(a) for n, a in sides.items()}, AREA)
     assert [part.balloon.item for part in page] == list(sides)
     boxes = []
     for part in page:
@@ -60,9 +59,9 @@ def test_every_part_at_its_scale_inside_the_sheet_and_clear_of_the_others(seed):
 
 def test_parts_too_many_for_one_sheet_go_over_several_and_too_large_ones_are_refused():
     own = {n: square(30.0) for n in range(300)}
-    made = family.pages(own, AREA)
+    made = numbered.side_by_side(own, AREA)
     assert len(made) > 1 and [part.balloon.item for page in made for part in page] == list(own)
-    assert family.pages({1: square(50 * 400.0)}, AREA) is None
+    assert numbered.side_by_side({1: square(50 * 400.0)}, AREA) is None
 
 
 @pytest.mark.cad

@@ -12,13 +12,11 @@ from variants import variant
 
 from tactcad.contour import Corner, rectangle, rounded_polygon
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing.gate import drawing_faults, pdf_runs
-from tactcad.drawing.ink import DrawnArc, Fill, Stroke, Text
-from tactcad.drawing.layout_check import layout_faults
-from tactcad.drawing.notes import MadeFrom
-from tactcad.drawing.part_sheet import Order, part_plan, part_sheet
-from tactcad.drawing.pdf import pdf_bytes
-from tactcad.drawing.prism import prism_plan
+from tactcad.drawing.engine.ink import DrawnArc, Fill, Stroke, Text
+from tactcad.drawing.engine.layout_check import layout_faults
+from tactcad.drawing.engine.sheet_files import pdf_bytes, pdf_runs
+from tactcad.drawing.parts.part_sheet import MadeFrom, Order, drawing_faults, part_plan, part_sheet
+from tactcad.drawing.parts.prism import prism_plan
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.parts.limits import DatumFeature, Geometric
 from tactcad.scenes import make_scene

@@ -13,8 +13,8 @@ from variants import variant
 
 from tactcad.contour import circle, rectangle
 from tactcad.design.messages import CheckFailure
-from tactcad.drawing import picture, windows
-from tactcad.drawing.picture import VIEWS, Drawing, check_picture, drawing, svg
+from tactcad.drawing.engine import picture
+from tactcad.drawing.engine.picture import VIEWS, Drawing, check_picture, drawing, svg
 from tactcad.parts.description import Extrusion, Hole, Material, Part
 from tactcad.scenes import make_scene
 from tactcad.scenes.scene import Placement
@@ -137,7 +137,7 @@ def test_windows_draw_what_one_window_draws(monkeypatch):
     placed = [placed_shape(shapes[p.part.part_no], p.origin, p.rotation) for p in scene.placements]
     monkeypatch.setattr(picture, "EXACT_UP_TO", 0)
     whole = drawing(placed, VIEWS["below"])
-    monkeypatch.setattr(windows, "PER_WINDOW", 15)
+    monkeypatch.setattr(picture, "PER_WINDOW", 15)
     strips = drawing(placed, VIEWS["below"])
     assert len(strips.sharp) > len(whole.sharp), "some lines are cut"
     assert strips.box == whole.box
@@ -150,10 +150,10 @@ def test_pieces_between_borders_make_the_line_again():
     random = np.random.default_rng(1)
     for axis in (0, 1):
         line = tuple(map(tuple, np.round(random.uniform(-10, 10, (60, 2)), 3)))
-        borders = [-np.inf, *(np.sort(np.round(random.uniform(-9, 9, 5), 3)) + windows.OFF_GRID), np.inf]
+        borders = [-np.inf, *(np.sort(np.round(random.uniform(-9, 9, 5), 3)) + picture.OFF_GRID), np.inf]
         pieces = []
         for left, right in zip(borders, borders[1:]):
-            inside = list(windows.clipped(line, axis, left, right))
+            inside = list(picture.between_borders(line, axis, left, right))
             assert all(left - 1e-3 < p[axis] < right + 1e-3 for piece in inside for p in piece)
             pieces += inside
         assert length(pieces) == pytest.approx(length([line]), abs=0.002 * len(pieces))

@@ -480,7 +480,7 @@ def test_a_file_that_does_not_read_back_leaves_the_earlier_export(mine, monkeypa
 def test_what_is_written_wrong_leaves_the_earlier_export(mine, monkeypatch):
     """A picture of nothing, a bill with a row less, and a manifest with another digest, in the order in which
     an export comes to them."""
-    from tactcad.drawing import picture
+    from tactcad.drawing.engine import picture
     from tactcad.export import manifest
     from tactcad.scenes import bom
 
@@ -506,7 +506,7 @@ def test_what_is_written_wrong_leaves_the_earlier_export(mine, monkeypatch):
 
 def test_a_measured_part_must_agree_with_its_description(mine, monkeypatch):
     """Centre of mass and box from the kernel are compared with the closed forms."""
-    from tactcad.drawing import extent
+    from tactcad.drawing.engine import extent
 
     made = variant({"array.row_arms": [[4.7, 6.0]]})
     centre, box = Part.centre.fget, extent.part_box

@@ -143,7 +143,8 @@ class Bench:
 LOADED = """
 import gc, importlib, json, os, signal, sys, traceback
 from tactcad.cli.main import COMMANDS, main
-import tactcad.drawing.assembly, tactcad.export.pipeline, tactcad.export.sides, tactcad.release.make
+import tactcad.drawing.assemblies.assembly_sheets
+import tactcad.export.pipeline, tactcad.export.sides, tactcad.release.make
 import tactcad.checks.run, tactcad.solids.build
 import tactcad.lab.batch, tactcad.lab.grasp, tactcad.paper.validation
 for name in COMMANDS:

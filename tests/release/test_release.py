@@ -20,8 +20,8 @@ from variants import TINY_TEXT
 
 import tactcad
 from tactcad.cli.main import main
-from tactcad.drawing.gate import pdf_runs
-from tactcad.drawing.title import SAMPLE as STATUS
+from tactcad.drawing.engine.sheet_files import pdf_runs
+from tactcad.drawing.engine.title import SAMPLE as STATUS
 from tactcad.parts.designs import load
 from tactcad.release.archive import MODE, archive_bytes
 from tactcad.release.owner import owned

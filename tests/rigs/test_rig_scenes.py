@@ -15,7 +15,7 @@ from tactcad.cli.main import main
 from tactcad.cli.progress import progress
 from tactcad.design.messages import InputError
 from tactcad.drawing import guide
-from tactcad.drawing.assembly_notes import notes_of
+from tactcad.drawing.assemblies.arrangement import notes_of
 from tactcad.export.pipeline import ExportOptions, export
 from tactcad.export.products import _compare_box
 from tactcad.parts.deflected import deflected_element, deflection_at_pad_edge

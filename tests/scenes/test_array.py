@@ -10,7 +10,7 @@ import pytest
 from variants import variant
 
 from tactcad.contour import Arc
-from tactcad.drawing.extent import part_box, placed
+from tactcad.drawing.engine.extent import part_box, placed
 from tactcad.parts.description import Hole
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import METRIC

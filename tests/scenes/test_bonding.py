@@ -14,8 +14,8 @@ from tactcad.checks.interference import check_interference
 from tactcad.checks.shop import DEFAULT, load_shop
 from tactcad.checks.wirecut import check_wirecut
 from tactcad.design.load import names
-from tactcad.drawing.extent import placed
-from tactcad.drawing.part_sheet import part_plan
+from tactcad.drawing.engine.extent import placed
+from tactcad.drawing.parts.part_sheet import part_plan
 from tactcad.mechanics import gauge_place
 from tactcad.parts.designs import load
 from tactcad.parts.gauge_checks import gauge_checks, volts

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tactcad.design.load import names
-from tactcad.drawing.extent import box_corners, part_box, placed
+from tactcad.drawing.engine.extent import box_corners, part_box, placed
 from tactcad.parts.description import Hole
 from tactcad.parts.designs import load
 from tactcad.parts.wire_passes import WIRE_TOLERANCE, least_passes

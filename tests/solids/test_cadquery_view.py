@@ -12,7 +12,7 @@ import pytest
 
 from tactcad.checks.interference import check_interference
 from tactcad.design.messages import InputError
-from tactcad.drawing import picture
+from tactcad.drawing.engine import picture
 from tactcad.export import shapes as shapes_of
 from tactcad.export import step_file as step
 from tactcad.export.cache import Cache

@@ -134,7 +134,7 @@ def _step(scene: Scene, shapes: dict) -> bytes:
 
 
 def _picture(scene: Scene, shapes: dict, name: str) -> bytes:
-    from tactcad.drawing import picture
+    from tactcad.drawing.engine import picture
     from tactcad.solids.place import placed_shape
 
     shown = [p for p in scene.placements if name == "above" or p.designator not in scene.cover]

@@ -1,26 +1,42 @@
 """Assembly guide of a scene: an exploded view, the steps with their parts and torques, all read off the
-scene.
+scene; and the map of the sensing face: which element stands where, which end plate is which, the axes.
+
+The sensing face is seen from below, as the object sees it: x runs to the right, y down. It is drawn from
+descriptions, without a kernel.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Sequence
 from html import escape
 from math import ceil
 
 from tactcad.design.tree import Design
 from tactcad.parts import seating
-from tactcad.parts.description import Part
+from tactcad.parts.description import Part, Vector
 from tactcad.parts.layout import Layout
 from tactcad.parts.library.screws import METRIC
 from tactcad.scenes.scene import Placement, Scene, Step
 
-from .extent import moved_by
-from .sensing_face import array_of, face_map
-from .svg import svg_bytes
+from .engine.boxes import Box, bounds, bounds_of, corners
+from .engine.extent import box_of, moved_by, placed
+from .engine.ink import (
+    LETTERS,
+    THIN,
+    DrawnSheet,
+    Fill,
+    Item,
+    Point,
+    Stroke,
+    Text,
+    arrow,
+    bounds_of_items,
+    moved,
+    segment,
+)
+from .engine.sheet_files import svg_bytes
 
-_SCREW = re.compile(r"ISO(4762|4026|4032)-(M[\d.]+)[x-]")
 MAP = "sensing-face"  # label of the picture that shows which element stands where
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #10161d; max-width: 62rem; margin: 2rem auto; \
@@ -34,6 +50,13 @@ figure { margin: 0; } figcaption { text-align: center; color: #556; font-size: .
 td.n { text-align: right; } .note { color: #556; font-size: .9rem; } .new { color: #0b62c4; }
 @media print { section { break-inside: avoid; } }
 """
+FACE_EYE: Vector = (0.0, 0.0, -1.0)
+FACE_UP: Vector = (0.0, -1.0, 0.0)
+MAP_SIZE = (130.0, 110.0)  # of the map's outlines, mm of paper
+NUMBERS = (2.5, 1.8)  # of numbers, ISO 3098: the larger where all find room
+BELOW_EACH_OTHER = 0.8  # between numbers below each other, mm of paper
+BESIDE = 1.5  # from what is drawn to a number, mm of paper
+_STACKED = re.compile(r"(E|BL)\d+")
 
 
 def page_path(scene: Scene) -> str:
@@ -68,33 +91,26 @@ def _coming(scene: Scene, step: Step) -> tuple[Placement, ...]:
 
 
 def torque(part: Part, design: Design) -> float | None:
-    """Tightening torque of a cap screw, nut or set screw, N m; None for other parts, 0 for a set screw that
-    only touches."""
-    match = _SCREW.match(part.part_no)
-    if not match:
-        return None
-    return seating.torque(Layout(design)) if match[1] == "4026" else METRIC[match[2]].torque
+    """Tightening torque of a screw or nut, N m; None for other parts, 0 for a set screw that only touches."""
+    if part.kind == "set screw":
+        return seating.torque(Layout(design))
+    return METRIC[part.thread].torque if part.thread else None
 
 
 def tools(design: Design, scene: Scene) -> list[str]:
     """What the steps need: drivers of the screws and nuts that they place, torques, and their other tools."""
     ready = {d for step in scene.steps for d in step.ready}
     drivers: dict[tuple[str, float], list[str]] = {}
-    torques: dict[float, None] = {}
+    torques: set[float] = set()
     for part in {p.part.part_no: p.part for p in scene.placements if p.designator not in ready}.values():
-        if match := _SCREW.match(part.part_no):
-            m = METRIC[match[2]]
-            sizes = {
-                "4762": ("hex key", m.key),
-                "4026": ("hex key", m.set_key),
-                "4032": ("two spanners", m.nut),
-            }
-            threads = drivers.setdefault(sizes[match[1]], [])
-            kind = {"4762": "cap screws", "4026": "set screws", "4032": "nuts"}[match[1]]
-            if f"{match[2]} {kind}" not in threads:
-                threads.append(f"{match[2]} {kind}")
+        if part.thread:
+            m = METRIC[part.thread]
+            sizes = {"set screw": ("hex key", m.set_key), "nut": ("two spanners", m.nut)}
+            driver, turned = sizes.get(part.kind, ("hex key", m.key)), f"{part.thread} {part.kind}s"
+            if turned not in drivers.setdefault(driver, []):
+                drivers[driver].append(turned)
             if tight := torque(part, design):
-                torques[tight] = None
+                torques.add(tight)
     lines = [f"{kind} {size:g} mm: {', '.join(whose)}" for (kind, size), whose in sorted(drivers.items())]
     if torques:
         lines.append(f"torque driver for {', '.join(f'{t:g}' for t in sorted(torques))} N m, with these bits")
@@ -113,13 +129,14 @@ def page(design: Design, scene: Scene) -> bytes:
     """The guide as one HTML page; its pictures lie beside it."""
     d = design.design
     title = f"{d.title}: {scene.name}"
+    needed = "".join(f"<li>{escape(line)}</li>" for line in tools(design, scene))
     body = [
         f"<h1>{escape(title)}</h1>",
         f'<p class="note">Assembly guide, revision {escape(d.revision)}, {escape(d.date)}'
         + (f", {escape(d.organisation)}" if d.organisation else "")
         + ". Made from the scene; parts as in its bill of materials.</p>",
         f'<img src="{_name(scene, "exploded")}" alt="exploded view">',
-        _list("Tools", tools(design, scene)),
+        f"<section><h2>Tools</h2><ul>{needed}</ul></section>",
     ]
     body += [_section(design, scene, n, step) for n, step in enumerate(scene.steps, start=1)]
     before = [s for ready in scene.ready for s in ready.supplies]
@@ -136,12 +153,6 @@ def page(design: Design, scene: Scene) -> bytes:
         + "\n".join(body)
         + "\n</body>\n</html>\n"
     ).encode()
-
-
-def _list(title: str, lines: Iterable[str]) -> str:
-    return (
-        f"<section><h2>{title}</h2><ul>{''.join(f'<li>{escape(line)}</li>' for line in lines)}</ul></section>"
-    )
 
 
 def _section(design: Design, scene: Scene, number: int, step: Step) -> str:
@@ -182,3 +193,105 @@ def _table(design: Design, scene: Scene, step: Step) -> str:
 
 def _name(scene: Scene, label: str) -> str:
     return picture_path(scene, label).removeprefix("guide/")
+
+
+def array_of(scene: Scene) -> Scene | None:
+    """The array that stands in a scene, in its own axes; None where none does."""
+    return next((s for s in (scene, *scene.ready) if s.name == "array"), None)
+
+
+def in_stack(scene: Scene) -> list[Placement]:
+    """Elements and blanks, from -y to +y: from the top of the view down."""
+    own = [p for p in scene.placements if _STACKED.fullmatch(p.designator)]
+    return sorted(own, key=lambda p: round(middle(p), 6), reverse=True)
+
+
+def seen_box(p: Placement) -> Box:
+    """The part's box in the view, mm."""
+    (x0, y0, _), (x1, y1, _) = box_of(p).tolist()
+    return x0, -y1, x1, -y0
+
+
+def middle(p: Placement) -> float:
+    """Where the middle of its sheet stands in the view, mm upwards."""
+    return -(p.origin[1] + p.rotation[1][2] * p.part.extrusion.thickness / 2)
+
+
+def pad(p: Placement) -> Box | None:
+    """The element's contact pad in the view, mm; None of a blank."""
+    if p.part.kind != "element":
+        return None
+    body = p.part.extrusion
+    face = body.outer.named("pad_face")
+    ends = [placed(p, (*end, z)) for end in (face.start, face.end) for z in (0.0, body.thickness)]
+    return bounds((x, -y) for x, y, _ in ends)
+
+
+def numbers(scene: Scene, f: float, half: float, arms: bool = False) -> list[Text]:
+    """Designators beside the two rows, `half` mm of paper from the middle line, at the scale f.
+
+    Where they would stand too close some are left out, never the first and the last of a row.
+    """
+    rows = [[p for p in in_stack(scene) if p.rotation[0][0] * sign > 0] for sign in (1.0, -1.0)]
+    fitting = [h for h in NUMBERS if all(_spaced(row, (h + BELOW_EACH_OTHER) / f) == row for row in rows)]
+    height = fitting[0] if fitting else NUMBERS[-1]
+    texts = []
+    for row, sign in zip(rows, (1.0, -1.0)):
+        for p in _spaced(row, (height + BELOW_EACH_OTHER) / f):
+            at = (sign * (half + BESIDE), middle(p) * f - height / 2)
+            arm = f", {p.part.name.rpartition(', ')[2]}" if pad(p) else " (blank)"
+            name = f"{p.designator}{arm if arms else ''}"
+            texts.append(Text(at, name, height, "start" if sign > 0 else "end"))
+    return texts
+
+
+def _spaced(row: Sequence[Placement], least: float) -> list[Placement]:
+    """First, last, and between them those that stand at least so far from the one kept before, mm."""
+    kept = list(row[:1])
+    for p in row[1:]:
+        if abs(middle(p) - middle(kept[-1])) >= least - 1e-9:
+            kept.append(p)
+    if row and kept[-1] is not row[-1]:
+        kept[max(1, len(kept) - 1) :] = [row[-1]]
+    return kept
+
+
+def axes(at: Point, length: float = 8.0) -> list[Item]:
+    """x to the right and y down from a corner, named."""
+    x, y = at
+    right, down = (x + length, y), (x, y - length)
+    return [
+        segment(at, right, THIN, "symbol"),
+        segment(at, down, THIN, "symbol"),
+        arrow(right, at, role="symbol"),
+        arrow(down, at, role="symbol"),
+        Text((x + length + 1.0, y - LETTERS / 2), "+x", LETTERS),
+        Text((x, y - length - LETTERS - 1.0), "+y", LETTERS, "middle"),
+    ]
+
+
+def face_map(array: Scene, name: str) -> DrawnSheet:
+    """The map of an array: outlines of elements, blanks and end plates; pads filled, numbers and arms."""
+    plates = [p for p in array.placements if p.designator in ("EP1", "EP2")]
+    x0, y0, x1, y1 = bounds_of(corners(seen_box(p)) for p in [*plates, *in_stack(array)])
+    f = min(MAP_SIZE[0] / (x1 - x0), MAP_SIZE[1] / (y1 - y0))
+
+    def outline(box: Box) -> tuple[Point, ...]:
+        return tuple((x * f, y * f) for x, y in corners(box))
+
+    items: list[Item] = [Stroke(outline(seen_box(p)), THIN, closed=True) for p in [*plates, *in_stack(array)]]
+    items += [Fill(outline(box), "symbol") for p in in_stack(array) if (box := pad(p))]
+    items += numbers(array, f, x1 * f, arms=True)
+    over, under = y1 * f + BESIDE, y0 * f - BESIDE - LETTERS
+    items += [
+        Text((x1 * f + BESIDE, over), "row 1", LETTERS),
+        Text((x0 * f - BESIDE, over), "row 2", LETTERS, "end"),
+    ]
+    for plate in plates:
+        y = over + 2 * LETTERS if middle(plate) > 0 else under
+        items.append(Text((0.0, y), f"{plate.designator}: {plate.part.name.lower()}", LETTERS, "middle"))
+    items += axes((x0 * f, under - LETTERS))
+    bx0, by0, bx1, by1 = bounds_of_items(items)
+    size = (round(bx1 - bx0 + 4.0, 3), round(by1 - by0 + 4.0, 3))
+    shown = tuple(moved(i, 2.0 - bx0, 2.0 - by0) for i in items)
+    return DrawnSheet(name, "Sensing face, pads towards you", size, shown)

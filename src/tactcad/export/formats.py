@@ -42,7 +42,7 @@ def has_limits(part: Part) -> bool:
 
 
 def _step_pmi(part: Part, shapes: Shapes, head: Header) -> bytes:
-    from tactcad.drawing.workers import made_apart
+    from tactcad.drawing.engine.workers import made_apart
     from tactcad.solids.bytes import to_bytes
 
     from .step_pmi import part_step_pmi

@@ -12,7 +12,7 @@ from typing import Any
 
 from tactcad.contour import Arc, Contour, Line, Segment
 from tactcad.design.tree import Design
-from tactcad.drawing.extent import part_box
+from tactcad.drawing.engine.extent import part_box
 from tactcad.mechanics import ladder, strength
 from tactcad.parts.cut_section import cut_section, section
 from tactcad.parts.description import Extrusion, Hole, ModelFile, Part

@@ -158,7 +158,7 @@ def _refuse_broken(design: Design) -> None:
 
 
 def _refuse_unprintable(design: Design) -> None:
-    from tactcad.drawing.fonts import refuse_letters_it_lacks  # loads matplotlib
+    from tactcad.drawing.engine.fonts import refuse_letters_it_lacks
 
     texts = design.design
     refuse_letters_it_lacks(

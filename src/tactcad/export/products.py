@@ -26,7 +26,7 @@ from .shapes import Shapes, picture_bytes
 from .step_text import Header
 
 if TYPE_CHECKING:
-    from tactcad.drawing.workers import Named, Written
+    from tactcad.drawing.engine.workers import Named, Written
 
 
 @dataclass(frozen=True)
@@ -218,9 +218,8 @@ def drawing_products(
     sample: bool = False,
 ) -> list[Output]:
     """A sheet for every part made here, as PDF and SVG; `products` hold the files that the sheets name."""
-    from tactcad.drawing.fonts import font_file
-    from tactcad.drawing.notes import MadeFrom
-    from tactcad.drawing.part_sheet import Order, written
+    from tactcad.drawing.engine.fonts import font_file
+    from tactcad.drawing.parts.part_sheet import MadeFrom, Order, written
 
     font_file()  # a missing font is reported before anything is made
     sources = {(p.part_no, p.kind): p for p in products}
@@ -253,7 +252,7 @@ def assembly_products(
     sample: bool = False,
 ) -> list[Output]:
     """An assembly drawing of every scene, as PDF and SVG."""
-    from tactcad.drawing.assembly_file import AssemblyOrder, assembly_written
+    from tactcad.drawing.assemblies.assembly_sheets import AssemblyOrder, assembly_written
     from tactcad.scenes.bom import bom_rows
 
     revision, common = design.design.revision, (design.design, design.tolerance, draft, sample)
@@ -279,7 +278,7 @@ def circuit_drawing(
     sample: bool = False,
 ) -> list[Output]:
     """The circuit's sheets, as PDF and SVG."""
-    from tactcad.drawing.circuit_sheets import CircuitOrder, circuit_written
+    from tactcad.drawing.circuit.circuit_sheets import CircuitOrder, circuit_written
 
     stem = f"{design.name}-circuit_{design.design.revision}"
     key = digest(("circuit drawing", shapes.made_by, design, draft, sample))
@@ -297,7 +296,7 @@ def _drawn(
     """Both files of each drawing. The first one that is needed makes all that the cache does not hold, in
     parallel.
     """
-    from tactcad.drawing.workers import all_written
+    from tactcad.drawing.engine.workers import all_written
 
     endings = ("pdf", "svg")
     drawn: dict[str, Written] = {}
@@ -343,7 +342,7 @@ def _measured(part: Part, shapes: Shapes) -> dict:
 
 
 def _compare_box(part: Part, box: Sequence[Sequence[float]]) -> None:
-    from tactcad.drawing.extent import part_box
+    from tactcad.drawing.engine.extent import part_box
 
     off = max(abs(a - b) for got, meant in zip(box, part_box(part)) for a, b in zip(got, meant))
     if off > 1e-6:

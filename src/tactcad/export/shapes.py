@@ -13,7 +13,7 @@ from .inputs import digest
 if TYPE_CHECKING:
     from OCP.TopoDS import TopoDS_Shape
 
-    from tactcad.drawing.picture import Viewpoint
+    from tactcad.drawing.engine.picture import Viewpoint
     from tactcad.parts.description import Part
     from tactcad.scenes.scene import Placement
 
@@ -73,7 +73,7 @@ def picture_bytes(
     marked: Sequence[Placement] = (),
 ) -> bytes:
     """The placements in hidden lines, seen from `view`, as SVG; read back. `marked` are drawn in bold."""
-    from tactcad.drawing import picture
+    from tactcad.drawing.engine import picture
     from tactcad.parts.library.screws import for_pictures
     from tactcad.solids.place import placed_shape
 

@@ -19,6 +19,7 @@ from .limits import FACES, Characteristic, DatumFeature, Geometric, contradictio
 
 Vector = tuple[float, float, float]
 Process = Literal["wire-cut", "milled", "turned", "ground", "reference", "bought", "included"]
+Kind = Literal["", "element", "cap screw", "set screw", "nut"]
 NOT_MADE = ("bought", "included", "reference")
 NOT_ORDERED = ("included", "reference")
 
@@ -249,6 +250,10 @@ class Part:
         Mass, g, of a bought part whose body is only an envelope.
     spares
         Pieces to order beyond the scene's.
+    kind
+        What steps, notes and sheets treat it as; "" where they treat it as any other part.
+    thread
+        Metric thread of a screw or nut, "M3".
 
     Raises
     ------
@@ -271,6 +276,8 @@ class Part:
     purchase: Purchase | None = None
     mass_override: float | None = None
     spares: int = 0
+    kind: Kind = ""
+    thread: str = ""
 
     def __post_init__(self) -> None:
         limits = (self.characteristics, self.geometric, self.datums)

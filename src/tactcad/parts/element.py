@@ -66,6 +66,7 @@ def element(layout: Layout, place: ElementPlace, gap: float | None = None) -> Pa
         geometric=(screw_places("A", "B"),),
         datums=(DatumFeature("A", "flat_face"), DatumFeature("B", "dowel_hole")),
         spares=spare_elements(sum(element_number(design, p) == number for p in layout.elements)),
+        kind="element",
     )
 
 

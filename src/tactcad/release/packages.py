@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from tactcad.checks.shop import Shop
 from tactcad.design.tree import Design
-from tactcad.drawing.extent import part_box
+from tactcad.drawing.engine.extent import part_box
 from tactcad.export import inspection
 from tactcad.export.contents import sha256_of
 from tactcad.parts.cut_section import cut_section

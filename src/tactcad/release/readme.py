@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from tactcad import __version__
 from tactcad.design.materials import ELECTROLYSIS, family
-from tactcad.drawing.extent import part_box
+from tactcad.drawing.engine.extent import part_box
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.parts.description import Characteristic, Part

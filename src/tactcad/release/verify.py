@@ -9,10 +9,11 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
 
-from tactcad.drawing.assembly_file import assembly_faults
-from tactcad.drawing.gate import key_faults, pdf_runs
+from tactcad.drawing.assemblies.assembly_sheets import assembly_faults
+from tactcad.drawing.engine.sheet_files import pdf_runs
+from tactcad.drawing.engine.title import SAMPLE as STATUS
 from tactcad.drawing.guide import page_path
-from tactcad.drawing.title import SAMPLE as STATUS
+from tactcad.drawing.parts.part_sheet import key_faults
 from tactcad.export import inspection
 from tactcad.export import strength_table as strength
 from tactcad.export.dxf import check_dxf

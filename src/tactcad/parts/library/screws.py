@@ -147,6 +147,8 @@ def cap_screw(thread: str, length: float) -> Part:
         colour="#8a8d91",
         purchase=Purchase(designation, alternates=f"DIN 912 {thread}x{length:g} A2-70"),
         spares=2,
+        kind="cap screw",
+        thread=thread,
     )
 
 
@@ -174,6 +176,8 @@ def set_screw(thread: str, length: float) -> Part:
             f"ISO 4026 {thread}x{length:g} A2-21H", alternates=f"DIN 913 {thread}x{length:g} A2"
         ),
         spares=2,
+        kind="set screw",
+        thread=thread,
     )
 
 
@@ -203,7 +207,8 @@ _THREADED = re.compile(r"(?:ISO4762|ISO4026|DIN976-1)-(M[\d.]+)x")
 def nut(thread: str) -> Part:
     """ISO 4032 hexagon nut, bored at the tap drill's diameter; bearing face at z = 0, height along +z."""
     m = METRIC[thread]
-    return _nut("ISO 4032", f"Hexagon nut {thread}", thread, m.tap_drill, (m.nut, m.nut_height), "DIN 934")
+    made = _nut("ISO 4032", f"Hexagon nut {thread}", thread, m.tap_drill, (m.nut, m.nut_height), "DIN 934")
+    return replace(made, kind="nut", thread=thread)
 
 
 # M6, of the force gauge's shaft: tap drill (ISO 2306), across flats and largest height of a thin nut (ISO

@@ -1,0 +1,1 @@
+"""Sheets of scenes: general arrangement, numbered views, parts list."""

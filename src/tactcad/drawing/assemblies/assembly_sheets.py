@@ -1,0 +1,140 @@
+"""The assembly drawing of a scene: general arrangement, views with item numbers, and the parts list; as PDF
+and SVG, read back and compared with the scene and its bill of materials.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import isclose
+from typing import TYPE_CHECKING
+
+from tactcad.design.messages import CheckFailure
+from tactcad.design.tree import Design
+from tactcad.scenes.bom import BomRow
+from tactcad.scenes.scene import Scene
+
+from ..engine.fonts import em
+from ..engine.ink import DrawnSheet
+from ..engine.paper import A3, A4
+from ..engine.sheet_files import files_of, pdf_runs, pdf_texts
+from ..engine.title import HEIGHT, WIDTH, Page, block_of, sheets_of
+from ..engine.workers import Written
+from . import parts_list
+from .arrangement import arrangement
+from .balloons import height
+from .numbered import numbered_pages
+
+if TYPE_CHECKING:
+    from OCP.TopoDS import TopoDS_Shape
+
+
+def assembly_sheets(
+    design: Design,
+    scene: Scene,
+    rows: Sequence[BomRow],
+    shapes: Mapping[str, TopoDS_Shape],
+    draft: bool = False,
+    sample: bool = False,
+) -> list[DrawnSheet]:
+    """All sheets of a scene, their layout clean: `rows` are its bill of materials, `shapes` the solids by
+    part number, each in its own frame (mm).
+
+    Raises CheckFailure where the scene is larger than the sheet at 1:100, or a view leaves no clean layout.
+    """
+    name = f"Assembly: {scene.name.replace('-', ' ')}"
+    block = block_of(design.design, f"{design.name}-{scene.name}", name, draft, sample)
+    mass = sum(p.part.mass for p in scene.placements)
+    block = replace(block, material="see parts list", mass=mass)
+    arranged = arrangement(design, scene, shapes, block)
+    above_block = A3.area[3] - A3.area[1] - HEIGHT
+    lists = [parts_list.laid(rows, size) for size in parts_list.SIZES]
+    beside = [p for p in lists if p.total + parts_list.heading(p.size) <= above_block]
+    numbered, listed = numbered_pages(scene, rows, shapes, beside[0] if beside else None, block)
+    pages = [arranged, *numbered, *([] if listed else _list_pages(lists[0]))]
+    return sheets_of(block, pages, draft, name)
+
+
+def _list_pages(list_: parts_list.Laid) -> list[Page]:
+    """One A4 page where that suffices; else A3 pages in two columns, the right one above the title block."""
+    for paper, lefts in ((A4, [A4.area[2] - WIDTH]), (A3, [A3.area[0], A3.area[2] - WIDTH])):
+        high = paper.area[3] - paper.area[1]
+        columns = parts_list.columns(list_, [*[high] * (len(lefts) - 1), high - HEIGHT])
+        if len(columns) == 1:
+            break
+    pages = []
+    for n in range(0, len(columns), len(lefts)):
+        items = [
+            item
+            for x, rows in zip(lefts, columns[n : n + len(lefts)])
+            for item in parts_list.drawn(list_, rows, (x, paper.area[3]))[0]
+        ]
+        pages.append(Page(paper, "", tuple(items), "Parts list"))
+    return pages
+
+
+@dataclass(frozen=True)
+class AssemblyOrder:
+    """One scene to draw: its bill of materials, and every part's solid by number, as the kernel's text."""
+
+    design: Design
+    scene: Scene
+    rows: tuple[BomRow, ...]
+    shapes: Mapping[str, bytes]
+    draft: bool = False
+    sample: bool = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.design.name}-{self.scene.name}"
+
+
+def assembly_written(order: AssemblyOrder) -> Written:
+    """All sheets of the scene as PDF and SVG.
+
+    Raises CheckFailure where they cannot be drawn, or differ from the scene when read back.
+    """
+    from tactcad.solids.bytes import from_bytes  # loads the kernel
+
+    shapes = {number: from_bytes(data) for number, data in order.shapes.items()}
+    sheets = assembly_sheets(order.design, order.scene, order.rows, shapes, order.draft, order.sample)
+    of = order.design.design
+    made = files_of(sheets, order.name, "assembly", of)
+    wrong = assembly_faults(made.pdf, order.name, of.revision, order.rows)
+    if wrong:
+        raise CheckFailure(f"drawings: {order.name}: {'; '.join(wrong[:3])}; no drawing was written")
+    return made
+
+
+def assembly_faults(pdf: bytes, number: str, revision: str, rows: Sequence[BomRow]) -> list[str]:
+    """What is wrong with an assembly's PDF: pages without number, revision or sheet count; items that have a
+    solid and not just one balloon; rows of the bill that are not in the parts list as the bill has them."""
+    pages = pdf_runs(pdf)
+    wrong = []
+    for n, runs in enumerate(pages, start=1):
+        wrong += [f"sheet {n}: {t!r} is missing" for t in (revision, f"{n}/{len(pages)}") if t not in runs]
+        if number not in "".join(runs):  # a long one is broken
+            wrong.append(f"sheet {n}: {number!r} is missing")
+    numbers = [  # in balloons, recognised by the height of their letters
+        int(text)
+        for page in pdf_texts(pdf)
+        for text, size in page
+        if text.isdecimal() and isclose(size, em(height(text)), rel_tol=1e-3)
+    ]
+    wrong += [
+        f"item {row.item} ({row.part_no}) has {numbers.count(row.item)} balloons"
+        for row in rows
+        if numbers.count(row.item) != row.has_solid
+    ]
+    listed = _without_spaces("".join(run for page in pages for run in page))
+    for row in rows:
+        unit = "" if row.unit == "pcs" else row.unit
+        if _without_spaces(f"{row.item}{row.qty:g}{unit}{row.part_no}{row.description}") not in listed:
+            wrong.append(f"{row.part_no} is not in the parts list as the bill has it")
+    return wrong
+
+
+def _without_spaces(text: str) -> str:
+    """The text without spaces, since the sheet breaks texts into lines."""
+    return re.sub(r"\s", "", text)
