@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 from small_target import SMALL
 
+from tactcad.checks.signals import check_signals
+from tactcad.circuit.element_signals import element_signals
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import stiffness
+from tactcad.parts.finding import Finding
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.rules import broken_rules
@@ -22,6 +25,7 @@ from tactcad.synthesis.realise import realised
 from tactcad.synthesis.search import refusals, search
 from tactcad.synthesis.synthesise import Synthesis, attempt
 from tactcad.synthesis.target import Target, parse_target
+from tactcad.synthesis.target_answer import answer
 from tactcad.synthesis.target_report import record
 
 
@@ -73,6 +77,42 @@ def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     wide.__dict__["limits"] = (best, best + 1.0)
     got = search(wide, lambda c: c.half_width, within=0.05)
     assert not got.accepted and "array.spacer" in got.refused
+
+
+def resolution(design) -> float:
+    """mN that the worst channel tells from none: its noise and drift over its volts per newton."""
+    return max(1e3 * s.resolution for s in element_signals(Layout(design)))
+
+
+def test_the_force_resolution_that_the_base_design_wishes_for_limits_the_search():
+    target = small()
+    free = resolution(quick(asking(target, None), 0.5).design)
+    finer = quick(asking(target, 0.9 * free), 0.5)
+    assert finer.met and resolution(finer.design) <= 0.9 * free
+    assert not list(check_signals(finer.design))
+    told = record(quick(asking(target, 1e-3), 0.5))
+    assert not told["met"] and "misses readout.force_resolution" in answer(told)
+
+
+def asking(target: Target, resolution: float | None) -> Target:
+    return replace(
+        target, base=replace(target.base, readout=replace(target.base.readout, force_resolution=resolution))
+    )
+
+
+def test_a_best_design_that_fails_a_slow_check_is_left_for_one_that_passes(monkeypatch):
+    def too_many(design):
+        return [Finding("assembly", "fail", "x", (), 0, 1, "y")] if elements_of(design) > 4 else []
+
+    assert elements_of(quick(small(), 0.5).design) > 4
+    for module in ("search", "synthesise"):
+        monkeypatch.setattr(f"tactcad.synthesis.{module}.slow_failures", too_many)
+    got = quick(small(), 0.5)
+    assert got.met and elements_of(got.design) == 4 and got.found.refused["check assembly"] > 0
+
+
+def elements_of(design) -> int:
+    return sum(map(len, design.array.row_arms))
 
 
 def test_a_base_with_overrides_leaves_none_of_their_origins():

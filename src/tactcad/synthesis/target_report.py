@@ -109,7 +109,7 @@ def _beyond(got: Synthesis) -> dict[str, float]:
 
 def _notes(got: Synthesis) -> list[str]:
     """What the design does not say of itself."""
-    notes = []
+    notes = list(got.unknown)
     for line in got.scenes_left_out:
         if line.startswith("scene calibration ") and got.target.known.how == "calibrated":
             line = f"its elements count as calibrated, but not on the rig of this design; {line}"
