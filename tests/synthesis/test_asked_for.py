@@ -79,40 +79,30 @@ def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     assert not got.accepted and "array.spacer" in got.refused
 
 
-def resolution(design) -> float:
-    """mN that the worst channel tells from none: its noise and drift over its volts per newton."""
-    return max(1e3 * s.resolution for s in element_signals(Layout(design)))
-
-
 def test_the_force_resolution_that_the_base_design_wishes_for_limits_the_search():
+    def with_wish(wish: float | None) -> Synthesis:
+        readout = replace(target.base.readout, force_resolution=wish)
+        return quick(replace(target, base=replace(target.base, readout=readout)), 0.5)
+
+    def told(got: Synthesis) -> float:
+        return max(1e3 * signal.resolution for signal in element_signals(Layout(got.design)))
+
     target = small()
-    free = resolution(quick(asking(target, None), 0.5).design)
-    finer = quick(asking(target, 0.9 * free), 0.5)
-    assert finer.met and resolution(finer.design) <= 0.9 * free
-    assert not list(check_signals(finer.design))
-    told = record(quick(asking(target, 1e-3), 0.5))
-    assert not told["met"] and "misses readout.force_resolution" in answer(told)
-
-
-def asking(target: Target, resolution: float | None) -> Target:
-    return replace(
-        target, base=replace(target.base, readout=replace(target.base.readout, force_resolution=resolution))
-    )
+    finer = 0.9 * told(with_wish(None))
+    got = with_wish(finer)
+    assert got.met and told(got) <= finer and not list(check_signals(got.design))
+    r = record(with_wish(1e-3))
+    assert not r["met"] and "misses readout.force_resolution" in answer(r)
 
 
 def test_a_best_design_that_fails_a_slow_check_is_left_for_one_that_passes(monkeypatch):
-    def too_many(design):
-        return [Finding("assembly", "fail", "x", (), 0, 1, "y")] if elements_of(design) > 4 else []
-
+    elements_of = lambda design: sum(map(len, design.array.row_arms))  # noqa: E731
+    too_many = lambda design: [Finding("assembly", "fail", "", (), 0, 1, "")] * (elements_of(design) > 4)  # noqa: E731
     assert elements_of(quick(small(), 0.5).design) > 4
     for module in ("search", "synthesise"):
         monkeypatch.setattr(f"tactcad.synthesis.{module}.slow_failures", too_many)
     got = quick(small(), 0.5)
     assert got.met and elements_of(got.design) == 4 and got.found.refused["check assembly"] > 0
-
-
-def elements_of(design) -> int:
-    return sum(map(len, design.array.row_arms))
 
 
 def test_a_base_with_overrides_leaves_none_of_their_origins():
