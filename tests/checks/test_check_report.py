@@ -87,8 +87,8 @@ def test_one_design_alone_that_is_refused_is_bad_input(tmp_path, capsys):
 
 def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypatch):
     """Which checks `tactcad check` calls, and on what, with every check and the kernel's work replaced by a
-    note of the call."""
-    from tactcad.checks import run
+    note of the call; what a search for designs is limited by is those of them that need no solid."""
+    from tactcad.checks import run, without_solids
     from tactcad.scenes import make_scene, scene_names
     from tactcad.scenes.poses import poses
 
@@ -101,9 +101,9 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
 
         return check
 
-    for name in vars(run).copy():
-        if name.startswith("check_") and name != "check_rigs":
-            monkeypatch.setattr(run, name, note(name))
+    for module in (run, without_solids):
+        for name in [n for n in vars(module) if n.startswith("check_") and n != "check_rigs"]:
+            monkeypatch.setattr(module, name, note(name))
     monkeypatch.setattr(run, "build", lambda part: SimpleNamespace(wrapped=part))
     names = scene_names(macro)
     report = run.run_checks(macro, names)
@@ -130,6 +130,9 @@ def test_every_check_runs_on_every_part_and_scene_that_it_is_for(macro, monkeypa
     expected |= {("check_motions", s.name) for s in scenes if s.motions}
     assert report.runs["calibration travel"] == report.runs["moving weight"] == 1
     assert calls == expected
+    calls.clear()
+    assert without_solids.quick_failures(macro) == without_solids.slow_failures(macro) == []
+    assert calls == {(name, subject) for name, subject in expected if name in vars(without_solids)}
     assert report.runs["configurations"] == len(posed) and report.runs["interference"] == len(scenes)
     assert report.runs["build"] == len(parts | {p.part_no: p for s in posed for p in s.parts})
     assert report.runs["scenes left out"] == 1

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from tactcad.contour import Arc, Contour, Line, chain
@@ -66,6 +68,16 @@ def test_element_of_the_array_cut_at_clamp_and_load_line_is_the_model(layout):
         )
         K = solve_plane(shape, 69000.0, 0.33, 3.0, density=4).stiffness
         assert K == pytest.approx(float(ladder.stiffness(section.rows(i), "plane")), rel=3.5e-3)
+
+
+def test_rounded_coordinates_of_a_fillet_at_its_wall_are_no_deviation(layout):
+    """A cut along the slot's wall touches the fillet's end: 1e-15 mm beside it is 3e-8 mm up the fillet."""
+    d = layout.design
+    hinge = replace(d.element, hinge_thickness=0.395, hinge_length=1.02, fillet_radius=0.46)
+    other = Layout(replace(d, array=replace(d.array, row_arms=((8.3, 7.3),)), element=hinge))
+    place = next(p for p in other.elements if p.arm == 7.3)
+    ends = other.clamp_edge, place.hinge_x - place.load_arm
+    assert cut_element(element(other, place).extrusion.outer, *ends).thickness == 0.395
 
 
 def test_changing_the_contour_alone_changes_the_stiffness(layout):

@@ -312,6 +312,7 @@ def _without_statement(tree: ast.Module, name: str, n: int) -> ast.Module:
 
 CALLERS = {
     "checks/run.py": r"^report\.run$",
+    "checks/without_solids.py": r"^report\.run$",
     "cli/check.py": r"^report\.run$",
     "export/pipeline.py": r"^(manifests\.)?check_|^bom\.check_",
     "export/products.py": r"^_compare_box$",
@@ -380,6 +381,7 @@ def every() -> list[Mutant]:
 # Tests of what a module does that do not import it, because they go through the command or the whole export.
 ALSO = {
     "checks/run.py": ("tests/checks/test_check_report.py", "tests/checks/test_checks_table.py"),
+    "checks/without_solids.py": ("tests/checks/test_check_report.py",),
     "cli/check.py": ("tests/export/test_golden.py", "tests/checks/test_check_report.py"),
     "export/pipeline.py": ("tests/export/test_pipeline.py", "tests/faults/test_machine.py"),
     "export/products.py": ("tests/export/test_pipeline.py",),

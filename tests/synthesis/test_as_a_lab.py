@@ -79,7 +79,7 @@ def drawn_target(rng: np.random.Generator, how: str = "calibrated") -> Target:
 
 def found(target: Target) -> tuple[Design, float]:
     """A design near the best, and its half-width with a tenth to spare."""
-    got = search(stands(target)[0], lambda c: c.half_width, rules=False, within=WITHIN)
+    got = search(stands(target)[0], lambda c: c.half_width, rules=None, within=WITHIN)
     return got.design, 1.1 * got.half_width
 
 

@@ -10,10 +10,13 @@ import numpy as np
 import pytest
 from small_target import SMALL
 
+from tactcad.checks.signals import check_signals
+from tactcad.circuit.element_signals import element_signals
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
 from tactcad.mechanics.ladder import stiffness
+from tactcad.parts.finding import Finding
 from tactcad.parts.hinge_section import hinge_section
 from tactcad.parts.layout import Layout
 from tactcad.parts.rules import broken_rules
@@ -22,6 +25,7 @@ from tactcad.synthesis.realise import realised
 from tactcad.synthesis.search import refusals, search
 from tactcad.synthesis.synthesise import Synthesis, attempt
 from tactcad.synthesis.target import Target, parse_target
+from tactcad.synthesis.target_answer import answer
 from tactcad.synthesis.target_report import record
 
 
@@ -73,6 +77,32 @@ def test_a_design_that_its_own_reader_refuses_is_never_accepted():
     wide.__dict__["limits"] = (best, best + 1.0)
     got = search(wide, lambda c: c.half_width, within=0.05)
     assert not got.accepted and "array.spacer" in got.refused
+
+
+def test_the_force_resolution_that_the_base_design_wishes_for_limits_the_search():
+    def with_wish(wish: float | None) -> Synthesis:
+        readout = replace(target.base.readout, force_resolution=wish)
+        return quick(replace(target, base=replace(target.base, readout=readout)), 0.5)
+
+    def told(got: Synthesis) -> float:
+        return max(1e3 * signal.resolution for signal in element_signals(Layout(got.design)))
+
+    target = small()
+    finer = 0.9 * told(with_wish(None))
+    got = with_wish(finer)
+    assert got.met and told(got) <= finer and not list(check_signals(got.design))
+    r = record(with_wish(1e-3))
+    assert not r["met"] and "misses readout.force_resolution" in answer(r)
+
+
+def test_a_best_design_that_fails_a_slow_check_is_left_for_one_that_passes(monkeypatch):
+    elements_of = lambda design: sum(map(len, design.array.row_arms))  # noqa: E731
+    too_many = lambda design: [Finding("assembly", "fail", "", (), 0, 1, "")] * (elements_of(design) > 4)  # noqa: E731
+    assert elements_of(quick(small(), 0.5).design) > 4
+    for module in ("search", "synthesise"):
+        monkeypatch.setattr(f"tactcad.synthesis.{module}.slow_failures", too_many)
+    got = quick(small(), 0.5)
+    assert got.met and elements_of(got.design) == 4 and got.found.refused["check assembly"] > 0
 
 
 def test_a_base_with_overrides_leaves_none_of_their_origins():

@@ -20,7 +20,7 @@ NOISE, FORCE, LOADS = 4e-4, 10.0, 10
 
 
 def springs(K: list[float], K_v: list[float]) -> Elements:
-    return Elements(None, np.array(K), np.array(K_v))  # type: ignore[arg-type]
+    return Elements(None, np.array(K), np.array(K_v), np.divide(K_v, K))  # type: ignore[arg-type]
 
 
 def errors(k: float | np.ndarray, v: float | np.ndarray, n: int, dof: float = 1e6) -> Knowledge:

@@ -62,7 +62,7 @@ def best_of_all(stand: Stand) -> tuple[float, int]:
 
 def held_against_all(stand: Stand) -> tuple[float, float]:
     """How much worse the search's answer is, relative, and how many times fewer candidates it looked at."""
-    got = search(stand, lambda c: c.half_width, rules=False)
+    got = search(stand, lambda c: c.half_width, rules=None)
     best, count = best_of_all(stand)
     assert np.isfinite(best)
     assert got.accepted

@@ -159,13 +159,14 @@ def test_a_synthesis_is_written_whole_or_not_at_all(tmp_path, monkeypatch):
 
 
 def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_asked(
-    tmp_path, capsys, time_is_over
+    tmp_path, capsys, time_is_over, monkeypatch
 ):
     text = SMALL.replace('name = "small"', 'name = "small"\nhalf_width = 0.5')
     (tmp_path / "no.toml").write_text(text)
     out = tmp_path / "out"
     assert main(["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30"]) == 1
     assert "Impossible as asked" in capsys.readouterr().out and not out.exists()
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)  # no CAD kernel
     assert (
         main(
             ["design", str(tmp_path / "no.toml"), "--out", str(out), "--within", "5%", "--in", "30", "--best"]
@@ -173,6 +174,8 @@ def test_an_impossible_target_ends_with_1_and_writes_nothing_but_the_best_when_a
         == 1
     )
     assert parse((out / "design.toml").read_text(), "d").name == "small"
+    assert f"next: tactcad estimate {out}/design.toml (`tactcad check` needs" in capsys.readouterr().out
+    assert main(["estimate", str(out / "design.toml")]) == 0
 
 
 def test_where_nothing_fits_the_limit_is_named(tmp_path, capsys, time_is_over):

@@ -65,6 +65,8 @@ def test_a_target_needs_an_object_and_forces_only():
         ('name = "mine"', 'name = "mine"\nleast = "price"', "target.least: unknown choice"),
         ("[grasp]", "[stock]\nalloys = ['unobtainium']\n[grasp]", "stock.alloys[0]: unknown choice"),
         ("[grasp]", "[stock]\nalloys = ['7075-T6', '7075-T6']\n[grasp]", "not a list of different words"),
+        ("[grasp]", "[stock]\nsheets = [3, 3.0]\n[grasp]", "stock.sheets: not a list of different numbers"),
+        ("[grasp]", "[stock]\nhinge_tolerances = [0.01, 0.01]\n[grasp]", "tolerances: not a list of diff"),
         ("[grasp]", "[elements]\nof_a_kind = 6\n[grasp]", "elements.of_a_kind: two kinds of so many"),
         ("[grasp]", "[elements]\narms = [8, 4]\n[grasp]", "elements.arms: its first value"),
         ("[grasp]", "[grips]\nx = 1\n[grasp]", "grips: unknown field"),

@@ -13,12 +13,12 @@ from small_target import SMALL
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import read
-from tactcad.design.messages import InputError
+from tactcad.design.messages import CheckFailure, InputError
 from tactcad.synthesis import relax
 from tactcad.synthesis.alternatives import LeastChange
 from tactcad.synthesis.made_arrays import MadeSensor
 from tactcad.synthesis.shares import COUNT, variance_shares
-from tactcad.synthesis.synthesise import Synthesis, attempt
+from tactcad.synthesis.synthesise import Synthesis, attempt, design
 from tactcad.synthesis.target import TABLES, Target, parse_target, read_target
 from tactcad.synthesis.target_answer import answer, no_other_change
 from tactcad.synthesis.target_report import record, report_page
@@ -85,14 +85,17 @@ def test_best_that_writes_nothing_says_so(tmp_path, capsys, time_is_over):
     assert f"{out}: not written: no candidate keeps every limit" in said and "not tried for time" in said
 
 
-def test_a_place_that_cannot_be_written_is_refused_before_the_search(tmp_path, monkeypatch):
+def test_a_place_that_cannot_be_written_is_refused_before_the_search(tmp_path, monkeypatch, capsys):
     (tmp_path / "file").write_text("x")
     monkeypatch.setattr("tactcad.synthesis.synthesise.design", lambda *_a, **_k: pytest.fail("searched"))
     (tmp_path / "t.toml").write_text(SMALL)
-    for place in ("file/out", "x" * 300, "file"):
-        assert main(["design", str(tmp_path / "t.toml"), "--out", str(tmp_path / place)]) == 2
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "link").symlink_to("empty")  # a new folder cannot take its place in one step
+    for place in ("file/out", "x" * 300, "file", "link", "link/"):
+        assert main(["design", str(tmp_path / "t.toml"), "--out", f"{tmp_path}/{place}"]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
     refuse_unwritable(tmp_path / "new" / "deeper")
-    assert {p.name for p in tmp_path.iterdir()} == {"file", "t.toml"}
+    assert {p.name for p in tmp_path.iterdir()} == {"file", "t.toml", "empty", "link"}
 
 
 def test_a_base_is_named_by_its_field_and_found_from_the_targets_folder(tmp_path, monkeypatch):
@@ -152,6 +155,20 @@ def test_rigs_that_do_not_take_the_array_are_told(monkeypatch):
     notes = record(replace(small()))["notes"]
     assert "not on the rig of this design; scene calibration left out" in notes[0] and notes[1] == told[1]
     assert b"scene grasping left out" in report_page(replace(small()))
+
+
+def test_what_solid_elements_cannot_follow_is_said_and_the_rest_is_told(monkeypatch):
+    def refused(*_args):
+        raise CheckFailure("the body is no rectangle")
+
+    monkeypatch.setattr("tactcad.synthesis.synthesise.attempt", lambda *_args: small())
+    monkeypatch.setattr("tactcad.synthesis.synthesise.array_estimate.estimate", refused)
+    for step in ("_with_limits", "_with_front", "_with_ratios"):
+        monkeypatch.setattr(f"tactcad.synthesis.synthesise.{step}", lambda got, _go_on: got)
+    got = design(target())
+    assert got.met and got.shares and not got.solid and not got.left_out
+    assert "solid elements: not known, because the body is no rectangle" in record(got)["notes"]
+    assert b"because the body is no rectangle" in report_page(got)
 
 
 def test_what_was_not_searched_does_not_bind():

@@ -19,19 +19,13 @@ from tactcad.solids.meshing import USUAL, Meshing
 
 from .brep import check_brep, check_step
 from .check_report import Report
-from .clearance import check_clearance
 from .goes_together import check_assembly
-from .hinge_strength import check_strength
 from .interference import check_interference
-from .machining import MACHINED, check_machining
 from .mesh import check_mesh
 from .motion import check_motions
-from .rigidity import check_rigidity, check_rigs
 from .shop import DEFAULT, load_shop
-from .signals import check_signals
 from .tools import check_tools
-from .wirecut import check_wirecut
-from .wired import check_circuit
+from .without_solids import run_on_design, run_on_part
 
 
 def run_checks(
@@ -68,13 +62,8 @@ def run_checks(
     """
     shop = load_shop(shop_file)
     report = Report(design.name, design.design.revision)
-    report.run("strength", check_strength, design)
-    report.run("clearance", check_clearance, design)
-    report.run("rigidity", check_rigidity, design, scene_names, report.deflections)
     scenes = [make_scene(design, name) for name in scene_names]
-    check_rigs(report, design, scenes)
-    report.run("circuit", check_circuit, design)
-    report.run("signals", check_signals, design)
+    run_on_design(report, design, scene_names, scenes)
     report.run("assembly", check_assembly, design, scenes)
     parts = list({part.part_no: part for scene in scenes for part in scene.parts}.values())
     total = len(parts) + len(scenes)
@@ -88,10 +77,7 @@ def run_checks(
         report.run("brep", check_brep, part, shapes[part.part_no])
         report.run("step", check_step, part, shapes[part.part_no])
         report.run("mesh", check_mesh, part, shapes[part.part_no], meshing)
-        if part.process == "wire-cut":
-            report.run("wire-cut", check_wirecut, part, shop)
-        if part.process in MACHINED:
-            report.run("machining", check_machining, part, shop.machining)
+        run_on_part(report, part, shop)
     report.run("scenes left out", _left_out, design, "fail" if strict else "flag")
     known: dict = {}
     for n, scene in enumerate(scenes, start=len(parts)):

@@ -32,6 +32,12 @@ class ElementSignal:
     resolution: float
 
 
+def smallest_output(layout: Layout) -> float:
+    """What the amplifier's output tells from none, V: noise and quantisation at two standard deviations, and
+    drift, by the root of their squares."""
+    return float(np.hypot(2 * design_readout(layout.design).averaged_noise, drift(layout)))
+
+
 def element_signals(layout: Layout) -> list[ElementSignal]:
     """Every element's, by number. Raises CheckFailure where one is out of the estimator's range."""
     design, places = layout.design, layout.elements
@@ -40,7 +46,7 @@ def element_signals(layout: Layout) -> list[ElementSignal]:
     foil = np.broadcast_to(gauge_signal.foil_strain_per_force(section, gauge), shape)
     bent = np.broadcast_to(gauge_signal.foil_strain_per_deflection(section, gauge), shape)
     volts = float(readout.volts_per_strain(gauge.factor, chain))
-    least = ((2 * chain.averaged_noise) ** 2 + drift(layout) ** 2) ** 0.5
+    least = smallest_output(layout)
     lead, arm = longest_lead_resistance(layout), completion_tolerance(design)
 
     def extremes(x: float) -> tuple[float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import sys
 from typing import TYPE_CHECKING
@@ -70,10 +71,19 @@ def run(args: argparse.Namespace) -> int:
         if picked:
             print(picked.text())
         if written:
-            print(f"{args.out}: written\nnext: tactcad check {args.out}/design.toml")
+            print(f"{args.out}: written\nnext: {_next(args.out)}")
         elif args.best:
             print(f"{args.out}: not written: no candidate keeps every limit and rule, so none is the best")
     return 0 if got.met else 1
+
+
+def _next(out: str) -> str:
+    """The command that can run here on the design."""
+    if importlib.util.find_spec("build123d") is not None:
+        return f"tactcad check {out}/design.toml"
+    return (
+        f"tactcad estimate {out}/design.toml (`tactcad check` needs the CAD kernel, which is not installed)"
+    )
 
 
 def _picked(target: Target, asked: Allowance) -> Picked:

@@ -18,6 +18,9 @@ from tactcad.mechanics.section import HingeSection
 
 ANGLE = 1e-7  # rad: tangents closer than this to an axis count as parallel to it
 SAME_AREA = 1e-9  # relative, for areas: the effect of rounded coordinates
+# mm, for lengths: where a cut touches a fillet's end at its wall, rounding of 1e-14 mm moves that end along
+# the wall by the root of 2 r times that
+SAME_LENGTH = 1e-6
 
 
 @dataclass(frozen=True)
@@ -281,7 +284,7 @@ def _require_same(outer: Contour, shape: ElementShape) -> None:
         real = _without_pad(real, block.high, "below", block.end, name)
         if (
             abs(real.area - between(drawn, *span).area) > SAME_AREA * drawn.area
-            or abs(real.length - between(drawn, *span).length) > SAME_AREA * drawn.length
+            or abs(real.length - between(drawn, *span).length) > SAME_LENGTH
         ):
             raise CheckFailure(
                 f"the {name} is not a plain rectangle between slot and "

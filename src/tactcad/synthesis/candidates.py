@@ -15,6 +15,7 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from tactcad.circuit.element_signals import smallest_output
 from tactcad.design.materials import ALLOYS, Alloy
 from tactcad.design.tree import Design, SheetMaterial
 from tactcad.mechanics import as_built, ladder, strength, validity
@@ -89,6 +90,11 @@ class Stand:
     def give(self) -> float:
         """Compliance of the stop, mm/N, with all elements that the room takes."""
         return _with_rows(self.base, max(self.most // self.target.room.rows, 1)).stop_give
+
+    @cached_property
+    def smallest_output(self) -> float:
+        """What the read-out tells from none, V, with all elements that the room takes."""
+        return smallest_output(_with_rows(self.base, max(self.most // self.target.room.rows, 1)))
 
     @cached_property
     def height(self) -> float:
@@ -272,6 +278,7 @@ class Candidates:
             "strength": (self.largest_force * strong / self.yield_force - 1.0).max(axis=1),
             "stop": (self.largest_force * soft / np.maximum(least_gap, 1e-6) - 1.0).max(axis=1),
             "readout": (volts / min(readout.highest, -readout.lowest) - 1.0).max(axis=1),
+            **self._resolution,
             "room.elements": np.maximum(self.total / room.elements[1], room.elements[0] / self.total) - 1.0,
             "room.width": s.widths[np.minimum(self.in_a_row, s.in_a_row)] / room.width - 1.0,
             "room.length": length / room.length - 1.0,
@@ -282,6 +289,14 @@ class Candidates:
                 -1.0,
             ),
         }
+
+    @property
+    def _resolution(self) -> dict[str, Array]:
+        wish = self.stand.base.readout.force_resolution
+        if wish is None:
+            return {}
+        told = 1e3 * self.stand.smallest_output / self.elements.per_force  # mN
+        return {"readout.force_resolution": (told / wish - 1.0).max(axis=1)}
 
     @cached_property
     def violation(self) -> Array:

@@ -57,12 +57,14 @@ class Elements:
     section      their hinges
     stiffness    K, N/mm; NaN beyond the estimator's range
     signal       K_v, V/mm
+    per_force    V/N behind the amplifier
     free         as made: what of them carries load, out of the clamp
     """
 
     section: HingeSection
     stiffness: Array
     signal: Array
+    per_force: Array
     free: Elements | None = None
 
 
@@ -72,11 +74,13 @@ def elements(section: HingeSection, design: Design) -> Elements:
     fitted = ladder.evaluate(section)
     inside = fitted.valid
     safe = section if inside.all() else section.rows(np.flatnonzero(inside.ravel()))
-    signal = np.full(section.shape, np.nan)
+    signal, per_force = np.full((2, *section.shape), np.nan)
     if inside.any():
-        per_mm = readout.volts_per_strain(gauge.factor, design_readout(design))
-        signal[inside] = (per_mm * gauge_signal.foil_strain_per_deflection(safe, gauge)).reshape(-1)
-    return Elements(section, fitted.stiffness, signal)
+        per_strain = readout.volts_per_strain(gauge.factor, design_readout(design))
+        per_newton = per_strain * gauge_signal.foil_strain_per_force(safe, gauge)
+        per_force[inside] = per_newton.reshape(-1)
+        signal[inside] = (per_newton * gauge_signal.stiffness(safe, gauge)).reshape(-1)
+    return Elements(section, fitted.stiffness, signal, per_force)
 
 
 def as_made(section: HingeSection, design: Design, layer: Array | float, turn: Array | float) -> Elements:
@@ -84,7 +88,7 @@ def as_made(section: HingeSection, design: Design, layer: Array | float, turn: A
     its turn adds deflection, and no strain under the gauge. The section stays what can be measured."""
     cut = elements(as_built.without_layer(section, layer), design)
     soft = as_built.in_clamp(section, cut.stiffness, turn) / cut.stiffness
-    return Elements(section, cut.stiffness * soft, cut.signal * soft, cut)
+    return Elements(section, cut.stiffness * soft, cut.signal * soft, cut.per_force, cut)
 
 
 def reading_noise(design: Design) -> float:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import differential_evolution
 
+from tactcad.checks.without_solids import quick_failures, slow_failures
 from tactcad.design.design_text import design_text
 from tactcad.design.load import parse
 from tactcad.design.messages import InputError
@@ -30,6 +31,7 @@ WORTH = 1e-3  # relative; a gain below is not worth holding against the rules ag
 FAR = 1e3  # goal of a candidate that violates limits, and on
 
 Goal = Callable[[Candidates], Array]
+Refusals = Callable[[Design], set[str]]
 
 
 @dataclass(frozen=True)
@@ -60,19 +62,26 @@ class Found:
 
 
 def refusals(design: Design) -> set[str]:
-    """Rules that a design breaks, or the field that its own file would be refused for."""
+    """Rules that a design breaks, the field that its own file would be refused for, or quick checks that it
+    fails."""
     try:
         parse(design_text(design), design.name)
     except InputError as error:
         return {error.where}
-    return {f"rule {finding.check}" for finding in broken_rules(design)}
+    broken = {f"rule {finding.check}" for finding in broken_rules(design)}
+    return broken or {f"check {finding.check}" for finding in quick_failures(design)}
+
+
+def all_refusals(design: Design) -> set[str]:
+    """As `refusals`, with the checks that take a second."""
+    return refusals(design) or {f"check {finding.check}" for finding in slow_failures(design)}
 
 
 def search(
     stand: Stand,
     goal: Goal,
     *,
-    rules: bool = True,
+    rules: Refusals | None = refusals,
     start: Array | None = None,
     within: float = 1e-4,
     seed: int = SEED,
@@ -86,7 +95,7 @@ def search(
     goal
         To be made least among candidates that keep every limit, (candidates,).
     rules
-        Whether the best are held against the rules of designs.
+        Why a design is refused; None where the best are not held against rules and checks.
     start
         A candidate's numbers to start from.
     within
@@ -100,10 +109,10 @@ def search(
     best: dict = {"goal": np.inf, "row": None, "looked": 0, "refused": {}}
     tried: dict[bytes, bool] = {}
 
-    def keeps_rules(row: Array) -> bool:
+    def keeps_rules(row: Array, rules: Refusals) -> bool:
         key = np.rint(row).astype(int).tobytes()
         if key not in tried:
-            why = refusals(realised(stand.candidates(row[np.newaxis])))
+            why = rules(realised(stand.candidates(row[np.newaxis])))
             for name in why:
                 best["refused"][name] = best["refused"].get(name, 0) + 1
             tried[key] = not why
@@ -120,7 +129,7 @@ def search(
         for i in np.argsort(out):
             if out[i] >= FAR or out[i] >= best["goal"] * (1.0 - WORTH if best["row"] is not None else 1.0):
                 break
-            if rules and not keeps_rules(rows[i]):
+            if rules and not keeps_rules(rows[i], rules):
                 out[i] = FAR * 0.9
                 continue
             best["goal"], best["row"] = float(out[i]), np.rint(rows[i])

@@ -9,6 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
+from tactcad.checks.without_solids import slow_failures
+from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.lab import array_estimate
 from tactcad.mechanics.section import Array
@@ -20,7 +22,7 @@ from .candidates import Candidates, Stand, stands
 from .interval import Bounds, bounds, coupled_estimate
 from .made_arrays import MadeSensor, Yield
 from .realise import origins
-from .search import FAR, Found, Goal, search
+from .search import FAR, Found, Goal, all_refusals, refusals, search
 from .shares import Share, half_space_shares, variance_shares
 from .target import Target
 
@@ -53,6 +55,7 @@ class Synthesis:
     made        its yield
     solid       K of every element by solid elements, N/mm
     met         whether the target is
+    unknown     what of the report is not known, and why
     binding     fields whose easing narrows the interval; None where that was not searched
     """
 
@@ -69,6 +72,7 @@ class Synthesis:
     solid: tuple[float, ...] = ()
     evaluations: int = 0
     left_out: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
     @cached_property
     def design(self) -> Design:
@@ -159,9 +163,12 @@ def attempt(target: Target, arrays: int = ARRAYS, within: float = 1e-3) -> Synth
     """
     looked, best = 0, None
     for margin, some in tries(target):
-        found = [search(stand, goal_of(target, margin), within=within) for stand in some]
-        looked += sum(one.evaluations for one in found)
-        chosen = min(found, key=lambda f: (not f.accepted, f.goal))
+        for rules in (refusals, all_refusals):
+            found = [search(s, goal_of(target, margin), rules=rules, within=within) for s in some]
+            looked += sum(one.evaluations for one in found)
+            chosen = min(found, key=lambda f: (not f.accepted, f.goal))
+            if not (chosen.accepted and slow_failures(chosen.design)):
+                break  # else once more, where whatever would be the best yet is held against slow checks too
         made, wanted = _made(target, chosen, arrays)
         met = chosen.accepted and made.share >= target.target.share and chosen.half_width <= wanted
         this = Synthesis(target, chosen, wanted, made, met)
@@ -248,7 +255,7 @@ def design(
     got = attempt(target, arrays)
     if not got.met:
         return _with_changes(got, arrays, tell, go_on)
-    skipped = []
+    skipped, unknown = [], []
     for i, (what, step) in enumerate(steps, start=1):
         try:
             go_on()
@@ -256,7 +263,9 @@ def design(
             got = step(got, go_on)
         except TimeIsOver:
             skipped.append(what)
-    return replace(got, left_out=tuple(skipped))
+        except CheckFailure as why:
+            unknown.append(f"{what}: not known, because {why}")
+    return replace(got, left_out=tuple(skipped), unknown=tuple(unknown))
 
 
 def _with_shares(got: Synthesis, _: GoOn) -> Synthesis:
@@ -340,7 +349,7 @@ def _with_front(got: Synthesis, go_on: GoOn) -> Synthesis:
         found = _search_near(wish.with_("stock.hinge_tolerances", (finest,)), got.found, _narrowest)
         if found.accepted:
             entries.append(Alternative(f"tolerance-{finest:g}", f"hinges within {finest:g} mm", found))
-    return replace(got, front=tuple(entries))
+    return replace(got, front=tuple(e for e in entries if not slow_failures(e.found.design)))
 
 
 def _with_ratios(got: Synthesis, go_on: GoOn) -> Synthesis:

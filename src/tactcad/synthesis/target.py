@@ -282,6 +282,12 @@ def _refuse_contradictions(target: Target) -> None:
         raise InputError("object", "needs one of stiffness and modulus", legal="stiffness = [2, 10] (N/mm)")
     if o.stiffness and o.thickness:
         raise InputError("object.thickness", "belongs to a modulus", value=o.thickness, legal="left out")
+    for path, values in (
+        ("stock.sheets", target.stock.sheets),
+        ("stock.hinge_tolerances", target.stock.hinge_tolerances),
+    ):
+        if len(set(values)) < len(values):
+            raise InputError(path, "not a list of different numbers", value=list(values), legal="each once")
     for path, pair in (
         ("object.stiffness", o.stiffness),
         ("object.modulus", o.modulus),

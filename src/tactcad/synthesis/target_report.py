@@ -110,7 +110,7 @@ def _beyond(got: Synthesis) -> dict[str, float]:
 
 def _notes(got: Synthesis) -> list[str]:
     """What the design does not say of itself."""
-    notes = []
+    notes = list(got.unknown)
     for left in got.scenes_left_out:
         unlike = left.scene == CALIBRATION.name and got.target.known.how == "calibrated"
         notes.append(

@@ -17,8 +17,11 @@ from .target_report import record, report_json, report_page
 
 
 def refuse_taken(out: str | Path) -> None:
-    """Raise InputError where `out` is no new or empty folder."""
+    """Raise InputError where `out` is no new or empty folder, which is replaced in one step."""
     path = absolute(out)
+    if os.path.islink(path):
+        legal = "the folder that it leads to, or a new folder"
+        raise InputError("--out", "is a link", value=str(out), legal=legal)
     if os.path.lexists(path) and not (path.is_dir() and not os.listdir(path)):
         raise InputError(
             "--out", "is there already and not an empty folder", value=str(out), legal="a new folder"
