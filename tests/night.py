@@ -27,7 +27,7 @@ from night_items import KILLS, ROOT, Item, Night  # noqa: E402
 from random_designs import Counts, Judged  # noqa: E402
 
 from tactcad.cli.progress import slow_work  # noqa: E402
-from tactcad.design.files import write_whole  # noqa: E402
+from tactcad.design.files import scratch_folder, write_whole  # noqa: E402
 from tactcad.export.contents import sha256_of  # noqa: E402
 from tactcad.export.inputs import digest  # noqa: E402
 from tactcad.sweep.on_dask import all_done, cluster, cores  # noqa: E402
@@ -77,7 +77,11 @@ def carried_out(orders: list[Item], workers: int) -> int:
     left = [item for item in orders if item.found() is None]
     if not left:
         return 0
-    with slow_work(sys.stderr) as tell, cluster(None, workers, [], lambda: None, print) as client:
+    with (
+        slow_work(sys.stderr) as tell,
+        scratch_folder("night") as scratch,
+        cluster(None, workers, [], lambda: None, print, scratch) as client,
+    ):
         before = len(orders) - len(left)
         tell(before, len(orders), "tried")
         for n, _ in enumerate(all_done(client, left), before + 1):

@@ -64,32 +64,46 @@ def _end(number: int, _frame: object) -> None:
     if os.getpid() != _owner:
         os._exit(128 + number)
     past_ending()
-    _kill_helpers()
+    helpers = _stopped_helpers()
     for put_away in reversed(_unfinished):
         try:
             put_away()
         except Exception:
             pass  # the next run removes it
+
+    def leave(*_: object) -> None:
+        for helper in helpers:
+            try:
+                os.kill(helper, signal.SIGKILL)
+            except OSError:
+                pass
+        os._exit(128 + number)
+
     for each in SAID:  # a second Ctrl-C ends the process even while the line below waits for its reader
-        signal.signal(each, signal.SIG_DFL)
+        signal.signal(each, leave)
     line = f"tactcad: {SAID[signal.Signals(number)]}; what was not finished is as it was before\n"
     try:
         os.write(2, (("\r\x1b[K" if os.isatty(2) else "") + line).encode())
     except OSError:
         pass  # the exit status says it too
-    os._exit(128 + number)
+    leave()
 
 
-def _kill_helpers(of: str = "self") -> None:
-    """Kill the processes that this one started, and theirs. Each is stopped before its own children are
-    listed, or it could start another meanwhile.
+def _stopped_helpers(of: str = "self") -> list[int]:
+    """Stop the processes that this one started, and theirs, each before its own children are listed, or it
+    could start another meanwhile: their numbers. A thread of ours could do so when one is killed.
     """
+    stopped: list[int] = []
     try:
-        for thread in os.listdir(f"/proc/{of}/task"):
+        threads = os.listdir(f"/proc/{of}/task")
+    except OSError:
+        threads = []  # no such list on this system, or the process has ended
+    for thread in threads:
+        try:
             with open(f"/proc/{of}/task/{thread}/children", encoding="ascii") as children:
                 for child in children.read().split():
                     os.kill(int(child), signal.SIGSTOP)
-                    _kill_helpers(child)
-                    os.kill(int(child), signal.SIGKILL)
-    except OSError:
-        pass  # no such list on this system, or the process has ended
+                    stopped += [int(child), *_stopped_helpers(child)]
+        except OSError:
+            pass  # the thread has ended
+    return stopped

@@ -11,6 +11,12 @@ from pathlib import Path
 
 import psutil
 
+from tactcad.cli.main import main
+from tactcad.sweep.kept import claimed
+from tactcad.sweep.measured import made_by
+from tactcad.sweep.on_dask import SweepTask
+from tactcad.sweep.study import read_study
+
 SMALL = """
 [study]
 name = "small"
@@ -29,6 +35,12 @@ range = [6, 9]
 what = ["solid", "strength"]
 elements = [4, 9]
 """
+
+# Three designs whose words a spreadsheet would run, or take an apostrophe from.
+WORDS = ["=cmd|' /C calc'!A0", "@SUM(1)", "'-plain"]
+THREE = f"""[study]\nname = "three"\nsampling = "list"\n[vary."element.hinge_thickness"]
+values = [0.25, 0.3, 0.35]\n[vary."design.title"]\nvalues = {WORDS}
+[measure]\nwhat = ["solid"]\nelements = [4]\n"""
 
 # Eight tasks of half a second each.
 ELEMENTS = """
@@ -77,15 +89,22 @@ def tables(folder: Path) -> dict[str, bytes]:
     }
 
 
+def finished(path: Path, out: Path) -> int:
+    """A study of one task done in this process: the command's status, which finds nothing left to compute."""
+    study = read_study(path)
+    folder = claimed(study, out)
+    SweepTask(study, made_by(study.measure.what), str(folder), 0, study.count).carry_out()
+    return main(["sweep", str(path), "--out", str(out)])
+
+
 def entries(folder: Path) -> dict[str, int]:
     """The store's finished tasks, each with the number of its file: another one if it was written again."""
     return {p.name: p.stat().st_ino for p in (folder / "store").glob("??/*") if len(p.name) == 64}
 
 
-def started(*command: object) -> subprocess.Popen[str]:
-    return subprocess.Popen(
-        list(map(str, command)), env=ONE_THREAD, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def started(*command: object, **places: str) -> subprocess.Popen[str]:
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return subprocess.Popen(list(map(str, command)), env=ONE_THREAD | places, **pipes)
 
 
 def computing(process: subprocess.Popen) -> list[psutil.Process]:

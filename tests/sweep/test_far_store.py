@@ -8,11 +8,12 @@ import pickle
 import fsspec
 import pyarrow.parquet as pq
 import pytest
-from small_study import ELEMENTS, swept, tables, written
+from small_study import ELEMENTS, finished, swept, tables, written
 
 from tactcad.cli.main import main
 from tactcad.design.messages import CheckFailure
 from tactcad.sweep.far_store import FarStore
+from tactcad.sweep.kept import store_apart
 from tactcad.sweep.measured import made_by
 from tactcad.sweep.on_dask import SweepTask
 from tactcad.sweep.study import read_study
@@ -79,6 +80,31 @@ def test_an_address_that_cannot_be_is_one_line(tmp_path, capsys, monkeypatch, ad
     err = capsys.readouterr().err
     assert err.startswith("tactcad: --store: ") and said in err and err.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("address", ["out", "out/far", "link", "local://{}/done/../done", "done/store"])
+def test_a_store_is_no_studys_folder(tmp_path, capsys, monkeypatch, address):
+    """Refused before anything is made; what lies in the other study's folder stays as it is."""
+    monkeypatch.chdir(tmp_path)
+    path = written(tmp_path)
+    assert finished(path, tmp_path / "done") == 0
+    (tmp_path / "link").symlink_to("done")
+    before = sorted(tmp_path.rglob("*"))
+    capsys.readouterr()
+    assert main(["sweep", str(path), "--out", "out", "--store", address.format(tmp_path)]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith("tactcad: --store: ") and err.count("\n") == 1, err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("address", ["out/store", "./out/../out/store/", "file://{}/out/store"])
+def test_the_default_store_spelled_out(tmp_path, monkeypatch, address):
+    monkeypatch.chdir(tmp_path)
+    path, out, address = written(tmp_path), tmp_path / "out", address.format(tmp_path)
+    assert store_apart(address, out) is None
+    assert finished(path, out) == 0
+    assert main(["sweep", str(path), "--out", "out", "--store", address]) == 0  # nothing is left to compute
+    assert store_apart("far", out) == str(tmp_path / "far")  # a worker has another working folder
 
 
 def test_a_place_that_refuses_is_one_line(tmp_path):

@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from scipy.stats import qmc
-from small_study import SMALL, swept, written
+from small_study import SMALL, THREE, WORDS, finished, swept, written
 
 from tactcad.cli.main import main
 from tactcad.sweep.study_page import first_order_share
@@ -43,6 +43,32 @@ def test_the_page_stands_alone(tmp_path, scheduler):
     assert "element.hinge_thickness" in page and "solid.E4.stiffness" in page and page.count("<svg") == 2
     assert not re.findall(r"(?:src|href)=[\"'](?!#|data:image)", page)
     assert "solid.E9.stiffness: most by element.hinge_thickness" in page
+
+
+def test_three_designs_have_pairs(tmp_path):
+    assert finished(written(tmp_path, THREE), tmp_path / "out") == 0
+    assert main(["sweep", "plot", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "plot.html").read_text()
+    assert "3 designs were measured: shares and main effects take more than 10" in page
+    assert page.count("<svg") == 1 and "thickness" in page and "title" in page and "stiffness" in page
+
+
+@pytest.mark.parametrize("values, measured", [("[0.3, 0.3]", 2), ("[0.3, 2.5]", 1), ("[2.5, 2.6]", 0)])
+def test_what_lacks_is_said(tmp_path, capsys, values, measured):
+    text = THREE.replace("[0.25, 0.3, 0.35]", values).replace(str(WORDS), '["A", "A"]')
+    assert finished(written(tmp_path, text), tmp_path / "out") == (measured == 0)
+    capsys.readouterr()
+    assert main(["sweep", "plot", str(tmp_path / "out")]) == 1
+    said = f"no varied field differs among the designs that were measured ({measured} of 2)"
+    assert capsys.readouterr().err == f"tactcad: {tmp_path}/out: nothing to plot: {said}\n"
+
+
+def test_another_table_than_the_manifests_is_refused(tmp_path, capsys):
+    assert finished(written(tmp_path, THREE), tmp_path / "out") == 0
+    table = tmp_path / "out" / "results.parquet"
+    pq.ParquetWriter(table, pq.read_schema(table)).close()  # columns without rows
+    assert main(["sweep", "plot", str(tmp_path / "out")]) == 2
+    assert "results.parquet: is not the table that manifest.json names" in capsys.readouterr().err
 
 
 @pytest.mark.slow

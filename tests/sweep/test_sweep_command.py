@@ -9,17 +9,19 @@ import hashlib
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-from small_study import ONE_THREAD, SMALL, entries, swept, tables, written
+from small_study import ONE_THREAD, SMALL, THREE, WORDS, entries, finished, swept, tables, written
 
 from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import from_table, read
+from tactcad.design.messages import CheckFailure
 from tactcad.sweep.designs_taken import designs_taken, table_of
 from tactcad.sweep.kept import claimed
 from tactcad.sweep.measured import made_by
@@ -224,3 +226,30 @@ def test_a_task_handed_out_twice_is_computed_once(tmp_path):
     second = task.carry_out()
     assert (first.computed, second.computed) == (True, False) and first.designs == second.designs == 24
     assert len(kept) == 1 and entries(folder) == kept
+
+
+def test_a_folder_in_the_place_of_an_entry_is_named(tmp_path):
+    path, out = written(tmp_path), tmp_path / "out"
+    assert finished(path, out) == 0
+    (name,) = entries(out)
+    place = out / "store" / name[:2] / name
+    place.unlink()
+    place.mkdir()
+    with pytest.raises(CheckFailure, match=re.escape(f"Is a directory: {place}")):
+        finished(path, out)
+
+
+def test_what_a_killed_run_left_of_its_mark_is_no_reason_to_refuse(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / ".study.json.tactcad-abcd1234.part").write_text("{")
+    claimed(read_study(written(tmp_path)), tmp_path / "out")
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["study.json"]
+
+
+def test_no_word_of_the_csv_is_a_formula(tmp_path):
+    """Parquet has the words as they are, and of CSV one apostrophe is taken away."""
+    assert finished(written(tmp_path, THREE), tmp_path / "out") == 0
+    kept = [row["design.title"] for row in rows(tmp_path)]
+    assert kept == ["'=cmd|' /C calc'!A0", "'@SUM(1)", "''-plain"] and [word[1:] for word in kept] == WORDS
+    table = pq.read_table(tmp_path / "out" / "results.parquet").to_pylist()
+    assert [row["design.title"] for row in table] == WORDS

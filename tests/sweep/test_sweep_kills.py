@@ -8,6 +8,7 @@ import shutil
 import signal
 import sys
 import time
+from pathlib import Path
 
 import psutil
 import pytest
@@ -58,6 +59,44 @@ def test_a_killed_client_and_killed_workers(undisturbed, tmp_path):
     assert len(after) == 8 and {name: after[name] for name in finished} == finished
     record = json.loads(said)  # the worker may have kept a task and died before it said so
     assert record["kept"] >= len(finished) and record["kept"] + record["computed"] == 8
+
+
+def litter(folder: Path) -> set[str]:
+    """What lies there beside finished tasks and the marks of their folders."""
+    found = [p for p in (folder / "out").rglob("*") if p.is_file() and p.name not in entries(folder / "out")]
+    found += [*(folder / "tmp").iterdir(), *(folder / "home").iterdir()]
+    return {str(p.relative_to(folder)) for p in found} - {
+        "out/study.json",
+        "out/store/secret",
+        "out/store/CACHEDIR.TAG",
+    }
+
+
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM", "SIGHUP", "SIGKILL"])
+def test_a_stopped_sweep_leaves_finished_tasks_only(undisturbed, tmp_path, sent):
+    """While it starts, and among its tasks; after SIGKILL the next run removes what is left, even where
+    nothing is left to compute."""
+    path, wanted = undisturbed
+    out, places = tmp_path / "out", {"TMPDIR": str(tmp_path / "tmp"), "HOME": str(tmp_path / "home")}
+    (tmp_path / "tmp").mkdir()
+    (tmp_path / "home").mkdir()
+    command, number = [*TACTCAD, "sweep", path, "--out", out, "--json"], getattr(signal, sent)
+    for least in (0, 1, 4):
+        client = started(*command, **places)
+        process = psutil.Process(client.pid)
+        wait_for(lambda: process.children() and len(entries(out)) >= least)
+        helpers = process.children(recursive=True)
+        client.send_signal(number)
+        _, err = client.communicate(timeout=60)
+        assert client.returncode == (-number if sent == "SIGKILL" else 128 + number), err
+        wait_for(lambda: not any(h.is_running() and h.status() != psutil.STATUS_ZOMBIE for h in helpers))
+        assert sent == "SIGKILL" or (litter(tmp_path) == set() and "tactcad: " in err.splitlines()[-1]), err
+    if sent == "SIGKILL":
+        assert litter(tmp_path)
+        shutil.copytree(path.parent / "out" / "store", out / "store", dirs_exist_ok=True)
+    said, err = started(*command, **places).communicate(timeout=120)
+    assert tables(out) == wanted and litter(tmp_path) == {f"out/{name}" for name in wanted}, err
+    assert sent != "SIGKILL" or json.loads(said)["computed"] == 0
 
 
 def test_a_killed_scheduler_of_a_cluster(undisturbed, tmp_path):

@@ -13,7 +13,7 @@ import signal
 import stat
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from itertools import islice
 from math import isfinite
 from pathlib import Path
@@ -266,7 +266,8 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
     parent = Path("temporary folder")
     try:
         parent = absolute(tempfile.gettempdir())
-        sweep_folders(parent, stem)
+        with suppress(OSError):  # a killed run's helper may still write there: the next run sweeps
+            sweep_folders(parent, stem)
         with held_folder(parent, stem) as folder:
             yield folder
     except OSError as error:

@@ -155,7 +155,8 @@ class Cache:
 
     def _complain(self, error: OSError) -> None:
         if not self._complained:
-            self.say(f"cache: {self.root} cannot keep an entry ({error.strerror}); going on without")
+            why = f"{error.strerror}: {error.filename2 or error.filename or self.root}"
+            self.say(f"cache: {self.root} cannot keep an entry ({why}); going on without")
         self._complained = True
 
 

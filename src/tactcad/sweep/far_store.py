@@ -7,7 +7,7 @@ at all, by fsspec's transactions, and verified when it is read. Whoever may writ
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.contents import sha256_of
@@ -28,15 +28,8 @@ class FarStore:
     """
 
     def __init__(self, address: str) -> None:
-        import fsspec
-
         self.address = address
-        try:
-            self._files, self._root = fsspec.url_to_fs(address)
-            self._files.makedirs(self._root, exist_ok=True)
-        except Exception as error:  # each kind of place has its own
-            legal = "a folder, or an address such as s3://bucket/path"
-            raise InputError("--store", _why(error), value=address, legal=legal) from error
+        self._files, self._root = files_at(address, make=True)
 
     def get(self, key: str) -> bytes | None:
         """The bytes kept under the key, None where there are none or they are damaged."""
@@ -78,6 +71,20 @@ class FarStore:
 
     def _refusal(self, error: Exception) -> CheckFailure:
         return CheckFailure(f"--store {self.address}: {_why(error)}; what was finished is kept")
+
+
+def files_at(address: str, make: bool = False) -> tuple[Any, str]:
+    """fsspec's file system of an address, and the path in it. Raises InputError where there can be none."""
+    import fsspec
+
+    try:
+        files, root = fsspec.url_to_fs(address)
+        if make:
+            files.makedirs(root, exist_ok=True)
+    except Exception as error:  # each kind of place has its own
+        legal = "a folder, or an address such as s3://bucket/path"
+        raise InputError("--store", _why(error), value=address, legal=legal) from error
+    return files, root
 
 
 def _why(error: Exception) -> str:

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactcad.design.files import absolute, make_folder, read_json, write_whole
+from tactcad.design.held import OWN
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.export.cache import Cache
+from tactcad.export.cache import MARK_NAME, UNFINISHED, Cache
 from tactcad.export.contents import sha256_of
 
-from .far_store import FarStore
+from .far_store import FarStore, files_at
 from .measured import EXPORT, as_bytes, export_folder, from_bytes
 from .study import Study
 
@@ -66,6 +68,14 @@ class Kept:
             why = " ".join(self._said[-1:]).removesuffix("; going on without")
             raise CheckFailure(f"{self.folder}: a result cannot be kept: {why}")
 
+    def tidy(self, alone: bool = False) -> None:
+        """Remove from the folder's own store what killed workers left half written; where this process is
+        `alone` with its own workers, which are stopped, what these were writing, too."""
+        if isinstance(self._store, Cache):
+            self._store.trim(sys.maxsize)
+        for left in (self.folder / STORE).glob(f"??/{UNFINISHED}*") if alone else ():
+            left.unlink(missing_ok=True)
+
     def _key(self, start: int, stop: int) -> str:
         return f"{self._prefix} {start} {stop}"
 
@@ -90,7 +100,8 @@ def claimed(study: Study, out: str | Path) -> Path:
     folder = absolute(out)
     make_folder(folder)
     if not (folder / MARK).exists():
-        if left := sorted(os.listdir(folder)):
+        killed = f".{MARK}{OWN}"  # what a killed run's mark was written to
+        if left := sorted(n for n in os.listdir(folder) if not n.startswith(killed)):
             what = f"holds files that are no study's, such as {left[0]}"
             raise InputError(str(out), what, legal="a new or empty folder, or one of this study")
         mark = {"schema": SCHEMA, "name": study.study.name, "study": study.identity}
@@ -104,6 +115,23 @@ def claimed(study: Study, out: str | Path) -> Path:
             legal="a folder of its own for every study",
         )
     return folder
+
+
+def store_apart(address: str, folder: Path) -> str | None:
+    """The address of a store, a path from the root where it is one; None where it is the folder's own store.
+
+    Raises InputError where it is another place in the folder, another study's folder or store, or none.
+    """
+    files, root = files_at(address)
+    if "file" not in files.protocol:
+        return address
+    place, home, own = (Path(os.path.realpath(p)) for p in (root, folder, folder / STORE))
+    if place == own:
+        return None
+    if home in (place, *place.parents) or (place / MARK).exists() or (place / MARK_NAME).exists():
+        what, legal = "is a study's own folder, or its store", "a place apart; left out: DIR/store"
+        raise InputError("--store", what, value=address, legal=legal)
+    return root
 
 
 def mark_of(folder: Path) -> dict[str, Any]:

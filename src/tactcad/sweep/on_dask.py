@@ -19,7 +19,6 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
 from tactcad.account import KERNEL
-from tactcad.design.files import scratch_folder
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.export.inputs import Inputs, reasons
 
@@ -128,6 +127,7 @@ def cluster(
     loads: list[str],
     prepare: Callable[[], None],
     say: Callable[[str], None],
+    scratch: Path,
 ) -> Iterator[Client]:
     """A client of the scheduler at that address, or of processes on this machine where there is none.
 
@@ -143,6 +143,8 @@ def cluster(
         What is to be done here while they do.
     say
         Receives the dashboard's address.
+    scratch
+        A folder for temporary files of the processes on this machine.
 
     Raises
     ------
@@ -153,19 +155,18 @@ def cluster(
 
     with ExitStack() as stack:
         if address is None:
-            stack.enter_context(_environment(ENVIRONMENT))
-            _load_ahead(loads)  # in a process of its own
+            stack.enter_context(_environment(ENVIRONMENT | {"TMPDIR": str(scratch)}))
+            stack.enter_context(_loaded_ahead(loads, scratch))  # in a process of its own
         prepare()  # in no thread: Dask's own would wait for the interpreter's lock, in all for longer
         loaded = _distributed()
         ours = {"distributed.worker.daemon": False, "distributed.worker.multiprocessing-method": "forkserver"}
-        stack.enter_context(dask.config.set({**QUIET, **ours}))
+        stack.enter_context(dask.config.set({**QUIET, **ours, "temporary-directory": str(scratch)}))
         if address is not None:
             client = stack.enter_context(_connected(loaded.Client, address))
             _refuse_without_tactcad(client)
             say(f"dashboard: {client.dashboard_link}; workers now: {len(client.nthreads())}")
         else:
-            scratch = stack.enter_context(scratch_folder("sweep"))
-            local = stack.enter_context(_started(loaded.LocalCluster, workers, scratch))
+            local = stack.enter_context(_started(loaded.LocalCluster, workers))
             client = stack.enter_context(loaded.Client(local))
             say(f"dashboard: {client.dashboard_link}")
         yield client
@@ -183,21 +184,30 @@ def _environment(values: Mapping[str, str]) -> Iterator[None]:
         os.environ.update({name: value for name, value in before.items() if value is not None})
 
 
-def _load_ahead(modules: list[str]) -> None:
-    """Start the process that workers are forked from: what it has loaded none of them loads again, and having
-    no threads it can be forked."""
-    multiprocessing.set_forkserver_preload(["distributed", *modules])
-    forkserver.ensure_running()
+@contextmanager
+def _loaded_ahead(modules: list[str], scratch: Path) -> Iterator[None]:
+    """The process that workers are forked from: what it has loaded none of them loads again, and having no
+    threads it can be forked. It is asked by a socket in `scratch`."""
+    config: dict[str, object] = vars(multiprocessing.current_process())["_config"]
+    folder = os.open(scratch, os.O_RDONLY)  # by its number, as a socket's path has at most 107 bytes
+    config["tempdir"] = f"/proc/self/fd/{folder}"
+    try:
+        multiprocessing.set_forkserver_preload(["distributed", *modules])
+        forkserver.ensure_running()
+        yield
+    finally:
+        vars(forkserver)["_forkserver"]._stop()  # another one would look for a socket that is gone
+        config["tempdir"] = None
+        os.close(folder)
 
 
-def _started(local: type[LocalCluster], workers: int, scratch: Path) -> LocalCluster:
+def _started(local: type[LocalCluster], workers: int) -> LocalCluster:
     """Processes of one thread each."""
     try:
         return local(
             n_workers=workers,
             threads_per_worker=1,
             host="127.0.0.1",
-            local_directory=str(scratch),
             dashboard_address="127.0.0.1:0",
             silence_logs=logging.CRITICAL,
         )

@@ -55,7 +55,7 @@ class _Digested(io.BufferedWriter):
         return super().write(data)
 
 
-def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Tally:
+def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool, varied: Iterable[str]) -> Tally:
     """Write results.parquet, and results.csv where asked, each whole or not at all.
 
     Parameters
@@ -66,6 +66,8 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Ta
         Tables of one schema, in the order of the designs.
     with_csv
         Whether CSV is written too.
+    varied
+        Columns whose words are the user's: in CSV none of them is a formula.
 
     Raises
     ------
@@ -88,11 +90,23 @@ def write_tables(folder: Path, chunks: Iterable[pa.Table], with_csv: bool) -> Ta
                 writers.append(stack.enter_context(parquet))
                 if with_csv:
                     writers.append(stack.enter_context(pyarrow.csv.CSVWriter(files[CSV], table.schema)))
-            for writer in writers:
-                writer.write_table(table)
+            for n, writer in enumerate(writers):
+                writer.write_table(_without_formulas(table, varied) if n else table)
             tally.add(table)
     tally.sha256 = {name: file.sha256.hexdigest() for name, file in files.items()}
     return tally
+
+
+def _without_formulas(table: pa.Table, names: Iterable[str]) -> pa.Table:
+    """For CSV: an apostrophe before each word that a spreadsheet would run, and another where one is there
+    already, so that the first can always be taken away again."""
+    import pyarrow.compute as pc
+
+    for name in names:
+        if table[name].type == "string":
+            words = pc.replace_substring_regex(table[name], r"^('*[=+\-@\t\r])", r"'\1")
+            table = table.set_column(table.column_names.index(name), name, words)
+    return table
 
 
 def _encoded(first: pa.Table) -> dict[str, Any]:

@@ -11,12 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactcad import __version__
-from tactcad.design.files import absolute, write_whole
+from tactcad.design.files import absolute, scratch_folder, write_whole
 from tactcad.design.messages import CheckFailure
+from tactcad.ending import unfinished
 
 from .designs_taken import prepared
 from .far_store import FarStore
-from .kept import MARK, SCHEMA, Kept, claimed
+from .kept import MARK, SCHEMA, Kept, claimed, store_apart
 from .measured import as_rows, designs_a_task, loaded_first, made_by
 from .on_dask import Done, SweepTask, all_done, cluster, refuse_unanswered
 from .results_table import Tally, write_tables
@@ -82,26 +83,28 @@ def sweep(
     CheckFailure
         Workers died of a task, or the scheduler is gone; what was finished stays.
     """
-    if not (
-        absolute(out) / MARK
-    ).exists():  # what cannot be used is refused before the folder is this study's
-        if store is not None:
+    apart = store_apart(store, absolute(out)) if store is not None else None
+    # what cannot be used is refused before the folder is this study's
+    if not (absolute(out) / MARK).exists():
+        if store is not None and apart is not None:
             FarStore(store)
         if address is not None:
             refuse_unanswered(address)
     folder = claimed(study, out)
     inputs = made_by(study.measure.what)
-    kept = Kept(study, folder, inputs.key, store)
+    kept = Kept(study, folder, inputs.key, apart)
+    kept.tidy()
     step, count = designs_a_task(study), study.count
     tasks = [(start, min(start + step, count)) for start in range(0, count, step)]
     tell(0, count, "reading what is finished")
     missing = [task for task in tasks if kept.get(*task) is None]
-    orders = [SweepTask(study, inputs, str(folder), *task, store) for task in missing]
+    orders = [SweepTask(study, inputs, str(folder), *task, apart) for task in missing]
     work = _Work(count, sum(stop - start for start, stop in missing), tell)
     with_csv = with_csv or count <= MOST_CSV
-    clusters = cluster(address, min(workers, len(missing)), loaded_first(study), lambda: prepared(study), say)
-    with closing(work.done_on(clusters, orders)) as done:
-        tally = write_tables(folder, _chunks(kept, tasks, orders, done), with_csv)
+    with unfinished(lambda: kept.tidy(address is None)), scratch_folder("sweep") as scratch:
+        on = address, min(workers, len(missing)), loaded_first(study), lambda: prepared(study), say, scratch
+        with closing(work.done_on(cluster(*on), orders)) as done:
+            tally = write_tables(folder, _chunks(kept, tasks, orders, done), with_csv, study.vary)
     write_whole(folder / MANIFEST, _manifest(study, folder, tally))
     work.lap("writing")
     files, computed = (*tally.sha256, MANIFEST), work.computed

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,33 +42,48 @@ def write_page(out: str | Path) -> Path:
     InputError
         The folder is no study's, or its table is not there.
     CheckFailure
-        No field or no result varies, or hardly any design was measured.
+        No field or no result varies among the designs that were measured.
     """
     folder = Path(out)
     mark_of(folder)
-    manifest = read_json(folder / "manifest.json", MOST_BYTES, "a study's manifest")
+    manifest = _manifest(folder)
     vary = list(manifest["study"]["vary"])
     columns, words = _columns(folder, vary)
+    measured = manifest["designs"] - manifest["refused"]
     fields = [name for name in vary if name in columns]
     results = _results(columns, fields)
     if not fields or not results:
-        raise CheckFailure(f"{out}: nothing to plot: it needs a field and a result that vary")
+        lacking = f"no {'result' if fields else 'varied field'} differs among the designs that were measured"
+        raise CheckFailure(f"{out}: nothing to plot: {lacking} ({measured} of {manifest['designs']})")
     shown = results[:MOST_RESULTS]
+    sections = [_pairs_section(columns, fields, shown, words)]
+    summary = [f"{measured} designs were measured: shares and main effects take more than {LEAST_IN_BIN}"]
+    if measured > LEAST_IN_BIN:
+        summary = _summary(columns, fields, shown)
+        shares = _shares_section(columns, fields, shown, [name for name in vary if name not in columns])
+        sections = [shares, _effects_section(columns, fields, shown, words), *sections]
     report = ValidationReport(
         title=f"Study {manifest['study']['name']}",
         subtitle=f"{manifest['designs']} designs of {manifest['study']['table']['design']}, "
         f"{manifest['refused']} refused",
-        summary=tuple(_summary(columns, fields, shown)),
-        sections=(
-            _shares_section(columns, fields, shown, [name for name in vary if name not in columns]),
-            _effects_section(columns, fields, shown, words),
-            _pairs_section(columns, fields, shown, words),
-        ),
+        summary=tuple(summary),
+        sections=tuple(sections),
         colophon=f"Made of {PARQUET}, SHA-256 {manifest['files'][0]['sha256']}; results shown: "
         f"{len(shown)} of {len(results)} that vary.",
     )
     write_whole(folder / PAGE, to_html(report).encode())
     return folder / PAGE
+
+
+def _manifest(folder: Path) -> dict[str, Any]:
+    """The manifest of a finished study. Raises InputError where it has none, or not of this table."""
+    manifest = read_json(folder / "manifest.json", MOST_BYTES, "a study's manifest")
+    table, same = folder / PARQUET, False
+    with suppress(OSError, LookupError, TypeError), table.open("rb") as file:
+        same = hashlib.file_digest(file, "sha256").hexdigest() == manifest["files"][0]["sha256"]
+    if not same:
+        raise InputError(str(table), "is not the table that manifest.json names", legal="a finished study")
+    return manifest
 
 
 def _columns(folder: Path, vary: Sequence[str]) -> tuple[dict[str, Floats], dict[str, list[str]]]:
@@ -75,23 +92,19 @@ def _columns(folder: Path, vary: Sequence[str]) -> tuple[dict[str, Floats], dict
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    try:
-        file = pq.ParquetFile(folder / PARQUET)
-    except (OSError, pa.ArrowInvalid) as error:
-        raise InputError(
-            str(folder / PARQUET), f"cannot be read: {error}", legal="a finished study"
-        ) from None
+    file = pq.ParquetFile(folder / PARQUET)
     share = min(1.0, MOST_ROWS / max(1, file.metadata.num_rows))
     groups = (file.read_row_group(i) for i in range(file.num_row_groups))
     table = pa.concat_tables(group.take(_some(group.num_rows, share)) for group in groups)
     table = table.filter(table["valid"])
     numbers = [f.name for f in table.schema if pa.types.is_floating(f.type)]
-    columns = {name: table[name].to_numpy() for name in numbers if table.num_rows > LEAST_IN_BIN}
+    columns = {name: table[name].to_numpy() for name in numbers if table.num_rows}
     columns = {name: v for name, v in columns.items() if np.isfinite(v).all() and np.ptp(v) > 0}
     words = {}
+    most = LEAST_IN_BIN if table.num_rows <= LEAST_IN_BIN else most_bins(table.num_rows)
     for name in (n for n in vary if n not in numbers):
         found, which = np.unique(table[name].to_numpy(zero_copy_only=False).astype(str), return_inverse=True)
-        if 1 < len(found) <= most_bins(table.num_rows):
+        if 1 < len(found) <= most:
             words[name], columns[name] = found.tolist(), which.astype(float)
     return columns, words
 
