@@ -124,7 +124,7 @@ def test_a_scene_takes_three_files(tree):
         ("A = 1\n", "no RIG is declared in tactcad.scenes.rigs.lacking"),
         ("from ..rig import Rig\nRIG = Rig(name='lacking', tables=())\n", "missing 7 required"),
         (
-            "import dataclasses\nfrom .array import RIG as A\nRIG = dataclasses.replace(A, tables=('bond',))\n",
+            "import dataclasses as d\nfrom .array import RIG as A\nRIG = d.replace(A, tables=('bond',))\n",
             "rig array: a design has no table bond",
         ),
         ("from .bonding import RIG\n", "two rigs have one name"),

@@ -15,10 +15,9 @@ from tactcad.checks.check_report import Report
 from tactcad.checks.clearance import check_clearance
 from tactcad.checks.goes_together import COUNT
 from tactcad.checks.hinge_strength import check_strength
-from tactcad.checks.machining import MACHINED, check_machining
 from tactcad.checks.rigidity import check_rigidity, check_rigs
 from tactcad.checks.shop import DEFAULT, Shop, load_shop
-from tactcad.checks.wirecut import check_wirecut
+from tactcad.checks.without_solids import run_on_part
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.geometry import Record, geometry
@@ -172,10 +171,7 @@ class Reviewed:
     def _about(self, part: Part, shop: Shop) -> list[Finding]:
         if part.part_no not in self.known or self.known[part.part_no][0] != part:
             report = Report()
-            if part.process == "wire-cut":
-                report.run("wire-cut", check_wirecut, part, shop)
-            if part.process in MACHINED:
-                report.run("machining", check_machining, part, shop.machining)
+            run_on_part(report, part, shop)
             self.known[part.part_no] = (part, report.findings)
         return self.known[part.part_no][1]
 
