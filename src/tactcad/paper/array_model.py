@@ -22,7 +22,7 @@ from tactcad.parts.layout import Layout
 
 
 @dataclass(frozen=True)
-class Rig:
+class MeasuringRig:
     """Calibration and grasping; N, N/mm, mm. load_point: half-width of the roller's place;
     load_cell_accuracy: relative."""
 
@@ -57,7 +57,7 @@ class ArrayModel:
     tolerance: Tolerance
     stiffness_factor: float  # of the material's own modulus over the design's
     modulus_per_kelvin: float  # 1/K, by which the modulus falls
-    rig: Rig
+    rig: MeasuringRig
     layers: tuple[Layer, ...]  # on the leaf: the bond line first, where the design says what it is
     bond_line: bool
 
@@ -93,7 +93,7 @@ def from_design(design: Design) -> ArrayModel:
         design.tolerance,
         design.stiffness_factor or 1.0,
         modulus_per_kelvin(design.material.alloy),
-        Rig(
+        MeasuringRig(
             calibration.load_cell_stiffness,
             calibration.load_cell_accuracy,
             calibration.load_cell_resolution,
