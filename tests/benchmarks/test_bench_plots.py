@@ -6,8 +6,8 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from bench_plots import Panel, Point, error_against_time
 
-from tactcad.bench.figures import Panel, Point, error_against_time
 from tactcad.paper.plots import panels, place_labels
 
 CLUSTER = [

@@ -8,10 +8,10 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from bench_geometry import Prepared, count_wrong, kernel_verdict, mesh_verdict
+from known_pairs import GAPS, KINDS, known_pairs, lens
 from scipy.integrate import quad
 
-from tactcad.bench.pairs import GAPS, KINDS, known_pairs, lens
-from tactcad.bench.verdicts import Prepared, count_wrong, kernel_verdict, mesh_verdict
 from tactcad.parts.description import Extrusion
 
 PAIRS = list(known_pairs(2, seed=5))
