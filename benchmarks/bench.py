@@ -36,7 +36,7 @@ from bench_plots import figures
 from measuring import BENCHMARKS, RunPlan, environment, machine, peers, versions
 
 from tactcad.design.messages import CheckFailure
-from tactcad.paper.report import standalone
+from tactcad.report.report import standalone
 
 SCHEMA = "tactcad-bench-1"
 SHORT_SEED = 8  # any; a full run draws its own unless it is given one

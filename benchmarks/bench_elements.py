@@ -36,7 +36,7 @@ from tactcad.fem.solid_elements import solve_solid
 from tactcad.mechanics import ladder
 from tactcad.mechanics.register import BY_NAME
 from tactcad.mechanics.section import REFERENCE, HingeSection
-from tactcad.paper.report import sig
+from tactcad.report.report import sig
 
 try:
     from sksparse.cholmod import cholesky

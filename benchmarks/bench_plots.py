@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from tables import efficient, exponent
 
-from tactcad.paper import plots as drawing
-from tactcad.paper.plots import GREY, MARKERS, SERIES, drawn, log_ticks, panels, place_labels
-from tactcad.paper.report import Figure
+from tactcad.report import plots as drawing
+from tactcad.report.plots import GREY, MARKERS, SERIES, drawn, log_ticks, panels, place_labels
+from tactcad.report.report import Figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

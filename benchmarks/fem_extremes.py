@@ -180,7 +180,7 @@ def _sides(two_sided: bool) -> str:
 
 def picture(x: Extremes) -> str:
     """SVG text."""
-    from tactcad.paper import plots as d
+    from tactcad.report import plots as d
 
     with d.panels(2, 2, size=(11.2, 8.4)) as (figure, axes):
         _condition(axes[0, 0], x, d)

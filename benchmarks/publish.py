@@ -23,7 +23,7 @@ from tables import filled, lines, markdown
 
 from tactcad.design.messages import InputError
 from tactcad.mechanics.register import BY_NAME
-from tactcad.paper.report import sig
+from tactcad.report.report import sig
 
 REFERENCE = "benchmarks/results/reference.json"
 DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")

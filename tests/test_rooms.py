@@ -14,6 +14,7 @@ ROOMS = (
     "design",
     "contour",
     "mechanics",
+    "report",
     "fem",
     "parts",
     "scenes",

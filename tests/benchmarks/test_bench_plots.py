@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bench_plots import Panel, Point, error_against_time
 
-from tactcad.paper.plots import panels, place_labels
+from tactcad.report.plots import panels, place_labels
 
 CLUSTER = [
     Point("short", "closed form", 3.8e-8, 1.1),

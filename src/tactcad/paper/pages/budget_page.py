@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.budget import Budget
-from tactcad.paper.report import Figure, ReportSection, ReportTable, listed, percent, sig, tabulated
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, ReportSection, ReportTable, listed, percent, sig, tabulated
 
 MATTERS = 0.05
 

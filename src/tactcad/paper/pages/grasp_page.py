@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import Figure6, Figure7, Simulated
-from tactcad.paper.report import (
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Figure,
     ReportSection,
     ReportTable,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.inversion import Inversion, Inverted
-from tactcad.paper.report import Figure, Marked, ReportSection, ReportTable, interval, percent, sig
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, Marked, ReportSection, ReportTable, interval, percent, sig
 
 WELL = 5.0  # |condition number| below which a pair is called well conditioned
 FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called right

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.reference_element import Explanation, ReferenceElement
-from tactcad.paper.report import (
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Cell,
     Figure,
     Marked,

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.report import (
+from tactcad.paper.residuals import Residuals
+from tactcad.parts.wire_passes import WIRE_TOLERANCE
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Cell,
     Figure,
     Marked,
@@ -20,8 +22,6 @@ from tactcad.paper.report import (
     signed_percent,
     tabulated,
 )
-from tactcad.paper.residuals import Residuals
-from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
 SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.published import Published
-from tactcad.paper.report import (
+from tactcad.paper.table1_check import ColumnProduct, Table1Check
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Figure,
     Marked,
     ReportSection,
@@ -17,7 +18,6 @@ from tactcad.paper.report import (
     sig,
     signed_percent,
 )
-from tactcad.paper.table1_check import ColumnProduct, Table1Check
 
 
 def page(c: Table1Check, data: Published) -> ReportSection:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.published import Published
 from tactcad.paper.reference_element import ReferenceElement
 from tactcad.paper.reference_stiffness import UNITS, Table2Study
-from tactcad.paper.report import (
+from tactcad.paper.residuals import Residuals
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Figure,
     Marked,
     ReportSection,
@@ -18,7 +19,6 @@ from tactcad.paper.report import (
     sig,
     signed_percent,
 )
-from tactcad.paper.residuals import Residuals
 
 from .table2_findings import USABLE, Witness, findings, other_witnesses, supported, witnesses
 

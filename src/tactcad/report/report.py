@@ -15,7 +15,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from tactcad.lab.plain import plain
+from tactcad.report.plain import plain
 
 SCHEMA = "tactcad-validation-1"
 T = TypeVar("T")
@@ -169,7 +169,7 @@ def standalone(figure: Figure) -> str:
 def to_html(report: ValidationReport) -> str:
     """One page with everything inside: style, pictures, tables."""
     e = html.escape
-    style = (files("tactcad.paper") / "data" / "report.css").read_text("utf-8")
+    style = (files("tactcad.report") / "data" / "report.css").read_text("utf-8")
     contents = "".join(f'<li><a href="#{s.key}">{e(s.title)}</a></li>' for s in report.sections)
     body = "".join(_section(i, s) for i, s in enumerate(report.sections, 1))
     head = (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from tactcad.paper.report import Figure
+from tactcad.report.report import Figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
