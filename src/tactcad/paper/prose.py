@@ -53,3 +53,9 @@ def tabulated(
 
 def drawn(figure: Canvas, name: str, **said: object) -> Figure:
     return plots.drawn(figure, name, _pages()["caption"][name].format(**said))
+
+
+def effect_text(key: str, **said: object) -> tuple[str, str, str]:
+    """Of an effect of the uncertainty budget: its name, how its size is found, and what helps."""
+    text = _pages()["effect"][key]
+    return text["name"], text["how"].format(**said), text["remedy"].format(**said)
