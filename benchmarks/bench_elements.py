@@ -18,6 +18,7 @@ from functools import partial
 from pathlib import Path
 from unittest.mock import patch
 
+import calculix
 import numpy as np
 import samples
 from measuring import RunPlan, benchmark, interleaved
@@ -26,7 +27,7 @@ from scipy.sparse import csc_matrix
 from tables import efficient, goal, table, told
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import calculix, elasticity
+from tactcad.fem import elasticity
 from tactcad.fem.convergence import RATE, richardson
 from tactcad.fem.fem_ladder import stiffness
 from tactcad.fem.mapped_mesh import plane_mesh

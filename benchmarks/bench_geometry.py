@@ -32,6 +32,12 @@ T = TypeVar("T")
 Placed = tuple[Placement, Placement]
 
 
+def volume(mesh: tuple[np.ndarray, np.ndarray]) -> float:
+    """Volume (mm3) that triangles enclose: a sixth of the sum of a . (b x c)."""
+    a, b, c = (mesh[0][mesh[1][:, i]] for i in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
 # --- triangles ---
 
 
@@ -40,7 +46,6 @@ Placed = tuple[Placement, Placement]
 )
 def tessellation(plan: RunPlan) -> dict:
     from tactcad.solids.build import build
-    from tactcad.solids.mesh_overlap import volume
     from tactcad.solids.triangles import triangles
 
     scene = make_scene(published(), "array")
@@ -203,7 +208,7 @@ class Prepared:
 
 
 def _closed_mesh(shape: TopoDS_Shape, angular: float) -> Manifold:
-    from tactcad.solids.mesh_overlap import closed
+    from tactcad.solids.changed import closed
     from tactcad.solids.triangles import triangles
 
     return closed(triangles(shape, LINEAR, angular))
@@ -221,10 +226,11 @@ def kernel_verdict(pair: Placed, made: Prepared) -> str:
 def mesh_verdict(pair: Placed, made: Prepared, angular: float) -> str:
     """By the same limits, from the triangles' common volume and distance."""
     from tactcad.checks.interference import TOUCH_MM
-    from tactcad.solids.mesh_overlap import meeting, placed
 
-    a, b = (placed(made.meshes[p.part.part_no, angular], p.origin, p.rotation) for p in pair)
-    return _verdict(*meeting(a, b, 10 * TOUCH_MM))
+    a, b = (
+        made.meshes[p.part.part_no, angular].transform(np.column_stack([p.rotation, p.origin])) for p in pair
+    )
+    return _verdict((a ^ b).volume(), a.min_gap(b, 10 * TOUCH_MM))
 
 
 def _verdict(overlap: float, gap: float) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tables import efficient, exponent
 
 from tactcad.report import plots as drawing
-from tactcad.report.plots import GREY, MARKERS, SERIES, drawn, log_ticks, panels, place_labels
+from tactcad.report.plots import GREY, MARKERS, SERIES, drawn, log_ticks, note, panels
 from tactcad.report.report import Figure
 
 if TYPE_CHECKING:
@@ -332,3 +332,69 @@ def _scale(ax: Axes, axis: str, names: dict[float, str]) -> None:
     one.set_major_locator(FixedLocator(list(names)))
     one.set_major_formatter(FuncFormatter(lambda v, _: names[min(names, key=lambda n: abs(n / v - 1.0))]))
     one.set_minor_locator(NullLocator())
+
+
+def place_labels(
+    figure: MplFigure, ax: Axes, labels: list[tuple[str, float, float]], size: float = 10.0
+) -> None:
+    """Write labels beside their points, each on the side where it covers least.
+
+    To be called when the axes have their limits, since it depends on where the points are on the page.
+
+    Parameters
+    ----------
+    figure, ax
+        To write on.
+    labels
+        Text, and x and y in data units.
+    size
+        Of the letters, points.
+    """
+    figure.canvas.draw()  # the layout is known only then
+    scale = 72.0 / figure.dpi
+    points = [tuple(v * scale for v in ax.transData.transform((x, y))) for _, x, y in labels]
+    frame = ax.get_window_extent()
+    low, high = (frame.x0 * scale, frame.y0 * scale), (frame.x1 * scale, frame.y1 * scale)
+    taken = [(x - 5, y - 5, x + 5, y + 5) for x, y in points]
+    for (text, *place), (x, y) in zip(labels, points):
+        width, height = 0.62 * size * len(text), 1.1 * size
+
+        def box(place: tuple[float, float, str, str]) -> tuple[float, float, float, float]:
+            dx, dy, ha, va = place
+            left = x + dx - {"left": 0.0, "right": width, "center": width / 2}[ha]  # noqa: B023
+            foot = y + dy - {"bottom": 0.0, "top": height, "center": height / 2}[va]  # noqa: B023
+            return (left, foot, left + width, foot + height)  # noqa: B023
+
+        def covered(place: tuple[float, float, str, str]) -> float:
+            mine = box(place)  # noqa: B023
+            outside = sum(max(0.0, low[i] - mine[i]) + max(0.0, mine[i + 2] - high[i]) for i in (0, 1))
+            return sum(_common(mine, other) for other in taken) + 100.0 * outside
+
+        best = min(_PLACES, key=covered)
+        taken.append(box(best))
+        dx, dy, ha, va = best
+        note(ax, text, (place[0], place[1]), (dx, dy), ha=ha, va=va, fontsize=size, zorder=4)
+
+
+# dx, dy in points and which corner of the text stands there, in the order of preference
+_PLACES = (
+    (9, 0, "left", "center"),
+    (-9, 0, "right", "center"),
+    (0, 9, "center", "bottom"),
+    (0, -9, "center", "top"),
+    (7, 7, "left", "bottom"),
+    (7, -7, "left", "top"),
+    (-7, 7, "right", "bottom"),
+    (-7, -7, "right", "top"),
+    (14, 14, "left", "bottom"),
+    (14, -14, "left", "top"),
+    (-14, 14, "right", "bottom"),
+    (-14, -14, "right", "top"),
+    (0, 20, "center", "bottom"),
+    (0, -20, "center", "top"),
+)
+
+
+def _common(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> float:
+    """Common area of two boxes (left, foot, right, top)."""
+    return max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1]))

@@ -13,10 +13,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import calculix
 import numpy as np
 from tables import lines, write_tables
 
-from tactcad.fem import calculix, fem_ladder
+from tactcad.fem import fem_ladder
 from tactcad.fem.face_strain import readings
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.shape import reference_shape

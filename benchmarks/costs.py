@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench_geometry import volume
 from measuring import ROOT, array_of, array_text, child_seconds, processor_seconds, python, tactcad
 from samples import draw_box, draw_edges, draw_range, joined, section
 from scipy.optimize import nnls
@@ -139,7 +140,6 @@ def meshes() -> dict[str, Any]:
     """Parts of the shipped designs by every turn: largest share of w^2/24, and seconds by its features."""
     from tactcad.solids.build import build
     from tactcad.solids.measure import measure
-    from tactcad.solids.mesh_overlap import volume
     from tactcad.solids.triangles import triangles
 
     parts = {

@@ -24,12 +24,13 @@ from pathlib import Path
 from statistics import median
 from typing import Any, Literal, TypeVar
 
+import calculix
+
 from tactcad import __version__
 from tactcad.costs.this_machine import processor
 from tactcad.design.load import DEFAULT_DESIGN, find, parse
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
-from tactcad.fem import calculix
 
 ROOT = Path(__file__).parents[1]
 K = TypeVar("K", bound=Hashable)

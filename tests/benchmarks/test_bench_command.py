@@ -9,12 +9,12 @@ import sys
 import xml.etree.ElementTree as ET
 
 import bench
+import calculix
 import pytest
 from bench import SCHEMA, main
 from measuring import BENCHMARKS, PEERS, Benchmark, array_of, freecad_version, measured, python
 
 from tactcad.design.messages import CheckFailure
-from tactcad.fem import calculix
 
 
 def follows_schema(result: dict) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import astuple
 from pathlib import Path
 
+import calculix
 import calculix_corners
 import pytest
 from calculix_corners import CORNERS, QUANTITIES, Compared, compared, stated
 
-from tactcad.fem import calculix
 from tactcad.mechanics import ladder, validity
 
 DOCUMENT = (Path(__file__).parents[2] / "docs" / "mechanics.md").read_text("utf-8")

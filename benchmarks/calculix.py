@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .mapped_mesh import PlaneMesh, merged
-from .plane_elements import parabola
-from .solid_elements import SolidSolution
-from .space import AcrossSpace, PlaneSpace, line_load
+from tactcad.fem.mapped_mesh import PlaneMesh, merged
+from tactcad.fem.plane_elements import parabola
+from tactcad.fem.solid_elements import SolidSolution
+from tactcad.fem.space import AcrossSpace, PlaneSpace, line_load
 
 Array = NDArray[np.float64]
 

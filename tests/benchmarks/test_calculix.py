@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import calculix
 import pytest
 
-from tactcad.fem import calculix
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.plane_elements import solve_plane
