@@ -53,13 +53,13 @@ release: environment ## what a shop can quote from, of every design no check of 
 	$(BIN)/tactcad release --sample $(DESIGNS)
 
 bench: environment ## speed against accuracy on this machine, in short: tables, plots and JSON in exports/bench
-	$(BIN)/tactcad bench --out exports/bench
+	$(BIN)/python benchmarks/bench.py --out exports/bench
 
 docs: environment ## the documentation as a site that opens offline: exports/docs/index.html; warnings are errors
 	packaging/docs.sh
 
 reference: environment ## the published benchmarks again, in full, on a quiet machine: docs, benchmarks/results
-	$(BIN)/tactcad bench --full --out exports/bench
+	$(BIN)/python benchmarks/bench.py --full --out exports/bench
 	$(BIN)/python benchmarks/publish.py exports/bench
 	$(BIN)/python benchmarks/interval_tables.py docs/validation.md
 

@@ -13,9 +13,6 @@ from __future__ import annotations
 import argparse
 import csv
 import json
-import os
-import resource
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -25,20 +22,20 @@ from pathlib import Path
 from random import Random
 
 import numpy as np
-from ladder_tables import filled
+from measuring import ROOT, child_seconds, tactcad
+from samples import draw_box, draw_edges, draw_range, section
+from tables import filled, lines
 
-from tactcad.bench.kernel_costs import check_grades, export_grades
-from tactcad.bench.rung_costs import mesh_sizes, row_grades
+from tactcad.costs.command_costs import check_grades, export_grades
+from tactcad.costs.rung_costs import mesh_sizes, row_grades
 from tactcad.design.allowance import Allowance, pick
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.fem.convergence import converged_solid
 from tactcad.fem.shape import reference_shape
-from tactcad.fit import accuracy_samples, fit_samples
 from tactcad.mechanics import validity
 from tactcad.mechanics.accuracy import MEASURED_FOR
 from tactcad.mechanics.section import HingeSection
 
-ROOT = Path(__file__).parents[1]
 KEPT = ROOT / ".cache" / "budgets.jsonl"
 SEED = 20261123 + 200
 MANY = 600  # drawn of each kind
@@ -50,12 +47,8 @@ TIMES = 1.3
 def designs(count: int) -> list[HingeSection]:
     """Of the box, of its edges, and of the whole range, in turns; those that can be refined here, and whose
     numbers, as written, lie where errors were measured: not fillets of half the slot, rounded up."""
-    tables = (
-        fit_samples.draw_box(MANY, SEED),
-        fit_samples.draw_edges(MANY, SEED + 1),
-        accuracy_samples.draw_range(MANY, SEED + 2),
-    )
-    found = [islice(_small(fit_samples.section(table)), -(-count // 3)) for table in tables]
+    tables = (draw_box(MANY, SEED), draw_edges(MANY, SEED + 1), draw_range(MANY, SEED + 2))
+    found = [islice(_small(section(table)), -(-count // 3)) for table in tables]
     return list(chain.from_iterable(zip(*found, strict=True)))[:count]
 
 
@@ -86,7 +79,7 @@ def estimated(one: HingeSection, random: Random) -> dict:
         sides = "two" if bool(one.two_sided) else "one"
         source.write_text(",".join([*names, "sides"]) + "\n" + ",".join([*values, sides]) + "\n")
         option = ["--within", repr(drawn)] if by_error else ["--in", repr(drawn)]
-        took = child("estimate", "--batch", str(source), "--out", str(out), *option)
+        took = child_seconds(tactcad("estimate", "--batch", source, "--out", out, *option))
         (row,) = csv.DictReader(out.open(newline=""))
     finer = (
         3 if row["model"] == "fem-solid" and row["mesh"] == "2" else 4 if row["model"] == "fem-solid" else 2
@@ -107,17 +100,6 @@ def estimated(one: HingeSection, random: Random) -> dict:
 def listed(one: HingeSection) -> HingeSection:
     """The same as an array of one."""
     return HingeSection(**{f.name: np.atleast_1d(getattr(one, f.name)) for f in fields(one)})
-
-
-def child(*arguments: str, cache: Path | None = None) -> float:
-    """Processor seconds of a command and of all that it starts."""
-    used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])  # noqa: E731
-    start, environment = used(), os.environ | {"OMP_NUM_THREADS": "1"}
-    environment |= {"TACTCAD_CACHE": str(cache)} if cache else {}
-    subprocess.run(
-        [sys.executable, "-m", "tactcad", *arguments], env=environment, capture_output=True, check=False
-    )
-    return used() - start
 
 
 def commands(count: int) -> Iterator[tuple[str, Callable[[], dict]]]:
@@ -146,15 +128,13 @@ def commanded(number: int) -> dict:
             return {"refused": str(refusal)}
         within = random.choice((0.02, 0.005, 0.002))
         asked, names = Allowance(within), scene_names(design)
-        option = ("--within", repr(within))
+        grades = check_grades([(design, names)]), export_grades(design, names)
+        runs = ("check", path), ("export", path, "--out", f"{folder}/out")
         return {
-            "stated": [
-                pick(grades, asked, "").grade.seconds
-                for grades in (check_grades([(design, names)]), export_grades(design, names))
-            ],
+            "stated": [pick(some, asked, "").grade.seconds for some in grades],
             "took": [
-                child("check", str(path), *option),
-                child("export", str(path), "--out", f"{folder}/out", *option, cache=Path(folder) / "cache"),
+                child_seconds(tactcad(*run, "--within", repr(within)), TACTCAD_CACHE=f"{folder}/cache")
+                for run in runs
             ],
         }
 
@@ -177,29 +157,24 @@ def run(tasks: Iterator[tuple[str, Callable[[], dict]]]) -> list[dict]:
 
 
 def promises(rows: list[dict]) -> str:
-    lines = [
-        "| rung | designs | promise broken | largest error over promise | median of it |",
-        "|---|---|---|---|---|",
-    ]
+    shown = []
     for rung in [*dict.fromkeys(row["rung"] for row in rows), "all"]:
         some = [row for row in rows if rung in (row["rung"], "all")]
         share = np.array([row["error"] / row["promised"] for row in some])
         broken = sum(r["error"] > r["promised"] or (r["asked"] or 1.0) < r["promised"] for r in some)
         named = rung.replace("fem-solid", "fem-solid, mesh ")
-        lines.append(f"| {named} | {len(some)} | {broken} | {share.max():.2g} | {np.median(share):.2g} |")
-    return "\n".join(lines) + "\n"
+        shown.append((named, len(some), broken, f"{share.max():.2g}", f"{np.median(share):.2g}"))
+    return lines("rung | designs | promise broken | largest error over promise | median of it", shown)
 
 
 def times(named: dict[str, tuple[list[float], list[float]]]) -> str:
-    lines = [
-        f"| command | designs | took at most {TIMES:g} times as long as stated | least | median | largest |",
-        "|---|---|---|---|---|---|",
-    ]
+    shown = []
     for name, (stated, took) in named.items():
         by = np.array(took) / np.array(stated)
-        quantiles = " | ".join(f"{v:.2f}" for v in (by.min(), np.median(by), by.max()))
-        lines.append(f"| `{name}` | {len(by)} | {100 * (by <= TIMES).mean():.0f} % | {quantiles} |")
-    return "\n".join(lines) + "\n"
+        kept = f"{100 * (by <= TIMES).mean():.0f} %"
+        shown.append((f"`{name}`", len(by), kept, *(f"{v:.2f}" for v in (by.min(), np.median(by), by.max()))))
+    within = f"took at most {TIMES:g} times as long as stated"
+    return lines(f"command | designs | {within} | least | median | largest", shown)
 
 
 def main() -> int:

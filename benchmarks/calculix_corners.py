@@ -1,8 +1,8 @@
 """Eight designs in the corners of the accepted range by CalculiX's C3D20R beside the program's own rungs.
 
-`python benchmarks/calculix_corners.py docs/mechanics.md` solves them anew (a quarter of an hour; ccx must be
-installed) and writes the table between its marks. Strain and stress are read from CalculiX's displacements
-as fem-solid's are.
+    python benchmarks/calculix_corners.py docs/mechanics.md    a quarter of an hour; ccx must be installed
+
+Strain and stress are read from CalculiX's displacements as fem-solid's are.
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import calculix
 import numpy as np
-from ladder_tables import filled
+from tables import lines, write_tables
 
-from tactcad.fem import calculix, fem_ladder
+from tactcad.fem import fem_ladder
 from tactcad.fem.face_strain import readings
 from tactcad.fem.mapped_mesh import layers, plane_mesh
 from tactcad.fem.shape import reference_shape
@@ -114,33 +115,20 @@ def _bricks(s: HingeSection, density: int) -> int:
     return len(plane_mesh(reference_shape(s), density).cells) * (len(across) - 1)
 
 
-def line(sizes: tuple, one: Compared) -> str:
-    """A row of the table."""
-    shares = (one.error, one.elements, one.elements_stated, one.closed, one.closed_stated)
-    cells = [sizes[0], ", ".join(f"{v:g}" for v in sizes[1:]), one.quantity, f"{one.calculix:.5g}"]
-    return f"| {' | '.join([*cells, *(f'{100.0 * v:.2g} %' for v in shares)])} |"
-
-
 def table() -> str:
     heads = (
-        "notch",
-        "t, l, r, L, h, Hb, Lb, nu, b",
-        "quantity",
-        "CalculiX",
-        "its error",
-        "fem-solid differs",
-        "stated",
-        "solid differs",
-        "stated",
+        "notch | t, l, r, L, h, Hb, Lb, nu, b | quantity | CalculiX | its error | "
+        "fem-solid differs | stated | solid differs | stated"
     )
-    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    rows = []
     for sizes, s in zip(SIZES, CORNERS):
         for one in compared(s):
-            lines.append(line(sizes, one))
-            print(lines[-1], file=sys.stderr, flush=True)
-    return "\n".join(lines)
+            shares = (one.error, one.elements, one.elements_stated, one.closed, one.closed_stated)
+            cells = [sizes[0], ", ".join(f"{v:g}" for v in sizes[1:]), one.quantity, f"{one.calculix:.5g}"]
+            rows.append([*cells, *(f"{100.0 * v:.2g} %" for v in shares)])
+            print(*rows[-1], sep=" | ", file=sys.stderr, flush=True)
+    return lines(heads, rows)
 
 
 if __name__ == "__main__":
-    document = Path(sys.argv[1])
-    document.write_text(filled(document.read_text("utf-8"), TABLE, table()), "utf-8")
+    raise SystemExit(write_tables(__doc__, {TABLE: table}))

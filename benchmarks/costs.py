@@ -1,9 +1,9 @@
-"""What each way of answering costs, for `--within` and `--in`: src/tactcad/bench/data/costs.json.
+"""What each way of answering costs, for `--within` and `--in`: src/tactcad/costs/data/costs.json.
 
     python benchmarks/costs.py                    all of it, some 20 minutes of one core
     python benchmarks/costs.py elements meshes    these parts alone, the others kept
 
-Processor seconds of one core, with this machine's calibration beside them (bench/this_machine.py), so that
+Processor seconds of one core, with this machine's calibration beside them (costs/this_machine.py), so that
 other load moves them little. Costs are fitted on counts (a mesh's elements, parts, candidates) by least
 squares of the relative error, none negative.
 """
@@ -12,35 +12,28 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import resource
-import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from datetime import date
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bench_geometry import volume
+from measuring import ROOT, array_of, array_text, child_seconds, processor_seconds, python, tactcad
+from samples import draw_box, draw_edges, draw_range, joined, section
 from scipy.optimize import nnls
 
-from tactcad.bench import arrays
-from tactcad.bench.costs import DATA
-from tactcad.bench.kernel_costs import counts
-from tactcad.bench.machine import processor
-from tactcad.bench.tessellation import ANGULAR
-from tactcad.bench.this_machine import calibration
-from tactcad.fem.mapped_mesh import layers, plane_mesh
-from tactcad.fem.shape import reference_shape
-from tactcad.fit import accuracy_samples, fit_samples
+from tactcad.costs.command_costs import ANGULAR, counts
+from tactcad.costs.rung_costs import mesh_sizes
+from tactcad.costs.this_machine import DATA, calibration, processor
 from tactcad.mechanics.accuracy import CANDIDATES
 from tactcad.parts.designs import load
 from tactcad.scenes import make_scene, scene_names
 from tactcad.solids.meshing import CHORD_MM
 
-HARDWARE = Path(__file__).parents[1] / "hardware"
 DESIGNS = ("macro-array", "soft-tissue", "better-array", "double-sample", "smallest-bearing")
 COMMANDED = (("macro-array", True), ("macro-array", False), ("soft-tissue", True), ("smallest-bearing", True))
 WITH_EXTRAS = (1, 2)  # of these, drawings and guides too
@@ -87,21 +80,6 @@ def rounded(value: Any) -> Any:
     return [rounded(v) for v in value] if isinstance(value, list) else float(f"{value:.3g}")
 
 
-def seconds(action: Callable[[], object]) -> float:
-    start = time.process_time()
-    action()
-    return time.process_time() - start
-
-
-def child_seconds(*arguments: str, cache: Path | None = None) -> float:
-    """Processor seconds of a command of ours and of all that it starts."""
-    used = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])  # noqa: E731
-    start = used()
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "TACTCAD_CACHE": str(cache or tempfile.gettempdir())}
-    subprocess.run([sys.executable, *arguments], env=environment, capture_output=True, check=False)
-    return used() - start
-
-
 def fitted(names: tuple[str, ...], rows: list[dict[str, float]], values: list[float]) -> dict[str, float]:
     """Costs of each count, none negative, by least squares of the relative error."""
     table, each = np.array([[row.get(name, 1.0) for name in names] for row in rows]), np.array(values)
@@ -121,27 +99,21 @@ def power(sizes: np.ndarray, values: np.ndarray) -> list[float]:
 
 
 def starts() -> dict[str, Any]:
-    """Whole processes: an estimate by a closed form, what finite elements add, and the CAD kernel."""
-    run = ("-m", "tactcad", "estimate", "soft-tissue")
-    numpy = min(child_seconds(*run) for _ in range(5))
-    elements = min(child_seconds(*run, "--model", "fem-plane") for _ in range(3)) - numpy
-    kernel = min(child_seconds("-c", "import build123d") for _ in range(3))
-    return {"start": {"numpy": numpy, "elements": elements, "kernel": kernel}, "row": table_row()}
-
-
-def table_row() -> float:
-    """A row of `estimate --batch` read and written."""
+    """Whole processes: an estimate by a closed form, what finite elements add, and the CAD kernel; and a row
+    of `estimate --batch` read and written."""
+    run = tactcad("estimate", "soft-tissue")
+    numpy = min(child_seconds(run) for _ in range(5))
+    elements = min(child_seconds([*run, "--model", "fem-plane"]) for _ in range(3)) - numpy
+    kernel = min(child_seconds(python("-c", "import build123d")) for _ in range(3))
     head = "hinge_thickness,hinge_length,fillet_radius,load_arm,arm_height,body_height,body_length,poisson"
     row, many = "0.25,0.75,0.15,6,2,4,4,0.33,69000,3\n", 20_000
     with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder) / "in.csv"
-        took = []
+        source, took = Path(folder) / "in.csv", []
         for count in (1, many):
             source.write_text(f"{head},youngs_modulus,width\n{row * count}", "utf-8")
-            took.append(
-                child_seconds("-m", "tactcad", "estimate", "--batch", str(source), "--out", f"{folder}/o")
-            )
-    return (took[1] - took[0]) / many
+            took.append(child_seconds(tactcad("estimate", "--batch", source, "--out", f"{folder}/o")))
+    start = {"numpy": numpy, "elements": elements, "kernel": kernel}
+    return {"start": start, "row": (took[1] - took[0]) / many}
 
 
 def elements() -> dict[str, Any]:
@@ -149,32 +121,25 @@ def elements() -> dict[str, Any]:
     from tactcad.fem.fem_ladder import stiffness
 
     third = SOLVED // 3
-    drawn = fit_samples.joined(
-        [
-            fit_samples.draw_box(third, SEED),
-            fit_samples.draw_edges(third, SEED + 1),
-            accuracy_samples.draw_range(third, SEED + 2),
-        ]
-    )
-    s = fit_samples.section(drawn)
+    drawn = (draw_box(third, SEED), draw_edges(third, SEED + 1), draw_range(third, SEED + 2))
+    s = section(joined(drawn))
     stiffness(s.rows(0), "fem-plane")
     sizes: dict[str, list] = {c.name: [] for c in CANDIDATES if c.rung.startswith("fem")}
     took: dict[str, list] = {name: [] for name in sizes}
     for one in map(s.rows, range(s.shape[0])):
-        mesh = plane_mesh(reference_shape(one), order=1)
-        across = len(layers(float(one.width) / 2.0, mesh.shape.thickness, 1)) - 1
+        cells, across = (size[0] for size in mesh_sizes(one))
         for c in CANDIDATES:
-            if c.name in sizes and (c.mesh is None or len(mesh.cells) * across <= MOST[c.mesh]):
-                sizes[c.name].append([len(mesh.cells), across])
-                took[c.name].append(seconds(lambda c=c, one=one: stiffness(one, c.rung, c.mesh or 2)))
-    return {"elements": {name: power(np.array(sizes[name], float), np.array(took[name])) for name in sizes}}
+            if c.name in sizes and (c.mesh is None or cells * across <= MOST[c.mesh]):
+                sizes[c.name].append([cells, across])
+                solve = lambda c=c, one=one: stiffness(one, c.rung, c.mesh or 2)  # noqa: E731
+                took[c.name].append(processor_seconds(solve))
+    return {"elements": {name: power(np.array(sizes[name]), np.array(took[name])) for name in sizes}}
 
 
 def meshes() -> dict[str, Any]:
     """Parts of the shipped designs by every turn: largest share of w^2/24, and seconds by its features."""
     from tactcad.solids.build import build
     from tactcad.solids.measure import measure
-    from tactcad.solids.mesh_overlap import volume
     from tactcad.solids.triangles import triangles
 
     parts = {
@@ -213,7 +178,7 @@ def commands() -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         for n, count in enumerate((20, 60)):
             path = Path(folder) / f"long-{n}.toml"
-            path.write_text(arrays.text(count), "utf-8")
+            path.write_text(array_text(count), "utf-8")
             cases.append((str(path), load(path), ("array",)))
         for n, (source, design, scenes) in enumerate(cases):
             rows.append(dict(counts(design, scenes)[0]))
@@ -221,8 +186,8 @@ def commands() -> dict[str, Any]:
             for command in ("check", "export"):
                 out = ["--out", f"{folder}/{n}"] if command == "export" else []
                 cache = Path(folder) / f"cache-{n}"
-                run = ("-m", "tactcad", command, source, *chosen, *out)
-                took[command].append(child_seconds(*run, cache=cache))
+                run = tactcad(command, source, *chosen, *out)
+                took[command].append(child_seconds(run, TACTCAD_CACHE=str(cache)))
             if n in WITH_EXTRAS:
                 for option in EXTRAS:
                     took[option].append(_extra(source, chosen, option, folder, took["export"][-1]))
@@ -238,8 +203,8 @@ EXTRAS = {"--drawings": ("drawings", "made"), "--guide": ("guides", "place")}
 def _extra(source: str, chosen: list[str], option: str, folder: str, without: float) -> float:
     """What an option adds to an export with nothing in the cache."""
     with tempfile.TemporaryDirectory(dir=folder) as own:
-        run = ("-m", "tactcad", "export", source, *chosen, option, "--out", f"{own}/out")
-        return child_seconds(*run, cache=Path(own) / "cache") - without
+        run = tactcad("export", source, *chosen, option, "--out", f"{own}/out")
+        return child_seconds(run, TACTCAD_CACHE=f"{own}/cache") - without
 
 
 def builds() -> dict[str, Any]:
@@ -247,15 +212,11 @@ def builds() -> dict[str, Any]:
     from tactcad.assembly.virtual_build import sensor
 
     sizes, once, each = [], [], []
-    for design in [*map(load, DESIGNS), arrays.of(40), arrays.of(100)]:
+    for design in [*map(load, DESIGNS), array_of(40), array_of(100)]:
         sizes.append({"element": float(sum(map(len, design.array.row_arms)))})
-        start = time.process_time()
-        made = sensor(design)
-        made.stack()
-        once.append(
-            time.process_time() - start + child_seconds("-c", "import tactcad.assembly.virtual_build")
-        )
-        few, many = (seconds(lambda n=n: made.built(n)) for n in (200, 1200))
+        made, loading = sensor(design), child_seconds(python("-c", "import tactcad.assembly.virtual_build"))
+        once.append(loading + processor_seconds(lambda: sensor(design).stack()))
+        few, many = (processor_seconds(lambda n=n: made.built(n)) for n in (200, 1200))
         each.append((many - few) / 1000)
     return {
         "build": fitted(("start", "element"), sizes, once),
@@ -271,14 +232,13 @@ def syntheses() -> dict[str, Any]:
     from tactcad.synthesis.synthesise import QUICK
     from tactcad.synthesis.target import read_target
 
-    target = read_target(HARDWARE / "targets" / "better-array.toml")
+    target = read_target(ROOT / "hardware" / "targets" / "better-array.toml")
     stand, goal = stands(target)[0], lambda c: c.half_width
     start = time.process_time()
     found = search(stand, goal)
     candidate = (time.process_time() - start) / found.evaluations
-    near = [
-        seconds(lambda n=n: search(stand, goal, start=found.row, within=QUICK, seed=n)) for n in (1, 2, 3)
-    ]
+    again = partial(search, stand, goal, start=found.row, within=QUICK)
+    near = [processor_seconds(partial(again, seed=n)) for n in (1, 2, 3)]
     sizes, each = [], []
     for name in DESIGNS:
         if load(name).calibration is None:  # what is known of its elements is not counted from a rig
@@ -286,8 +246,16 @@ def syntheses() -> dict[str, Any]:
         made = MadeSensor(target, load(name))
         made.built(50, 0.1)
         sizes.append({"element": float(len(made.layout.elements))})
-        each.append((seconds(lambda: made.built(1000, 0.1)) - seconds(lambda: made.built(200, 0.1))) / 800)
-    loading = child_seconds("-c", "import tactcad.synthesis.target_report, tactcad.synthesis.synthesise")
+        each.append(
+            (
+                processor_seconds(lambda: made.built(1000, 0.1))
+                - processor_seconds(lambda: made.built(200, 0.1))
+            )
+            / 800
+        )
+    loading = child_seconds(
+        python("-c", "import tactcad.synthesis.target_report, tactcad.synthesis.synthesise")
+    )
     return {
         "synthesis": {"start": loading + BESIDE, "candidate": candidate, "near": float(np.mean(near))},
         "array tried": fitted(("start", "element"), sizes, each),
@@ -316,31 +284,16 @@ def sweeps() -> dict[str, Any]:
             name = f"{what}-{count}-{len(elements)}"
             study = Path(folder) / f"{name}.toml"
             study.write_text(STUDY.format(count=count, what=what, elements=elements), "utf-8")
-            return child_seconds(
-                "-m", "tactcad", "sweep", str(study), "--out", f"{folder}/{name}", "--workers", "1"
-            )
+            return child_seconds(tactcad("sweep", study, "--out", f"{folder}/{name}", "--workers", "1"))
 
         start, one, five = took(1), took(many), took(many, elements="elements = [1, 2, 3, 4, 5]")
         rules = (took(few, "rules", "") - took(1, "rules", "")) / (few - 1)
     closed = (five - one) / (4 * many)
-    costs = {
-        "start": start,
-        "row": max((one - start) / many - closed, 0.0),
-        "closed": closed,
-        "design": rules,
-    }
-    return {"sweep": costs}
+    row = max((one - start) / many - closed, 0.0)
+    return {"sweep": {"start": start, "row": row, "closed": closed, "design": rules}}
 
 
-PARTS = {
-    "starts": starts,
-    "elements": elements,
-    "meshes": meshes,
-    "commands": commands,
-    "builds": builds,
-    "syntheses": syntheses,
-    "sweeps": sweeps,
-}
+PARTS = {part.__name__: part for part in (starts, elements, meshes, commands, builds, syntheses, sweeps)}
 
 if __name__ == "__main__":
     raise SystemExit(main())

@@ -11,13 +11,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from plane_health import corner_angles, plane_health
+from samples import draw_range, section
+from scipy.sparse.linalg import LinearOperator, onenormest
 
+from tactcad.fem import elasticity
 from tactcad.fem.convergence import RATE, richardson
-from tactcad.fem.mapped_mesh import plane_mesh
-from tactcad.fem.shape import reference_shape
-from tactcad.fit.accuracy_samples import draw_range
-from tactcad.fit.fit_samples import section
+from tactcad.fem.mapped_mesh import PlaneMesh, plane_mesh
+from tactcad.fem.plane_elements import end_load, fixed_unknowns, solve_plane
+from tactcad.fem.shape import ElementShape, reference_shape
 from tactcad.mechanics import beams
 from tactcad.mechanics.section import REFERENCE, HingeSection
 
@@ -26,6 +27,63 @@ DENSITIES = (1, 2, 3)
 REFINED = (1, 2, 3, 4, 6, 8, 12, 16)
 SLOT = 2.0  # mm, of the hinges that grow thin
 ANGLES_OF = 200  # designs over the whole range, for the angles
+
+
+@dataclass(frozen=True)
+class Health:
+    """Quality of one plane mesh and of its system of equations. Angles in degrees, at the corners of the
+    elements.
+
+    condition: of the stiffness matrix without the held unknowns, in the 1-norm (by Hager's estimate, which is
+    deterministic). rounding: relative change of the compliance by one step of iterative refinement, an
+    estimate of its rounding error.
+    """
+
+    smallest_angle: float
+    largest_angle: float
+    condition: float
+    rounding: float
+    compliance: float  # mm/N
+    unknowns: int
+
+
+def plane_health(shape: ElementShape, E: float, nu: float, width: float, density: int) -> Health:
+    """Of the plane-stress problem that `solve_plane` solves on that density."""
+    solution = solve_plane(shape, E, nu, width, density=density)
+    space, mesh = solution.space, solution.mesh
+    A = space.stiffness(*elasticity.lame(E, nu, plane_stress=True)) * width
+    end, load = end_load(space, mesh)
+    f = np.zeros(A.shape[0])
+    f[2 * end + 1] = load
+    free = np.setdiff1d(np.arange(len(f)), fixed_unknowns(space.nodes, mesh, 2))
+    reduced = A[free][:, free].tocsc()
+    solve = elasticity.factorised(reduced).solve
+    inverse = LinearOperator(reduced.shape, matvec=solve, rmatvec=solve, dtype=float)
+    _, rounding = elasticity.refined(reduced, f[free])
+    smallest, largest = corner_angles(mesh)
+    return Health(
+        smallest,
+        largest,
+        float(abs(reduced).sum(axis=0).max() * onenormest(inverse, t=1)),
+        rounding,
+        solution.compliance,
+        solution.unknowns,
+    )
+
+
+def corner_angles(mesh: PlaneMesh) -> tuple[float, float]:
+    """Smallest and largest angle between the two edges that meet at an element's corner, degrees.
+
+    Edges are curved; the angle is that of the tangents of the parabola through an edge's corners and middle.
+    """
+    angles = []
+    for u, v in ((0, 0), (0, 2), (2, 0), (2, 2)):
+        corner = mesh.cells[:, u, v]
+        along = 4.0 * mesh.cells[:, 1, v] - 3.0 * corner - mesh.cells[:, 2 - u, v]
+        across = 4.0 * mesh.cells[:, u, 1] - 3.0 * corner - mesh.cells[:, u, 2 - v]
+        cross = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
+        angles.append(np.degrees(np.arctan2(np.abs(cross), np.sum(along * across, axis=1))))
+    return float(np.min(angles)), float(np.max(angles))
 
 
 @dataclass(frozen=True)
@@ -122,7 +180,7 @@ def _sides(two_sided: bool) -> str:
 
 def picture(x: Extremes) -> str:
     """SVG text."""
-    from tactcad.paper import plots as d
+    from tactcad.report import plots as d
 
     with d.panels(2, 2, size=(11.2, 8.4)) as (figure, axes):
         _condition(axes[0, 0], x, d)
@@ -133,34 +191,27 @@ def picture(x: Extremes) -> str:
 
 
 def _condition(axis, x: Extremes, d) -> None:
-    for sides, colour in (("two", d.BLUE), ("one", d.ORANGE)):
-        for density, marker in zip(DENSITIES, d.MARKERS):
-            rows = [r for r in x.thin if (r.sides, r.density) == (sides, density)]
-            t = [r.thickness for r in rows]
-            axis.plot(
-                t,
-                [r.condition for r in rows],
-                color=colour,
-                marker=marker,
-                label=f"{sides}-sided, density {density}",
-            )
+    _against_thickness(axis, x, d, "condition")
     axis.set(xscale="log", yscale="log", xlabel="hinge thickness t, mm", title="Condition number, slot 2 mm")
     axis.legend()
     d.log_ticks(axis.xaxis, THICKNESSES)
 
 
 def _locking(axis, x: Extremes, d) -> None:
-    for sides, colour in (("two", d.BLUE), ("one", d.ORANGE)):
-        for density, marker in zip(DENSITIES, d.MARKERS):
-            rows = [r for r in x.thin if (r.sides, r.density) == (sides, density)]
-            axis.plot(
-                [r.thickness for r in rows], [r.added_length for r in rows], color=colour, marker=marker
-            )
+    _against_thickness(axis, x, d, "added_length")
     axis.set(
         xscale="log", ylim=(0, 2.6), xlabel="hinge thickness t, mm", ylabel="length that the roots add, t"
     )
     axis.set_title("No locking: the roots add as much however thin the leaf")
     d.log_ticks(axis.xaxis, THICKNESSES)
+
+
+def _against_thickness(axis, x: Extremes, d, figure: str) -> None:
+    for sides, colour in (("two", d.BLUE), ("one", d.ORANGE)):
+        for density, marker in zip(DENSITIES, d.MARKERS):
+            rows = [r for r in x.thin if (r.sides, r.density) == (sides, density)]
+            values, label = [getattr(r, figure) for r in rows], f"{sides}-sided, density {density}"
+            axis.plot([r.thickness for r in rows], values, color=colour, marker=marker, label=label)
 
 
 def _rounding(axis, x: Extremes, d) -> None:

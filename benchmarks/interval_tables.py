@@ -13,10 +13,10 @@ from math import inf
 from pathlib import Path
 
 import numpy as np
-from grasping_labs import OBJECTS, Touch, touched
-from labs import CELL, QUANTITIES, STEPS, Lab, intervals, known_widths, true_values
-from ladder_tables import filled
+from labs import CELL, OBJECTS, QUANTITIES, STEPS, Lab, Touch, intervals, known_widths, touched, true_values
 from scipy.special import betaincinv
+from tables import lines
+from tables import renewed as with_tables
 
 from tactcad.lab.load_cell import LoadCell
 from tactcad.lab.simulate import Noise, Truth
@@ -125,11 +125,7 @@ def reason(cover: float, ratio: float, lab: Lab, why: str) -> str:
 
 def calibrations(studies: Sequence[Study], labs: int, tell: Tell) -> str:
     """K, K_v and K_v/K of simulated calibrations."""
-    array = chosen(THREE)
-    lines = [
-        "| lab | element | quantity | labs | holds the truth, % | 95 % interval | width / known | why |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    array, rows = chosen(THREE), []
     value = true_values(array)
     for index, study in enumerate(studies):
         tell(study.what)
@@ -140,11 +136,10 @@ def calibrations(studies: Sequence[Study], labs: int, tell: Tell) -> str:
             h, width = held[:, which, q], float(np.median(ratio[:, which, q]))
             number = "all three" if len(which) == 3 else str(array.element[which[0]])
             why = reason(float(h.mean()), width, study.lab, study.why if q in study.concerns else "")
-            lines.append(
-                f"| {study.what} | {number} | {QUANTITIES[q]} | {labs} | {share(int(h.sum()), h.size)} | "
-                f"{width:.2f} | {why} |"
-            )
-    return "\n".join(lines)
+            held_by = share(int(h.sum()), h.size)
+            rows.append((study.what, number, QUANTITIES[q], labs, held_by, f"{width:.2f}", why))
+    heads = "lab | element | quantity | labs | holds the truth, % | 95 % interval | width / known | why"
+    return lines(heads, rows)
 
 
 def _counted(study: Study) -> list[tuple[list[int], int]]:
@@ -161,26 +156,17 @@ def _intervals(lab: Lab, array: Truth, labs: int, rng: np.random.Generator) -> n
 
 def outliers(labs: int, tell: Tell) -> str:
     """False alarms of files of nine elements, and how often a planted outlier is named."""
-    lines = [
-        "| noise | files | with a false alarm, % | 95 % interval | "
-        + " | ".join(f"{a:g} sd named, %" for a in AWAY)
-        + " |",
-        "|---|---|---|---|" + "---|" * len(AWAY),
-    ]
-    array = truth()
+    array, rows = truth(), []
     for index, (what, noise) in enumerate(NOISES.items()):
         tell(f"outliers, {what}")
-        rng = np.random.default_rng([SEED, 2, index])
-        lab = Lab(noise=noise)
-        alarms = 0
-        for _ in range(2 * labs):
-            alarms += any(r.outliers for r in lab.calibrated(lab.readings(array, rng)))
-        named = np.zeros(len(AWAY))
-        for _ in range(labs):
-            named += _named(lab, array, rng)
-        cells = " | ".join(f"{100 * n / labs:.0f}" for n in named)
-        lines.append(f"| {what} | {2 * labs} | {share(alarms, 2 * labs)} | {cells} |")
-    return "\n".join(lines)
+        rng, lab = np.random.default_rng([SEED, 2, index]), Lab(noise=noise)
+        files = (lab.calibrated(lab.readings(array, rng)) for _ in range(2 * labs))
+        alarms = sum(any(r.outliers for r in file) for file in files)
+        named = sum(_named(lab, array, rng).astype(float) for _ in range(labs))
+        cells = (f"{100 * n / labs:.0f}" for n in named)
+        rows.append((what, 2 * labs, share(alarms, 2 * labs), *cells))
+    planted = " | ".join(f"{a:g} sd named, %" for a in AWAY)
+    return lines(f"noise | files | with a false alarm, % | 95 % interval | {planted}", rows)
 
 
 def _named(lab: Lab, array: Truth, rng: np.random.Generator) -> np.ndarray:
@@ -203,46 +189,39 @@ def _named(lab: Lab, array: Truth, rng: np.random.Generator) -> np.ndarray:
 
 def objects(labs: int, tell: Tell) -> str:
     """K_obj of simulated calibrations and grasps."""
-    lines = [
-        "| calibration | pads | interval of | labs | holds the truth, % | 95 % interval | width / known | "
-        'false "disagree", % | why |',
-        "|---|---|---|---|---|---|---|---|---|",
-    ]
-    array = chosen(OBJECTS)
+    array, rows = chosen(OBJECTS), []
     for index, touch in enumerate(TOUCHES):
         tell(f"{touch.what}, pads {touch.pads}")
         many = labs if touch.limit else 2 * labs
         found = touched(touch, array, many, np.random.default_rng([SEED, 3, index]))
-        for name, held, ratio in (
-            ("all elements", found.held[:, :1], found.ratio[:, :1]),
-            ("single pairs", found.held[:, 1:], found.ratio[:, 1:]),
-        ):
+        for name, some in (("all elements", slice(1)), ("single pairs", slice(1, None))):
+            held, ratio = found.held[:, some], found.ratio[:, some]
             finite = ratio[np.isfinite(ratio)]
             width = float(np.median(finite)) if len(finite) > ratio.size / 2 else inf
             told = name == "all elements" and not touch.limit  # coupled pads do disagree
             disagree = f"{100 * found.disagree.mean():.1f}" if told else ""
             why = reason(float(held.mean()), width, touch.lab, touch.why)
-            lines.append(
-                f"| {touch.what} | {touch.said} | {name} | {many} | {share(int(held.sum()), held.size)} | "
-                f"{width:.2f} | {disagree} | {why} |"
-            )
-    return "\n".join(lines)
+            held_by = share(int(held.sum()), held.size)
+            rows.append((touch.what, touch.said, name, many, held_by, f"{width:.2f}", disagree, why))
+    heads = (
+        "calibration | pads | interval of | labs | holds the truth, % | 95 % interval | width / known | "
+        'false "disagree", % | why'
+    )
+    return lines(heads, rows)
 
 
 def renewed(text: str, labs: int, tell: Tell) -> str:
     """The document with its tables made anew."""
-    for name, made in (
-        ("coverage of calibrations", lambda: calibrations(STUDIES, labs, tell)),
-        ("coverage where an assumption is wrong", lambda: calibrations(BROKEN, labs, tell)),
-        ("outliers", lambda: outliers(labs, tell)),
-        ("coverage of objects", lambda: objects(labs, tell)),
-    ):
-        text = filled(text, name, made())
-    return text
+    tables = {
+        "coverage of calibrations": lambda: calibrations(STUDIES, labs, tell),
+        "coverage where an assumption is wrong": lambda: calibrations(BROKEN, labs, tell),
+        "outliers": lambda: outliers(labs, tell),
+        "coverage of objects": lambda: objects(labs, tell),
+    }
+    return with_tables(text, tables)
 
 
 if __name__ == "__main__":
     document = Path(sys.argv[1])
-    document.write_text(
-        renewed(document.read_text("utf-8"), LABS, lambda what: print(what, flush=True)), "utf-8"
-    )
+    made = renewed(document.read_text("utf-8"), LABS, lambda what: print(what, flush=True))
+    document.write_text(made, "utf-8")

@@ -1,5 +1,6 @@
-"""A run's report becomes the published one: `python benchmarks/publish.py REPORT [FURTHER]...` in the
-checkout.
+"""A run's report becomes the published one.
+
+    python benchmarks/publish.py REPORT [FURTHER]...    in the checkout
 
 What further runs on the same machine measured (of --only some benchmarks) takes the place of the report's
 own, and is named.
@@ -15,40 +16,79 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from choice import choice
-from ladder_tables import filled
+from bench import SCHEMA, images, made_on, remarks, to_json, to_markdown
+from bench_elements import TRUTH
+from measuring import BENCHMARKS
+from tables import filled, lines, markdown
 
-from tactcad.bench import bench_tables, render, truth
-from tactcad.bench.figures import figures
-from tactcad.bench.session import BENCHMARKS, SCHEMA
 from tactcad.design.messages import InputError
-from tactcad.paper.report import standalone
+from tactcad.mechanics.register import BY_NAME
+from tactcad.report.report import sig
 
 REFERENCE = "benchmarks/results/reference.json"
 DOCUMENTS = ("docs/benchmarks.md", "docs/rigs.md", "docs/mechanics.md", "docs/checks.md")
+
+# --- one table to choose from: rung, tessellation, detail level ---
+
+TESSELLATION = {
+    0.5: "a first look",
+    0.35: "pictures of long arrays",
+    0.2: "the mesh check",
+    0.1: "printing",
+    0.05: "volumes from meshes",
+}
+DETAIL = {"full": "review, manufacture", "envelope": "layout and collision: no holes, pockets, threads"}
+UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
+
+
+def duration(seconds: float) -> str:
+    """Two digits in the unit that suits."""
+    scale, unit = next((pair for pair in UNITS if seconds >= pair[0]), UNITS[-1])
+    return f"{sig(seconds / scale, 2)} {unit}"
+
+
+def choice(result: dict) -> str:
+    """What there is to choose, how wrong it is at worst, what it costs, and when to take it."""
+
+    def rows(name: str) -> list[dict]:
+        return result["benchmarks"][name]["tables"][name]["rows"]
+
+    shown: list[tuple[str, ...]] = []
+    for r in rows("rungs"):
+        error, when = f"{sig(100 * r['solid worst'], 2)} %", BY_NAME[r["rung"]].when
+        shown.append(("rung, per element", f"`{r['rung']}`", error, duration(r["seconds"]) + " |", when))
+    for r in rows("tessellation"):
+        when = TESSELLATION.get(r["angular"])
+        if when and r["linear"] == rows("tessellation")[0]["linear"]:
+            error, size = f"{sig(100 * r['worst'], 2)} % of volume", f"{sig(r['stl_bytes'] / 1e3, 2)} kB"
+            what = ("triangles, array's parts", f"{r['angular']:g} rad")
+            shown.append((*what, error, duration(r["seconds"]), size, when))
+    for r in rows("detail"):
+        if r["scene"] in ("array", "grasping"):
+            size = f"{sig(r['bytes'] / 1e3, 2)} kB"
+            what = (f"scene {r['scene']}", f"{r['detail']} |", duration(r["seconds"]))
+            shown.append((*what, size, DETAIL[r["detail"]]))
+    return lines("choose | setting | worst error | time | file | when", shown)
+
+
+# --- reports ---
 
 
 def load(*paths: Path) -> dict:
     """The JSON of a report, with that of further ones in its place. Raises InputError where one is no report,
     they do not belong together, or a benchmark is lacking or failed."""
-    first, *further = map(_read, paths)
-    result = first
+    result, *further = map(_read, paths)
     for more in further:
         result = replaced(result, more)
     lacking = [n for n in BENCHMARKS if "tables" not in result["benchmarks"].get(n, {})]
-    failed = [n for n, entry in result["benchmarks"].items() if "failed" in entry]
-    if lacking or failed:
-        raise InputError(
-            str(paths[0]), "not a whole report", value=", ".join(lacking + failed), legal="every benchmark"
-        )
+    wrong = lacking + [n for n, entry in result["benchmarks"].items() if "failed" in entry]
+    if wrong:
+        raise InputError(str(paths[0]), "not a whole report", value=", ".join(wrong), legal="every benchmark")
     return result
 
 
 def _read(path: Path) -> dict:
-    try:
-        result = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError) as error:
-        raise InputError(str(path), f"cannot be read: {error}") from None
+    result = json.loads(path.read_text("utf-8"))
     if result.get("schema") != SCHEMA:
         raise InputError(str(path), "not a report", value=str(result.get("schema")), legal=f"schema {SCHEMA}")
     return result
@@ -71,43 +111,35 @@ def replaced(result: dict, more: dict) -> dict:
     run = {key: more[key] for key in ("mode", "date", "seed", "seconds")}
     run |= {"load": more["machine"]["load"], "benchmarks": list(more["benchmarks"])}
     both = result["benchmarks"] | more["benchmarks"]
-    return result | {
-        "benchmarks": {name: both[name] for name in BENCHMARKS if name in both},
-        "further": [*result.get("further", []), run],
-    }
+    ordered = {name: both[name] for name in BENCHMARKS if name in both}
+    return result | {"benchmarks": ordered, "further": [*result.get("further", []), run]}
 
 
 def blocks(result: dict) -> dict[str, str]:
-    """What stands between a document's marks, by name."""
-    found = {"bench choose": choice(result), "bench made on": render.made_on(result)}
+    """What lies between a document's marks, by name."""
+    found = {"bench choose": choice(result), "bench made on": made_on(result)}
     for name, entry in result["benchmarks"].items():
-        found[f"bench findings {name}"] = "\n".join(f"- {line}" for line in render.remarks(entry))
+        found[f"bench findings {name}"] = "\n".join(f"- {line}" for line in remarks(entry))
         for key, data in entry["tables"].items():
-            found[f"bench {key}"] = bench_tables.markdown(data) + (
-                f"\n\n{data['note']}" if data["note"] else ""
-            )
+            note = f"\n\n{data['note']}" if data["note"] else ""
+            found[f"bench {key}"] = markdown(data) + note
     return found
-
-
-def images(result: dict) -> dict[str, bytes]:
-    return {f"{f.name}.svg": standalone(f).encode() for shown in figures(result).values() for f in shown}
 
 
 def publish(report: Path, further: Sequence[Path], root: Path) -> list[Path]:
     """Write everything that is published into the checkout `root`; returns what was written."""
     result = load(*(folder / "report.json" for folder in (report, *further)))
     files = {
-        REFERENCE: render.to_json(result),
-        REFERENCE.replace(".json", ".md"): render.to_markdown(result, "../../docs/images"),
+        REFERENCE: to_json(result),
+        REFERENCE.replace(".json", ".md"): to_markdown(result, "../../docs/images"),
     }
-    files |= {f"docs/images/{name}": data.decode() for name, data in images(result).items()}
-    if (report / truth.SHIPPED).is_file():
-        files[f"src/tactcad/bench/data/{truth.SHIPPED}"] = (report / truth.SHIPPED).read_text("utf-8")
+    files |= {f"docs/images/{name}": text for name, text in images(result).items()}
+    if (report / TRUTH).is_file():
+        files[f"benchmarks/data/{TRUTH}"] = (report / TRUTH).read_text("utf-8")
     for document in DOCUMENTS:
-        text = (root / document).read_text("utf-8")
+        files[document] = (root / document).read_text("utf-8")
         for name, block in blocks(result).items():
-            text = filled(text, name, block)
-        files[document] = text
+            files[document] = filled(files[document], name, block)
     for name, text in files.items():
         (root / name).write_text(text, "utf-8")
     return [root / name for name in files]

@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import os
-import re
 import shutil
 import tempfile
 import threading
@@ -25,6 +24,8 @@ from pathlib import Path
 
 import psutil
 import pyarrow.parquet as pq
+from measuring import processor_seconds
+from tables import filled, lines
 
 from tactcad.design.design_text import design_text
 from tactcad.design.load import read
@@ -83,48 +84,40 @@ def swept(study: Study, folder: Path, workers: int) -> run_sweep.Swept:
     return run_sweep.sweep(study, folder, None, workers, False, lambda _: None, lambda *_: None)
 
 
-def bare(study: Study, step: int) -> float:
-    """Processor seconds of the same calls in this process, nothing kept."""
-    one_task.measured(study, 0, min(step, study.count), Path())  # loads what is loaded once
-    start = time.process_time()
-    for i in range(0, study.count, step):
-        one_task.measured(study, i, min(i + step, study.count), Path())
-    return time.process_time() - start
+def bare(study: Study) -> float:
+    """Processor seconds of the same calls, one design each, in this process, nothing kept."""
+    one_task.measured(study, 0, 1, Path())  # loads what is loaded once
+    return processor_seconds(lambda: [one_task.measured(study, i, i + 1, Path()) for i in range(study.count)])
 
 
 def vector_call(study: Study) -> float:
     """Designs a second of processor time of the closed form and its promised error alone, in one call."""
     columns = designs_taken(study, 0, study.count)
     section = VectorDesigns(study.design, columns).section(4)
-    best = float("inf")
-    for _ in range(3):
-        start = time.process_time()
+
+    def call() -> None:
         ladder.evaluate(section, "solid")
         expected_error_of(section, "solid")
-        best = min(best, time.process_time() - start)
-    return study.count / best
+
+    return study.count / min(processor_seconds(call) for _ in range(3))
 
 
-def overhead(folder: Path) -> list[str]:
+def overhead(folder: Path) -> str:
     study, usual = study_of(folder, SMALL_TASKS, CLOSED), one_task.CLOSED_FORMS_A_TASK
     one_task.CLOSED_FORMS_A_TASK = 1
     try:
         took = swept(study, folder / "small", 1).seconds["computing"]
     finally:
         one_task.CLOSED_FORMS_A_TASK = usual
-    call = bare(study, 1)
-    return [
-        "| one task of one closed form | ms |",
-        "|---|---|",
-        f"| calling the function | {1e3 * call / SMALL_TASKS:.2g} |",
-        f"| as a task, kept in the store | {1e3 * took / SMALL_TASKS:.2g} |",
-        f"| overhead | {1e3 * (took - call) / SMALL_TASKS:.2g} |",
-    ]
+    call = bare(study)
+    spent = {"calling the function": call, "as a task, kept in the store": took, "overhead": took - call}
+    rows = [(name, f"{1e3 * seconds / SMALL_TASKS:.2g}") for name, seconds in spent.items()]
+    return lines("one task of one closed form | ms", rows)
 
 
-def two_workers(folder: Path) -> list[str]:
+def two_workers(folder: Path) -> str:
     """One worker against two, from the first task to the last: without starting, and loading the kernel."""
-    lines = ["| worker processes | 1, s | 2, s | times as fast | load before |", "|---|---|---|---|---|"]
+    rows = []
     one_element(folder / "small.toml")
     for what, count, measure, head in (
         ("elements by fem-plane", PLANE, ELEMENTS, ""),
@@ -137,8 +130,8 @@ def two_workers(folder: Path) -> list[str]:
             shutil.rmtree(folder / "cache", ignore_errors=True)  # exports find in it what an earlier one made
             took.append(per_task(study, folder / f"{what} {n}", n) * count)
         one, two = took
-        lines.append(f"| {count} {what} | {one:.3g} | {two:.3g} | {one / two:.2f} | {load:.2g} |")
-    return lines
+        rows.append((f"{count} {what}", f"{one:.3g}", f"{two:.3g}", f"{one / two:.2f}", f"{load:.2g}"))
+    return lines("worker processes | 1, s | 2, s | times as fast | load before", rows)
 
 
 def per_task(study: Study, folder: Path, workers: int) -> float:
@@ -175,7 +168,7 @@ def in_fresh_process(folder: Path, designs: int, name: str) -> tuple[run_sweep.S
     return found
 
 
-def closed_forms(folder: Path, designs: int) -> list[str]:
+def closed_forms(folder: Path, designs: int) -> str:
     study, load = study_of(folder, designs, CLOSED), os.getloadavg()[0]
     runs = [in_fresh_process(folder, designs, f"closed {n}") for n in range(RUNS)]
     got, whole = sorted(runs, key=lambda run: run[1])[RUNS // 2]
@@ -188,21 +181,20 @@ def closed_forms(folder: Path, designs: int) -> list[str]:
     pq.write_table(table, folder / "once.parquet")
     once = time.perf_counter() - start
     inside = designs / got.in_workers
-    return [
-        f"| {designs:.0e} closed forms, 2 worker processes | |",
-        "|---|---|",
-        f"| load of the machine before, of {os.cpu_count()} cores | {load:.2g} |",
-        *(f"| {name}, s | {seconds:.3g} |" for name, seconds in got.seconds.items()),
-        f"| whole, s | {whole:.3g} |",
-        f"| the same columns written once by pyarrow, s | {once:.3g} |",
-        f"| whole against that | {whole / once:.2g} |",
-        f"| designs a second of processor time inside workers | {inside:.3g} |",
-        f"| of the vector call alone | {rate:.3g} |",
-        f"| share | {inside / rate:.2g} |",
-        f"| most memory of the client, MB | {memory['client']:.0f} |",
-        f"| most memory of a worker, MB | {memory['worker']:.0f} |",
-        f"| results.parquet, MB | {(got.folder / 'results.parquet').stat().st_size / 1e6:.0f} |",
-    ]
+    rows = {
+        f"load of the machine before, of {os.cpu_count()} cores": f"{load:.2g}",
+        **{f"{name}, s": f"{seconds:.3g}" for name, seconds in got.seconds.items()},
+        "whole, s": f"{whole:.3g}",
+        "the same columns written once by pyarrow, s": f"{once:.3g}",
+        "whole against that": f"{whole / once:.2g}",
+        "designs a second of processor time inside workers": f"{inside:.3g}",
+        "of the vector call alone": f"{rate:.3g}",
+        "share": f"{inside / rate:.2g}",
+        "most memory of the client, MB": f"{memory['client']:.0f}",
+        "most memory of a worker, MB": f"{memory['worker']:.0f}",
+        "results.parquet, MB": f"{(got.folder / 'results.parquet').stat().st_size / 1e6:.0f}",
+    }
+    return lines(f"{designs:.0e} closed forms, 2 worker processes | ", list(rows.items()))
 
 
 def main() -> int:
@@ -216,13 +208,8 @@ def main() -> int:
         folder = Path(name)
         os.environ["TACTCAD_CACHE"] = str(folder / "cache")  # empty
         parts = [closed_forms(folder, args.designs), overhead(folder), two_workers(folder)]
-    begin, end = "<!-- tables sweeps -->\n", "<!-- end -->\n"
-    new = begin + "\n\n".join("\n".join(part) for part in parts) + "\n" + end
-    text = args.document.read_text(encoding="utf-8")
-    pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
-    if not pattern.search(text):
-        parser.error(f"{args.document}: no place for the tables: {begin.strip()}")
-    args.document.write_text(pattern.sub(lambda _: new, text), encoding="utf-8")
+    text = args.document.read_text("utf-8")
+    args.document.write_text(filled(text, "sweeps", "\n\n".join(parts)), "utf-8")
     return 0
 
 

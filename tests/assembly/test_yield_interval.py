@@ -6,7 +6,7 @@ import pytest
 from scipy.stats import binomtest
 
 from tactcad.assembly.yield_interval import of_share, widest
-from tactcad.bench.sample_costs import COUNTS
+from tactcad.costs.command_costs import COUNTS
 
 
 def test_a_shares_interval_is_clopper_and_pearsons():

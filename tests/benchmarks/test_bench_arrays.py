@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from measuring import array_of, array_text, published_text
 
-from tactcad.bench import arrays
 from tactcad.design.load import parse
 from tactcad.parts.rules import refuse_broken
 
@@ -12,13 +12,13 @@ from tactcad.parts.rules import refuse_broken
 @pytest.mark.parametrize("elements", [2, 10, 20, 30, 40, 100, 300, 400, 1000])
 @pytest.mark.parametrize("changed", [False, True])
 def test_its_designs_are_legal_and_of_the_size_they_say(elements, changed):
-    design = parse(arrays.text(elements, changed), "benchmark")
+    design = parse(array_text(elements, changed), "benchmark")
     refuse_broken(design)
     assert sum(map(len, design.array.row_arms)) == elements
     if not changed:
-        assert design.array.row_arms == arrays.of(elements).array.row_arms
+        assert design.array.row_arms == array_of(elements).array.row_arms
 
 
 def test_ten_elements_are_the_published_design():
-    assert parse(arrays.text(10), "a") == parse(arrays.published_text(), "a") == arrays.of(10)
-    assert parse(arrays.text(10, changed=True), "a") != arrays.of(10)
+    assert parse(array_text(10), "a") == parse(published_text(), "a") == array_of(10)
+    assert parse(array_text(10, changed=True), "a") != array_of(10)

@@ -6,9 +6,9 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from bench_plots import Panel, Point, error_against_time, place_labels
 
-from tactcad.bench.figures import Panel, Point, error_against_time
-from tactcad.paper.plots import panels, place_labels
+from tactcad.report.plots import panels
 
 CLUSTER = [
     Point("short", "closed form", 3.8e-8, 1.1),

@@ -8,10 +8,10 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from bench_geometry import Prepared, count_wrong, kernel_verdict, mesh_verdict, volume
+from known_pairs import GAPS, KINDS, known_pairs, lens
 from scipy.integrate import quad
 
-from tactcad.bench.pairs import GAPS, KINDS, known_pairs, lens
-from tactcad.bench.verdicts import Prepared, count_wrong, kernel_verdict, mesh_verdict
 from tactcad.parts.description import Extrusion
 
 PAIRS = list(known_pairs(2, seed=5))
@@ -136,7 +136,6 @@ def test_the_volume_of_triangles_is_the_mesh_librarys():
     import trimesh
 
     from tactcad.solids.build import build
-    from tactcad.solids.mesh_overlap import volume
     from tactcad.solids.triangles import triangles
 
     for pair in PAIRS[:9]:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import publish
 import pytest
+from bench import images, made_on
+from measuring import BENCHMARKS
+from tables import efficient
 from test_bench_command import follows_schema
 
-from tactcad.bench import render
-from tactcad.bench.front import efficient
-from tactcad.bench.session import BENCHMARKS
 from tactcad.design.messages import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -22,7 +22,7 @@ BLOCK = re.compile(r"<!-- table (bench [^>]+?) -->\n(.*?)\n?<!-- end -->", re.DO
 def test_the_reference_is_whole_and_says_machine_versions_and_date():
     follows_schema(RESULT)
     assert set(RESULT["benchmarks"]) == set(BENCHMARKS)
-    said = render.made_on(RESULT)
+    said = made_on(RESULT)
     for word in (
         RESULT["date"],
         RESULT["machine"]["processor"],
@@ -57,12 +57,12 @@ def test_benchmarks_page_lets_one_choose():
 
 
 def test_every_plot_is_made_from_the_reference_results():
-    images = publish.images(RESULT)
+    made = images(RESULT)
     assert {
         f"bench-{n}.svg" for n in ("choose", "rungs", "meshes", "tessellation", "interference", "scaling")
-    } == set(images)
-    for name, data in images.items():
-        assert (ROOT / "docs" / "images" / name).read_bytes() == data, (
+    } == set(made)
+    for name, data in made.items():
+        assert (ROOT / "docs" / "images" / name).read_text("utf-8") == data, (
             f"{name}; `python benchmarks/publish.py` writes it"
         )
 
@@ -87,9 +87,9 @@ def test_a_further_run_takes_the_place_of_what_it_measured_and_is_named():
         and both["benchmarks"]["rungs"] == RESULT["benchmarks"]["rungs"]
     )
     assert (
-        "full run" in render.made_on(both)
-        and "seed 123456" in render.made_on(both)
-        and "load 0.7: scaling." in render.made_on(both)
+        "full run" in made_on(both)
+        and "seed 123456" in made_on(both)
+        and "load 0.7: scaling." in made_on(both)
     )
     with pytest.raises(InputError, match="its versions differ"):
         publish.replaced(RESULT, more | {"versions": RESULT["versions"] | {"numpy": "1.0"}})

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from scipy.stats import binomtest
 
-from tactcad.bench import costs, kernel_costs, rung_costs, this_machine
-from tactcad.bench.tessellation import ANGULAR
 from tactcad.cli.main import main
+from tactcad.costs import command_costs, rung_costs, this_machine
+from tactcad.costs.command_costs import ANGULAR
 from tactcad.fem import fem_ladder
 from tactcad.mechanics.accuracy import CANDIDATES, expected_error
 from tactcad.mechanics.section import REFERENCE
@@ -28,7 +28,7 @@ DEEP = "0.25,2.0,0.8,6,3,4,4,0.33,69000,1.2"  # a narrow leaf with deep fillets,
 @pytest.fixture(autouse=True)
 def published_machine(monkeypatch, tmp_path):
     """Costs as published, whatever runs beside."""
-    monkeypatch.setattr(costs, "slowness", lambda: 1.0)
+    monkeypatch.setattr(this_machine, "slowness", lambda: 1.0)
     monkeypatch.setenv("TACTCAD_CACHE", str(tmp_path / "cache"))
 
 
@@ -114,10 +114,10 @@ def test_costs_follow_the_work(monkeypatch):
     one, three = rung_costs.rung_grades(REFERENCE), rung_costs.rung_grades(many)
     assert [g.name for g in one] == [c.name for c in CANDIDATES]
     assert [g.error for g in one] == [float(expected_error(REFERENCE, c)) for c in CANDIDATES]
-    start = costs.published()["start"]
+    start = this_machine.published()["start"]
     work = [g.seconds - start["numpy"] - start["elements"] for g in (one[-1], three[-1])]
     assert work[1] == pytest.approx(3.0 * work[0], rel=0.2)
-    monkeypatch.setattr(costs, "slowness", lambda: 2.0)
+    monkeypatch.setattr(this_machine, "slowness", lambda: 2.0)
     assert rung_costs.rung_grades(REFERENCE)[-1].seconds == pytest.approx(2.0 * one[-1].seconds, rel=0.06)
 
 
@@ -142,14 +142,14 @@ def test_calibration_is_short():
 
 
 def test_costs_are_published_with_their_machine():
-    record = costs.published()
+    record = this_machine.published()
     parts = {"mesh", "check", "export", "drawings", "guides", "build", "array", "synthesis", "array tried"}
     assert parts | {"start", "row", "sweep", "date", "machine"} <= set(record)
     assert set(record["mesh"]["seconds"]) == {f"{angular:g}" for angular in ANGULAR}
     assert record["calibration_s"] > 0.0 and set(record["elements"]) == {
         c.name for c in CANDIDATES if "fem" in c.rung
     }
-    assert Path(costs.DATA).is_file()
+    assert Path(this_machine.DATA).is_file()
 
 
 @pytest.mark.cad
@@ -175,8 +175,8 @@ def test_a_check_refuses_a_time_too_short_before_it_begins(capsys, monkeypatch):
 @pytest.mark.cad
 def test_several_designs_share_one_time_and_one_mesh(capsys):
     designs = [(load(name), ("array",)) for name in ("soft-tissue", "macro-array")]
-    one, other, both = (kernel_costs.check_grades(some) for some in (designs[:1], designs[1:], designs))
-    start = costs.published()["check"]["start"]
+    one, other, both = (command_costs.check_grades(some) for some in (designs[:1], designs[1:], designs))
+    start = this_machine.published()["check"]["start"]
     for a, b, c in zip(one, other, both, strict=True):
         assert c.seconds == pytest.approx(a.seconds + b.seconds - start, rel=0.01)
         assert a.error == b.error == c.error

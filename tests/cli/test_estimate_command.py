@@ -303,7 +303,7 @@ def test_estimates_load_neither_kernel_nor_scipy():
 
 
 def test_help_shows_examples(capsys):
-    for command in ("estimate", "size", "fit"):
+    for command in ("estimate", "size"):
         with pytest.raises(SystemExit) as done:
             main([command, "--help"])
         assert done.value.code == 0 and f"tactcad {command}" in capsys.readouterr().out

@@ -39,14 +39,3 @@ def test_a_cell_of_a_table_an_option_and_a_pose_are_read_by_it(capsys):
     with pytest.raises(SystemExit):
         parser.parse(["--force", "4_0"])
     assert "4_0" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("text", ["4_0", "\u0664", "1e3", "noon", "9" * 30])
-def test_a_date_that_is_no_time_is_refused(text, monkeypatch):
-    from tactcad.cli.fit import _today
-
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", text)
-    with pytest.raises(InputError, match="SOURCE_DATE_EPOCH: no time"):
-        _today()
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "86399")
-    assert _today().isoformat() == "1970-01-01"

@@ -10,9 +10,8 @@ import pytest
 import trimesh
 from trimesh.exchange.stl import export_stl
 
-from tactcad.bench.kernel_costs import promised
-from tactcad.bench.tessellation import ANGULAR
 from tactcad.cli.main import main
+from tactcad.costs.command_costs import ANGULAR, promised
 from tactcad.design.messages import CheckFailure
 from tactcad.export.stl import check_stl, part_stl
 from tactcad.scenes import make_scene

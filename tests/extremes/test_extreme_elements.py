@@ -8,16 +8,15 @@ import warnings
 import fem_extremes
 import numpy as np
 import pytest
+from fem_extremes import corner_angles, plane_health
 from hinges import scaled
-from plane_health import corner_angles, plane_health
+from samples import draw_range, section
 
 from tactcad.design.messages import CheckFailure
 from tactcad.fem import fem_ladder as elements
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.mapped_mesh import plane_mesh
 from tactcad.fem.shape import reference_shape
-from tactcad.fit.accuracy_samples import draw_range
-from tactcad.fit.fit_samples import section
 from tactcad.mechanics import ladder
 from tactcad.mechanics.section import REFERENCE
 

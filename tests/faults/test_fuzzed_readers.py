@@ -31,7 +31,6 @@ from tactcad.export.difference_page import page
 from tactcad.export.dxf import dxf_bytes
 from tactcad.export.geometry import geometry
 from tactcad.export.inspection import inspection_bytes
-from tactcad.fit import fit_samples
 from tactcad.lab import (
     as_made,
     as_made_text,
@@ -201,7 +200,6 @@ def readers(tmp_path_factory) -> dict[str, Reader]:
         Reader("manifest.json", export.manifest, lambda path: export.with_file("", path, old)),
         Reader("part.dxf", export.files["part.dxf"][2], lambda path: export.with_file("part.dxf", path, old)),
         Reader("bom.json", export.files["bom.json"][2], lambda path: export.with_file("bom.json", path, old)),
-        Reader("samples.csv", b"poisson,width\n0.3,1\n0.2,2.5\n,3\n", fit_samples.load),
         Reader("entry", entry_of(cache), lambda path: cached(path, cache)),
     ]
     return {reader.name: reader for reader in found}

@@ -10,12 +10,11 @@ from datetime import date
 
 import numpy as np
 import pytest
+from samples import draw_box, draw_corners, few_elements, section
 
 from tactcad.fem.convergence import converged_plane, converged_solid
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.solid_elements import solve_solid
-from tactcad.fit.corner_samples import draw_corners, few_elements
-from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import ladder
 from tactcad.mechanics.accuracy import expected_error_of
 from tactcad.mechanics.section import REFERENCE, HingeSection

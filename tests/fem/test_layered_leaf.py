@@ -14,7 +14,7 @@ from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.mechanics import gauge_signal, ladder
 from tactcad.mechanics.section import REFERENCE
-from tactcad.paper.gauge_layers import gauge_layers
+from tactcad.paper.array_model import gauge_layers
 from tactcad.parts.hinge_section import design_gauge, hinge_section
 from tactcad.parts.layout import Layout
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from samples import draw_box, section
 
 from tactcad.fem.face_strain import face_strain
 from tactcad.fem.plane_elements import solve_plane
 from tactcad.fem.shape import reference_shape
 from tactcad.fem.solid_elements import solve_solid
-from tactcad.fit.fit_samples import draw_box, section
 from tactcad.mechanics import strain
 from tactcad.mechanics.section import REFERENCE
 

@@ -25,7 +25,8 @@ from tactcad.mechanics.as_built import (
 from tactcad.mechanics.section import REFERENCE
 from tactcad.paper import budget, published, reference_stiffness, residuals
 from tactcad.paper.array_model import from_design
-from tactcad.paper.budget_element import AS_BUILT
+from tactcad.paper.budget_effects import AS_BUILT
+from tactcad.paper.prose import effect_text
 from tactcad.parts.designs import load
 
 TOLERANCE = load("macro-array").tolerance
@@ -126,7 +127,7 @@ def test_the_budget_s_sum_is_a_monte_carlo_of_the_same_inputs(array):
     small = replace(small, tolerance=replace(small.tolerance, recast_layer=1e-4, clamp_compliance=1e-6))
     data = published.load()
     b = budget.budget(data, small, reference_stiffness.study(data))
-    names = {name for name, _ in AS_BUILT.values()}
+    names = {effect_text(field, size=0.0, measured=0.0)[0] for field in AS_BUILT}
     said = sum(e.on_object**2 for e in b.effects if e.name in names) ** 0.5
 
     rng, draws, tol = np.random.default_rng(11), 200_000, small.tolerance

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from samples import draw_corners, draw_range, joined, section
 
-from tactcad.fit.accuracy_samples import draw_range
-from tactcad.fit.corner_samples import draw_corners
-from tactcad.fit.fit_samples import joined, section
 from tactcad.mechanics import ladder, validity
 from tactcad.mechanics.section import HingeSection
 

@@ -13,7 +13,7 @@ import pytest
 from tactcad.cli.main import main
 from tactcad.design.messages import InputError
 from tactcad.paper import examples, validation
-from tactcad.paper import report as reporting
+from tactcad.report import report as reporting
 
 ROOT = Path(__file__).parents[2]
 CALIBRATION, GRASP = ROOT / "hardware/examples/calibration.csv", ROOT / "hardware/examples/grasp.csv"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small_study import SMALL, swept, written
 
-from tactcad.bench import costs
+from tactcad.costs import this_machine
 from tactcad.design.allowance import Allowance
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.mechanics.accuracy import expected_error_of
@@ -22,7 +22,7 @@ from tactcad.sweep.vector_sections import VectorDesigns
 
 @pytest.fixture(autouse=True)
 def published_machine(monkeypatch):
-    monkeypatch.setattr(costs, "slowness", lambda: 1.0)
+    monkeypatch.setattr(this_machine, "slowness", lambda: 1.0)
 
 
 def study(folder, **changes):
@@ -51,7 +51,7 @@ def test_time_is_shared_by_workers_and_grows_with_designs(tmp_path):
     def seconds(some, workers):
         return with_allowance(some, Allowance(0.002), workers)[1].grade.seconds
 
-    start = costs.published()["sweep"]["start"]
+    start = this_machine.published()["sweep"]["start"]
     one, two = seconds(asked, 1) - start, seconds(asked, 2) - start
     assert one == pytest.approx(2.0 * two, rel=0.02)
     more = replace(asked, study=replace(asked.study, count=4 * asked.study.count))

@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     started = time.perf_counter()
     design, picked = load(args.design), None
     if asked:
-        from tactcad.bench.sample_costs import YIELD, arrays_of, build_grades
+        from tactcad.costs.command_costs import YIELD, arrays_of, build_grades
 
         picked = pick(build_grades(design), asked, YIELD)
         count = arrays_of(picked.grade)

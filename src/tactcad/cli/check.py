@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _picked(args: argparse.Namespace, asked: Allowance) -> tuple[Meshing, Picked]:
     """One mesh for all designs; one that is refused costs nothing here."""
-    from tactcad.bench.kernel_costs import VOLUME, check_grades, meshing_of
+    from tactcad.costs.command_costs import VOLUME, check_grades, meshing_of
     from tactcad.design.allowance import pick
     from tactcad.design.messages import InputError
     from tactcad.parts.designs import load

@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from tactcad.bench.sample_costs import arrays_of
+    from tactcad.costs.command_costs import arrays_of
     from tactcad.synthesis import target_report as report
     from tactcad.synthesis.synthesise import ARRAYS, design
     from tactcad.synthesis.target import read_target
@@ -88,7 +88,7 @@ def _next(out: str) -> str:
 
 def _picked(target: Target, asked: Allowance) -> Picked:
     """With the whole report in the time, or else with what of it the search and the yield leave."""
-    from tactcad.bench.sample_costs import YIELD, synthesis_grades
+    from tactcad.costs.command_costs import YIELD, synthesis_grades
     from tactcad.synthesis.work_ahead import work_ahead
 
     try:

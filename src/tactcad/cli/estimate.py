@@ -129,7 +129,7 @@ def _asked(args: argparse.Namespace) -> Allowance:
 
 def _chosen(layout: Layout, asked: Allowance) -> tuple[Candidate, Picked]:
     """The rung for all elements, equal ones solved once."""
-    from tactcad.bench.rung_costs import rung_grades
+    from tactcad.costs.rung_costs import rung_grades
     from tactcad.lab.array_estimate import choose_rung, distinct_sections
     from tactcad.mechanics.accuracy import CANDIDATES, require_measured
 
@@ -156,7 +156,7 @@ def _batch(args: argparse.Namespace, asked: Allowance) -> int:
     said: list[Picked] = []
 
     def accuracy(section: HingeSection) -> float:
-        from tactcad.bench.rung_costs import row_grades
+        from tactcad.costs.rung_costs import row_grades
 
         grades = row_grades(section, asked.within) or row_grades(section)
         if not grades:

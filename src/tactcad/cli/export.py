@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     options = ExportOptions(tuple(scenes), pose_of(args.pose, design), args.guide, args.detail, args.drawings)
     picked = None
     if asked:
-        from tactcad.bench.kernel_costs import VOLUME, export_grades, meshing_of
+        from tactcad.costs.command_costs import VOLUME, export_grades, meshing_of
         from tactcad.parts.rules import refuse_broken
 
         refuse_broken(design)

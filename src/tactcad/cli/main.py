@@ -37,8 +37,6 @@ COMMANDS = {
     "diff": "what changed between two designs, git revisions, exports or golden files, and what it means",
     "estimate": "stiffness, strain and strength of a design's elements, or of a table of designs",
     "size": "the hinge that gives a wanted stiffness, and what cutting tolerance leaves of it",
-    "fit": "make the finite-element samples and fit the closed forms' constants on them",
-    "bench": "measure speed against accuracy on this machine: rungs, meshes, tessellation, scaling, peers",
     "validate": "hold the models against the paper's Tables 1 and 2, as a report",
     "calibrate": "force, deflection and signal readings to stiffness and sensitivity, with intervals",
     "stiffness": "grasp readings and a calibration to the object's stiffness, with intervals",

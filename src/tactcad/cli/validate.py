@@ -38,8 +38,9 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import find
     from tactcad.export.publication import turn
     from tactcad.paper import array_model as array
-    from tactcad.paper import published, report, validation
+    from tactcad.paper import published, validation
     from tactcad.parts.designs import load
+    from tactcad.report import report
 
     if args.out:
         refuse_overwriting(args.out, args.table1, args.table2, find(args.design))

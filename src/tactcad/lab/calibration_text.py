@@ -13,10 +13,10 @@ from tactcad.design.files import read_json
 from tactcad.design.messages import CheckFailure, InputError
 from tactcad.lab.calibration import ElementCalibration
 from tactcad.lab.load_cell import LoadCell
-from tactcad.lab.plain import plain
 from tactcad.lab.regression import KNOWN
 from tactcad.lab.sensitivity import Sensitivity
 from tactcad.lab.series_spring import Estimate
+from tactcad.report.plain import plain
 
 SCHEMA = "tactcad-calibration-1"
 ELEMENT = Field("element", "1", 1, 100_000, integer=True)

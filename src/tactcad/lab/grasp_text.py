@@ -8,7 +8,7 @@ from typing import Any
 
 from tactcad.lab.combine import Interval
 from tactcad.lab.grasp import Grasp
-from tactcad.lab.plain import plain
+from tactcad.report.plain import plain
 
 SCHEMA = "tactcad-stiffness-1"
 

@@ -4,7 +4,7 @@
 elasticity of the element cut at load line and clamp edge, solved by solid elements to their limit. It
 excludes what the reference leaves out, such as the real hinge's thickness and the real position of the load.
 
-`data/accuracy.json`, written by `tactcad fit`, divides the envelope into zones by notch form and
+`data/accuracy.json`, written by `benchmarks/ladder_fit.py`, divides the envelope into zones by notch form and
 dimensionless groups. For each zone it holds the largest error of every candidate, the error that is promised,
 and the time an element takes.
 """

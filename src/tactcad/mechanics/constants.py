@@ -1,4 +1,4 @@
-"""The fitted constants, read from the file that `tactcad fit` writes; never typed in."""
+"""The fitted constants, read from the file that `benchmarks/ladder_fit.py` writes; never typed in."""
 
 from __future__ import annotations
 

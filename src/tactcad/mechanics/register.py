@@ -1,7 +1,7 @@
 """The rungs of the model ladder, each registered once, in the order of the work they take.
 
 Every list of rungs elsewhere is derived from this one. A new closed form is a file with its compliance and an
-entry in `REGISTER`; `tactcad fit --shipped-samples` then measures its errors (data/ladder.json,
+entry in `REGISTER`; `benchmarks/ladder_fit.py` then measures its errors (data/ladder.json,
 data/accuracy.json).
 """
 

@@ -1,6 +1,6 @@
 """Errors of rung solid's closed forms for strain and stress at a design, against solid elements.
 
-`data/strain.json`, written by `tactcad.fit.strain_fit`, divides the range into zones, as data/accuracy.json
+`data/strain.json`, written by `benchmarks/strain_fit.py`, divides the range into zones, as data/accuracy.json
 does for K.
 """
 

@@ -15,7 +15,6 @@ from tactcad.mechanics.gauge_signal import Gauge
 from tactcad.mechanics.readout import ReadOut
 from tactcad.mechanics.section import HingeSection
 from tactcad.mechanics.self_heating import Power
-from tactcad.paper.gauge_layers import gauge_layers
 from tactcad.parts.bridge_figures import power_of
 from tactcad.parts.hinge_section import design_gauge, design_readout, hinge_section
 from tactcad.parts.layout import Layout
@@ -109,3 +108,23 @@ def from_design(design: Design) -> ArrayModel:
         gauge_layers(design),
         design.bonding is not None,
     )
+
+
+def gauge_layers(design: Design) -> tuple[Layer, ...]:
+    """Layers from the leaf's face outwards, the foil last.
+
+    The first one is the adhesive, of a design that says which ([bonding]); what of gauge.grid_height it does
+    not take is the carrier's backing. The foil's metal counts by its share of the grid's area.
+    """
+    g, b = design.gauge, design.bonding
+    carrier = (min(g.carrier_width, design.sheet.thickness), (g.carrier_arm_side, g.carrier_body_side))
+    glue = b.glue_thickness if b else 0.0
+    backing = g.grid_height - glue
+    half = g.grid_length / 2
+    layers = [Layer(glue, b.glue_modulus, *carrier)] if b else []
+    if backing > 0:
+        layers.append(Layer(backing, g.carrier_modulus, *carrier))
+    if g.foil_thickness > 0:
+        foil = (g.foil_thickness, g.foil_modulus * g.foil_coverage, g.grid_width, (half, half))
+        layers.append(Layer(*foil))
+    return tuple(layers)

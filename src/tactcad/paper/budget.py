@@ -8,16 +8,11 @@ supports.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log, nan
 
 import numpy as np
 
-from tactcad.mechanics import lumped
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.budget_effect import BudgetPair, Effect
-from tactcad.paper.budget_element import element
-from tactcad.paper.budget_rig import rig, stage_error
-from tactcad.paper.budget_signal import signal
+from tactcad.paper.budget_effects import BudgetPair, Effect, effects
 from tactcad.paper.published import Published
 from tactcad.paper.reference_stiffness import Table2Study
 
@@ -44,12 +39,6 @@ def budget(data: Published, array: ArrayModel, study: Table2Study) -> Budget:
     K_m = float(k[np.argmin(np.abs(np.log(study.reference_printed / k / data.figure["proposed_ratio"])))])
     short, long = (array.section.rows([int(i)]) for i in (np.argmin(array.arm), np.argmax(array.arm)))
     pair = BudgetPair(K_r, K_m, data.figure["figure_6_sample"], short, long)
-    effects = [
-        _reference(pair, study, data, array),
-        *element(pair, array),
-        *rig(pair, data, array),
-        *signal(pair, data, array),
-    ]
     return Budget(
         K_r,
         K_m,
@@ -57,22 +46,5 @@ def budget(data: Published, array: ArrayModel, study: Table2Study) -> Budget:
         pair.by_reference,
         pair.by_measuring,
         -pair.by_ratio,
-        tuple(sorted(effects, key=lambda e: -e.on_object)),
-    )
-
-
-def _reference(pair: BudgetPair, study: Table2Study, data: Published, array: ArrayModel) -> Effect:
-    size = abs(log(study.reference_printed / pair.K_r))
-    R = float(lumped.deflection_ratio(pair.K_r, pair.K_m, pair.x))
-    off = abs(float(lumped.object_stiffness(study.reference_printed, pair.K_m, R)) / pair.x - 1)
-    half = log(study.supported.high[0] / pair.K_r)
-    stage = stage_error(data, array)
-    return Effect(
-        "reference stiffness, printed against supported",
-        f"equation (3) with either; the supported one's own interval is ±{half:.0%} of K_r",
-        size,
-        nan,
-        off,
-        "calibrate the reference element again",
-        abs(pair.by_reference) * stage,
+        tuple(sorted(effects(pair, study, data, array), key=lambda e: -e.on_object)),
     )

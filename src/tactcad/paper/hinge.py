@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.special import fdtri
 
-from tactcad.lab.plain import UNREPORTED
 from tactcad.lab.regression import t_quantile
 from tactcad.mechanics import ladder, strain
 from tactcad.mechanics.section import HingeSection
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.published import Published
 from tactcad.paper.residuals import matched
+from tactcad.report.plain import UNREPORTED
 
 LENGTHS = np.linspace(0.30, 2.0, 171)  # mm, slot length l
 RADII = np.linspace(0.05, 0.60, 56)  # mm, fillet radius r

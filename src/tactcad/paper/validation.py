@@ -30,7 +30,7 @@ from tactcad.paper.pages import (
     table2_page,
 )
 from tactcad.paper.published import Published
-from tactcad.paper.report import ValidationReport, sig
+from tactcad.report.report import ValidationReport, sig
 
 SEED = 20260101  # of every Monte Carlo draw: the same report from the same data
 LEAST_COMMON = 4  # elements of Table 1 that a design must have for meaningful fits

@@ -8,6 +8,7 @@ from math import isclose
 from typing import Literal
 
 import manifold3d
+import numpy as np
 from OCP.BRepAlgoAPI import BRepAlgoAPI_BooleanOperation, BRepAlgoAPI_Common, BRepAlgoAPI_Cut
 from OCP.Standard import Standard_Failure
 from OCP.TopAbs import TopAbs_SOLID
@@ -15,7 +16,6 @@ from OCP.TopoDS import TopoDS_Shape
 
 from .explore import subshapes
 from .measure import measure, volume
-from .mesh_overlap import closed
 from .polyhedron import polyhedra
 from .triangles import triangles
 
@@ -82,3 +82,13 @@ def _without_films(mesh: manifold3d.Manifold) -> manifold3d.Manifold:
     """Without what is thinner than the chords' error: one curved face, meshed twice."""
     thick = [m for m in mesh.decompose() if 2.0 * m.volume() > CHORD * m.surface_area()]
     return manifold3d.Manifold.compose(thick)
+
+
+def closed(mesh: tuple[np.ndarray, np.ndarray]) -> manifold3d.Manifold:
+    """A mesh (vertices, mm; triangles) as a closed surface. Raises ValueError where it is not closed."""
+    made = manifold3d.Manifold(
+        manifold3d.Mesh64(np.ascontiguousarray(mesh[0]), np.ascontiguousarray(mesh[1], dtype=np.uint64))
+    )
+    if made.status() != manifold3d.Error.NoError:
+        raise ValueError(f"not a closed mesh: {made.status()}")
+    return made

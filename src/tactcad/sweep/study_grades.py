@@ -10,10 +10,9 @@ from dataclasses import replace
 import numpy as np
 
 from tactcad.assembly.yield_interval import widest
-from tactcad.bench.costs import here, linear, published
-from tactcad.bench.kernel_costs import counts
-from tactcad.bench.rung_costs import seconds_each
-from tactcad.bench.sample_costs import COUNTS, YIELD
+from tactcad.costs.command_costs import COUNTS, YIELD, counts
+from tactcad.costs.rung_costs import seconds_each
+from tactcad.costs.this_machine import here, linear, published
 from tactcad.design.allowance import Allowance, Grade, Picked, pick
 from tactcad.design.load import from_table
 from tactcad.design.messages import CheckFailure, InputError

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from tactcad.design.files import read_json, write_whole
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.paper.plots import BLUE, GREY, drawn, panels
-from tactcad.paper.report import ReportSection, ReportTable, ValidationReport, percent, to_html
+from tactcad.report.plots import BLUE, GREY, drawn, panels
+from tactcad.report.report import ReportSection, ReportTable, ValidationReport, percent, to_html
 
 from .kept import mark_of
 from .results_table import PARQUET

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.budget import Budget
-from tactcad.paper.report import Figure, ReportSection, ReportTable, listed, percent, sig, tabulated
+from tactcad.paper.prose import drawn, section, tabulated
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, ReportSection, ReportTable, listed, percent, sig
 
 MATTERS = 0.05
 
 
 def page(b: Budget) -> ReportSection:
-    return ReportSection(
+    return section(
         "budget",
-        "Uncertainty budget",
-        "Every effect with its size for this array, carried to K_obj of one pair: K_r = "
-        f"{sig(b.reference)}, K_m = {b.measuring:g}, K_obj = {b.object_stiffness:g} N/mm.",
         findings(b),
         (_table(b),),
         (_plot(b),),
         b,
+        reference=sig(b.reference),
+        measuring=b.measuring,
+        object_stiffness=b.object_stiffness,
     )
 
 
@@ -49,7 +50,7 @@ def _table(b: Budget) -> ReportTable:
         return "–" if np.isnan(v) else percent(v) if v < 10 else f"× {sig(v)}"
 
     return tabulated(
-        "Effects by size on K_obj",
+        "budget table",
         b.effects,
         ("effect", "", lambda e: e.name),
         ("on K", "shortest arm", lambda e: part(e.short_arm)),
@@ -58,9 +59,6 @@ def _table(b: Budget) -> ReportTable:
         ("how computed", "", lambda e: e.how),
         ("remedy", "", lambda e: e.remedy),
         ("remaining", "on K_obj", lambda e: part(e.remaining)),
-        note="Half-widths, carried to K_obj by first-order sensitivities, which large sizes exceed. "
-        "'assumed' and 'chosen' values stand in the source. Dimensions matter only where K is taken "
-        "from the drawing; a calibrated element carries only its calibration.",
     )
 
 
@@ -92,8 +90,4 @@ def _plot(b: Budget) -> Figure:
         ax.set(ylim=(-0.7, len(shown) - 0.3), xlabel="half-width on K_obj (left edge: 0.03 % and less)")
         ax.legend(loc="lower right")
         ax.grid(axis="y", visible=False)
-        return d.drawn(
-            figure,
-            "budget",
-            "Effects on K_obj, largest first, and what a better rig or sample leaves of them.",
-        )
+        return drawn(figure, "budget")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.gain import GainFit
-from tactcad.paper.report import (
+from tactcad.paper.prose import drawn, section, table, tabulated
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Cell,
     Figure,
     Marked,
@@ -19,19 +20,12 @@ from tactcad.paper.report import (
     percent,
     sig,
     signed_percent,
-    tabulated,
 )
 
 
 def page(g: GainFit, array: ArrayModel) -> ReportSection:
-    return ReportSection(
-        "gain",
-        "Signal sensitivity K_v by one gain",
-        "All elements share one read-out. Does one gain explain their K_v, and which gain is it?",
-        findings(g, array),
-        (_by_element(g), _lengths(g), _heating(g, array)),
-        (_plot(g),),
-        g,
+    return section(
+        "gain", findings(g, array), (_by_element(g), _lengths(g), _heating(g, array)), (_plot(g),), g
     )
 
 
@@ -84,7 +78,7 @@ def findings(g: GainFit, array: ArrayModel) -> tuple[str, ...]:
 def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
     switched = f"on for {array.power.on_time * 1e3:g} ms in every {array.power.period:g} s"
     return tabulated(
-        "Self-heating of the grid",
+        "gain heating",
         (("power on all the time", g.always_on, g.drift_always_on), (switched, g.switched, g.drift_switched)),
         ("", "", lambda row: row[0]),
         ("mean power", "mW", lambda row: row[1].power * 1e3),
@@ -93,8 +87,6 @@ def _heating(g: GainFit, array: ArrayModel) -> ReportTable:
         ("drift dR/R", "10⁻⁶", lambda row: f"{row[1].drift * 1e6:.1f}".replace("-", "−")),
         ("reads as, least", "mN", lambda row: row[2].min() * 1e3),
         ("largest", "mN", lambda row: row[2].max() * 1e3),
-        note="Grid over leaf: heat through the backing; switched: at the end of a reading, the warmest "
-        "moment. The drift is what the bridge's other arms leave.",
     )
 
 
@@ -103,7 +95,7 @@ def _by_element(g: GainFit) -> ReportTable:
         return Marked(g.predicted[i]) if abs(g.residual[i]) > 2 * g.scatter else g.predicted[i]
 
     return tabulated(
-        "Predicted and printed sensitivities (magnitudes)",
+        "gain by_element",
         range(len(g.element)),
         ("element", "", lambda i: int(g.element[i])),
         ("arm a", "mm", lambda i: exact(g.arm[i])),
@@ -116,16 +108,13 @@ def _by_element(g: GainFit) -> ReportTable:
         ("signal at largest deflection", "V", lambda i: g.signal.volts[i]),
         ("bridge non-linearity", "", lambda i: percent(g.signal.nonlinearity[i])),
         ("resolution", "mN", lambda i: g.signal.resolution[i] * 1e3),
-        note="The printed signs are negative: gauge and bridge arm may be exchanged, which the paper's "
-        "figure would show. The last four columns use the design's read-out, not the fitted gain. "
-        "Resolution: two standard deviations of the averaged reading.",
     )
 
 
 def _lengths(g: GainFit) -> ReportTable:
     pick = np.unique(np.linspace(0, len(g.lengths) - 1, 7).round().astype(int))
-    return ReportTable(
-        "The gain that another hinge length would need",
+    return table(
+        "gain lengths",
         (("slot length", "mm"), *((f"{g.lengths[i]:.2f}", "") for i in pick)),
         (
             ("fitted gain, V", *(sig(g.gain_at_length[i]) for i in pick)),
@@ -182,6 +171,4 @@ def _plot(g: GainFit) -> Figure:
             title="gain and length: every point on the line fits equally well",
             ylim=0,
         )
-        return d.drawn(
-            figure, "gain", "Left: K_v with one gain. Right: the gain that each slot length would need."
-        )
+        return drawn(figure, "gain")

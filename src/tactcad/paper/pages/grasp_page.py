@@ -4,29 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.grasp_figures import Figure6, Figure7, Simulated
-from tactcad.paper.report import (
-    Figure,
-    ReportSection,
-    ReportTable,
-    interval,
-    percent,
-    sig,
-    signed_percent,
-    tabulated,
-)
+from tactcad.paper.prose import drawn, section, tabulated
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, ReportSection, ReportTable, interval, percent, sig, signed_percent
 
 VISIBLE = 0.05  # drift of R over the load that a reader sees in Figure 6
 
 
 def page(six: Figure6, seven: Figure7, array: ArrayModel) -> ReportSection:
-    return ReportSection(
+    return section(
         "figures",
-        "Figures 6 and 7 redrawn",
-        "R against the grasping force, simulated with all elements in parallel on one sample; and R "
-        "against K_m/K_obj with the measured points.",
         findings(six, seven, array),
         (_table6(six), _table7(seven)),
         (_figure6(six), _figure7(seven)),
@@ -80,7 +69,7 @@ def _table6(six: Figure6) -> ReportTable:
         return signed_percent(s.true[i] / six.measured[i] - 1)
 
     return tabulated(
-        f"R on the {six.object_stiffness:g} N/mm sample",
+        "grasp table6",
         range(len(six.measuring)),
         ("K_m", "N/mm", lambda i: f"{six.measuring[i]:g}"),
         ("R measured", "", lambda i: six.measured[i]),
@@ -91,14 +80,13 @@ def _table6(six: Figure6) -> ReportTable:
         ("s of R by noise", f"{least:g} N", lambda i: six.as_supported.deviation[i, 0]),
         ("s of R by pad heights", f"{least:g} N", lambda i: six.with_pad_heights.deviation[i, 0]),
         ("the same", f"{most:.4g} N", lambda i: six.with_pad_heights.deviation[i, -1]),
-        note="s: standard deviation over simulated grasps. The element that did not function presses too: "
-        "its stiffness is the beam model's.",
+        object_stiffness=six.object_stiffness,
     )
 
 
 def _table7(seven: Figure7) -> ReportTable:
     return tabulated(
-        "Straight lines through Figure 7's points",
+        "grasp table7",
         range(len(seven.measuring)),
         ("K_m", "N/mm", lambda i: f"{seven.measuring[i]:g}"),
         ("K_m/K_obj", "", lambda i: interval(seven.relative[i].min(), seven.relative[i].max())),
@@ -140,12 +128,7 @@ def _figure6(six: Figure6) -> Figure:
             columnspacing=1.2,
             handletextpad=0.3,
         )
-        return d.drawn(
-            figure,
-            "figure-6",
-            f"Figure 6 simulated for the {six.object_stiffness:g} N/mm sample: one grasp with noise, bars of "
-            "two standard deviations over many. Open symbols at the right edge: Table 2's measured R.",
-        )
+        return drawn(figure, "figure-6", object_stiffness=six.object_stiffness)
 
 
 def _figure7(seven: Figure7) -> Figure:
@@ -164,9 +147,4 @@ def _figure7(seven: Figure7) -> Figure:
             ax.set(title=title, xlabel="K_m/K_obj", ylim=(0, 11))
         axes[0].set_ylabel("deflection ratio R")
         axes[1].legend(loc="upper right", ncols=2, title="measured, N/mm")
-        return d.drawn(
-            figure,
-            "figure-7",
-            "Figure 7 again: measured R (symbols) and equation (2) (lines), with the printed and with "
-            "the supported reference stiffness.",
-        )
+        return drawn(figure, "figure-7")

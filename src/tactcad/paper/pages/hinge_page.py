@@ -4,32 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
 from tactcad.paper.hinge import LENGTHS, RADII, STRAIN_ACCURACY, HingeFit, face_factor
-from tactcad.paper.report import (
-    Figure,
-    ReportSection,
-    ReportTable,
-    interval,
-    percent,
-    sig,
-    signed_percent,
-    tabulated,
-)
+from tactcad.paper.prose import drawn, section, table, tabulated
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, ReportSection, ReportTable, interval, percent, sig, signed_percent
 
 
 def page(h: HingeFit, array: ArrayModel) -> ReportSection:
-    return ReportSection(
-        "hinge",
-        "Which hinge fits Table 1 and the two strains",
-        "The paper gives the hinge's thickness, not its length, fillet radius or notch form. What do "
-        "its data say about them?",
-        findings(h),
-        (_forms(h), _strains(h, array), _left_out(h)),
-        (_map(h),),
-        h,
-    )
+    return section("hinge", findings(h), (_forms(h), _strains(h, array), _left_out(h)), (_map(h),), h)
 
 
 def findings(h: HingeFit) -> tuple[str, ...]:
@@ -108,7 +91,7 @@ def _valley(h: HingeFit) -> tuple[float, float, float]:
 def _forms(h: HingeFit) -> ReportTable:
     own = h.own
     return tabulated(
-        f"Best hinge by notch form, thickness fixed, {len(h.element)} elements",
+        "hinge forms",
         h.forms,
         ("notch", "", lambda f: f.name),
         (f"length at r = {h.design_radius:g} mm", "mm", lambda f: f.design_length),
@@ -117,11 +100,12 @@ def _forms(h: HingeFit) -> ReportTable:
         ("and r", "mm", lambda f: f.best_radius),
         ("scatter left in K", "ln", lambda f: percent(f.best_scatter)),
         ("E b t³/(12 K L²)", "mm", lambda f: f.effective_length),
-        note="Least squares of ln K over l and r by the solid rung. Only length, radius and form, which the "
-        "paper omits, may be taken into a design from here, with their interval as the origin: l "
-        f"{own.design_length:.2f} mm ({own.design_low:.2f} to {own.design_high:.2f}) at r "
-        f"{h.design_radius:g} mm, {own.name}, by fit of Table 1. Thicknesses of single elements belong "
-        "to this report.",
+        count=len(h.element),
+        design_length=own.design_length,
+        design_low=own.design_low,
+        design_high=own.design_high,
+        design_radius=h.design_radius,
+        form=own.name,
     )
 
 
@@ -134,8 +118,8 @@ def _strains(h: HingeFit, array: ArrayModel) -> ReportTable:
             float(face_factor(section.with_(two_sided=two)).item()) * nominal * 100 for two in (False, True)
         ]
         rows.append((arm, printed * 100, nominal * 100, f"{printed / nominal:.4f}", *forms))
-    return ReportTable(
-        "The paper's two strains at 2 N",
+    return table(
+        "hinge strains",
         (
             ("arm a", "mm"),
             ("printed", "%"),
@@ -145,14 +129,13 @@ def _strains(h: HingeFit, array: ArrayModel) -> ReportTable:
             ("two-sided, gauge face", "%"),
         ),
         tuple(rows),
-        "Gauge face at the hinge's centre, plane stress as in the paper, with the design's r = "
-        f"{h.design_radius:g} mm.",
+        design_radius=h.design_radius,
     )
 
 
 def _left_out(h: HingeFit) -> ReportTable:
-    return ReportTable(
-        "Fitted length without one element",
+    return table(
+        "hinge left_out",
         (("left out", ""), *((f"no. {n}", "") for n in h.leave_out)),
         (("l, mm", *(f"{v:.2f}" for v in h.leave_out.values())),),
     )
@@ -194,9 +177,4 @@ def _map(h: HingeFit) -> Figure:
         bar = figure.colorbar(shown, ax=axes, pad=0.01)
         bar.set_label("scatter of ln K")
         bar.set_ticks(levels[1:], labels=[f"{v:.3f}" for v in levels[1:]])
-        return d.drawn(
-            figure,
-            "hinge-map",
-            "Scatter of ln K over slot length and fillet radius. Red: joint 95 % region; dashed: best "
-            "length at each radius; dotted: full round, l = 2r.",
-        )
+        return drawn(figure, "hinge-map")

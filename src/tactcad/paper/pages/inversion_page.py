@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.inversion import Inversion, Inverted
-from tactcad.paper.report import Figure, Marked, ReportSection, ReportTable, interval, percent, sig
+from tactcad.paper.prose import drawn, section, table
+from tactcad.report import plots as d
+from tactcad.report.report import Figure, Marked, ReportSection, ReportTable, interval, percent, sig
 
 WELL = 5.0  # |condition number| below which a pair is called well conditioned
 FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called right
@@ -14,10 +15,8 @@ FACTOR = 1.5  # an estimate within this factor of the sample's K_obj is called r
 
 def page(v: Inversion) -> ReportSection:
     sentences = findings(v)
-    return ReportSection(
+    return section(
         "inversion",
-        "Inversion: object stiffness from R",
-        "What would a user of this array have read off as K_obj, by equation (3), from Table 2's R?",
         sentences,
         (_table(v, v.supported), _table(v, v.printed)),
         (_plot(v),),
@@ -146,12 +145,12 @@ def _table(v: Inversion, w: Inverted) -> ReportTable:
             cells.append(text if _right(value, x) else Marked(text))
         rows.append((f"{k:g}", *cells))
         rows.append(("condition", *(f"{c:.1f}" for c in w.condition[i])))
-    return ReportTable(
-        f"K_obj by equation (3) with K_r = {sig(w.reference)} N/mm, 95 % intervals by Fieller",
+    return table(
+        "inversion table",
         (("K_m", "N/mm"), *((f"sample {x:g}", "N/mm") for x in v.object_stiffness)),
         tuple(rows),
-        f"Marked: not within a factor {FACTOR:g}. open: the interval runs through infinity. condition: "
-        "dln K_obj/dln R at the sample's K_obj.",
+        reference=sig(w.reference),
+        factor=FACTOR,
     )
 
 
@@ -221,9 +220,4 @@ def _plot(v: Inversion) -> Figure:
             columnspacing=1.2,
             handletextpad=0.3,
         )
-        return d.drawn(
-            figure,
-            "inversion",
-            "Object stiffness from R. Open symbols at an edge: no positive K_obj, or an interval that "
-            "runs through infinity.",
-        )
+        return drawn(figure, "inversion")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
+from tactcad.paper.prose import drawn, section, table, tabulated
 from tactcad.paper.reference_element import Explanation, ReferenceElement
-from tactcad.paper.report import (
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Cell,
     Figure,
     Marked,
@@ -16,21 +17,18 @@ from tactcad.paper.report import (
     listed,
     percent,
     sig,
-    tabulated,
 )
 
 
 def page(e: ReferenceElement) -> ReportSection:
-    return ReportSection(
+    return section(
         "reference",
-        f"The reference element, no. {e.element}",
-        "Its printed signals and deflections do not match its printed K_v. What could explain its "
-        "stiffness, and what would each explanation do to K_v?",
         findings(e),
         (_ranges(e), _accounts(e), _explanations(e)),
         (_plot(e),),
         e,
         (_loads(e),),
+        element=e.element,
     )
 
 
@@ -149,12 +147,12 @@ def _ranges(e: ReferenceElement) -> ReportTable:
         ("K_v that they imply, V/mm", *e.implied_k_v),
         (f"deflection by Table 1's K_v of {e.printed_k_v:g} V/mm, µm", *e.deflection_from_signal),
     )
-    return ReportTable(
-        "Printed ranges of the reference element",
+    return table(
+        "reference ranges",
         (("", ""), ("least", ""), ("largest", "")),
         rows,
-        f"For the softest element the text's largest signal and deflection imply {sig(e.softest_k_v[0])} "
-        f"V/mm, where Table 1 has {sig(e.softest_k_v[1])}.",
+        softest_k_v=sig(e.softest_k_v[0]),
+        softest_k_v_2=sig(e.softest_k_v[1]),
     )
 
 
@@ -163,7 +161,7 @@ def _accounts(e: ReferenceElement) -> ReportTable:
         return text if agrees else Marked(text)
 
     return tabulated(
-        "What the reference element would have shown under each account of Table 2",
+        "reference accounts",
         e.readings,
         ("account", "", lambda r: r.name),
         ("K_r", "N/mm", lambda r: r.stiffness),
@@ -171,8 +169,8 @@ def _accounts(e: ReferenceElement) -> ReportTable:
         ("added weights", "", lambda r: f"{r.weights:.1f}"),
         ("deflection as printed", "µm", lambda r: pick(interval(*r.deflection), r.deflection_agrees)),
         ("signal by K_v", "V", lambda r: pick(interval(*r.signal), r.signal_agrees)),
-        note="All elements in parallel on one sample, range over Table 2's samples; printed: "
-        f"{_printed(e.deflection)} µm, {_printed(e.signal)} V. Marked: no overlap with the printed range.",
+        deflection=_printed(e.deflection),
+        signal=_printed(e.signal),
     )
 
 
@@ -182,7 +180,7 @@ def _explanations(e: ReferenceElement) -> ReportTable:
         return Marked(text) if abs(v) > 2 * e.scatter else text
 
     return tabulated(
-        f"What each explanation of K = {e.stiffness:g} N/mm predicts",
+        "reference explanations",
         e.explanations,
         ("explanation", "", lambda x: x.name),
         ("its size", "", _size),
@@ -192,9 +190,9 @@ def _explanations(e: ReferenceElement) -> ReportTable:
         ("printed is off by", "", lambda x: mark(x.miss_per_deflection)),
         ("K_v/K", "V/N", lambda x: x.signal_per_force),
         ("printed is off by", "", lambda x: mark(x.miss_per_force)),
-        note=f"With the gain of the other elements ({sig(e.gain)} V per strain, scatter "
-        f"{percent(e.scatter)}). Marked: over two standard deviations. K_v/K adds nothing to K_v here, "
-        "since every explanation gives the printed K.",
+        stiffness=e.stiffness,
+        gain=sig(e.gain),
+        scatter=percent(e.scatter),
     )
 
 
@@ -231,6 +229,4 @@ def _plot(e: ReferenceElement) -> Figure:
             xlabel=f"K_v of no. {e.element}, V/mm (bars: two standard deviations; blue: possible within the "
             "geometry)",
         )
-        return d.drawn(
-            figure, "reference-element", f"K_v that each explanation of no. {e.element}'s stiffness predicts."
-        )
+        return drawn(figure, "reference-element", element=e.element)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
 from tactcad.paper.array_model import ArrayModel
-from tactcad.paper.report import (
+from tactcad.paper.prose import drawn, section, table, tabulated
+from tactcad.paper.residuals import Residuals
+from tactcad.parts.wire_passes import WIRE_TOLERANCE
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Cell,
     Figure,
     Marked,
@@ -18,21 +21,15 @@ from tactcad.paper.report import (
     percent,
     sig,
     signed_percent,
-    tabulated,
 )
-from tactcad.paper.residuals import Residuals
-from tactcad.parts.wire_passes import WIRE_TOLERANCE
 
 SMALL_FACTOR = 0.05  # a common factor closer to 1 than this is not reported
 
 
 def page(r: Residuals, array: ArrayModel) -> ReportSection:
     sentences = findings(r, array)
-    return ReportSection(
+    return section(
         "stiffness",
-        "Table 1: stiffness, predicted and calibrated",
-        "Does the beam model explain the measured stiffnesses, and what would have to be different "
-        "where it does not?",
         sentences,
         (_rungs(r), _explained(r, array)),
         (_bands(r), _needed(r)),
@@ -148,14 +145,7 @@ def _rungs(r: Residuals) -> ReportTable:
         *((f"{name}", "N/mm") for name in r.predicted),
         (f"measured over {r.rung}", "−1"),
     )
-    return ReportTable(
-        "Stiffness by every rung of the model ladder",
-        columns,
-        (*rows, mean, scatter),
-        "Last two rows: mean and standard deviation of ln(measured/predicted). The rungs 'short', "
-        "'beam' and 'section' leave out physics; that they lie nearer to or further from Table 1 is no "
-        "merit or fault of theirs at this scatter.",
-    )
+    return table("stiffness rungs", columns, (*rows, mean, scatter))
 
 
 def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
@@ -173,7 +163,7 @@ def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
 
     wire = ", ".join(f"{name} ±{half * 1e3:g} µm" for name, half in WIRE_TOLERANCE.items())
     return tabulated(
-        "What one change alone would explain, and the spread to be expected",
+        "stiffness explained",
         range(len(r.element)),
         ("element", "", lambda i: int(r.element[i])),
         ("arm a", "mm", lambda i: exact(r.arm[i])),
@@ -184,9 +174,8 @@ def _explained(r: Residuals, array: ArrayModel) -> ReportTable:
         ("", "", lambda i: _place(r, r.band_pad, i)),
         ("hinge change", "µm", thicker),
         ("load point change", "mm", longer),
-        note="95 % bands by Monte Carlo over the design's tolerances; 'and pad' adds a contact anywhere on "
-        f"the {array.pad_length:g} mm pad. Wire cutting holds {wire}. Marked: more than one pass leaves, "
-        "or off the pad.",
+        pad_length=array.pad_length,
+        wire=wire,
     )
 
 
@@ -230,12 +219,7 @@ def _bands(r: Residuals) -> Figure:
         ax.set(xlim=(-0.6, len(x) - 0.2), ylabel="stiffness K, N/mm")
         ax.legend(loc="upper right")
         ax.grid(axis="x", visible=False)
-        return d.drawn(
-            figure,
-            "stiffness-bands",
-            "Measured stiffness against the prediction and the spread to be expected, elements by arm "
-            "length.",
-        )
+        return drawn(figure, "stiffness-bands")
 
 
 def _needed(r: Residuals) -> Figure:
@@ -254,8 +238,4 @@ def _needed(r: Residuals) -> Figure:
         left.set_yticks(y, [f"no. {r.element[k]}, a = {r.arm[k]:g}" for k in order])
         for ax in (left, right):
             ax.axvline(0, color=d.BLACK, lw=1)
-        return d.drawn(
-            figure,
-            "stiffness-needed",
-            "What change of hinge thickness alone, or of load point alone, would explain each residual.",
-        )
+        return drawn(figure, "stiffness-needed")

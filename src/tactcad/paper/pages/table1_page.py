@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
+from tactcad.paper.prose import drawn, section, table
 from tactcad.paper.published import Published
-from tactcad.paper.report import (
+from tactcad.paper.table1_check import ColumnProduct, Table1Check
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Figure,
     Marked,
     ReportSection,
@@ -17,20 +19,12 @@ from tactcad.paper.report import (
     sig,
     signed_percent,
 )
-from tactcad.paper.table1_check import ColumnProduct, Table1Check
 
 
 def page(c: Table1Check, data: Published) -> ReportSection:
     sentences = findings(c, data)
-    return ReportSection(
-        "table1",
-        "Table 1 against itself",
-        "Do the columns of Table 1 agree with each other, and with the load cell that stood in series?",
-        sentences,
-        (_products(c), _series(c, data)),
-        (_plot(c, data),),
-        c,
-        (sentences[3],),
+    return section(
+        "table1", sentences, (_products(c), _series(c, data)), (_plot(c, data),), c, (sentences[3],)
     )
 
 
@@ -127,13 +121,10 @@ def _products(c: Table1Check) -> ReportTable:
     def head(name: str, unit: str) -> tuple:
         return ((f"{name} printed", unit), ("from columns", unit), ("difference", "% ± rounding"))
 
-    return ReportTable(
-        "Products and ratios of Table 1's own columns",
+    return table(
+        "table1 products",
         (("element", ""), *head("force", "N"), *head("signal", "V"), *head("K_v/K", "V/N")),
         rows,
-        "Marked: more than the rounding of the printed figures allows. The paper's text gives K_v as the "
-        "sensitivity to force and K_v/K as the one to deflection, and calls K_v and once K the slope of "
-        "Figure 4(b): by their units and these ratios K_v is per deflection, and K is the slope of 4(a).",
     )
 
 
@@ -150,8 +141,8 @@ def _series(c: Table1Check, data: Published) -> ReportTable:
         )
         for i, n in enumerate(c.element)
     )
-    return ReportTable(
-        "The spring in series",
+    return table(
+        "table1 series",
         (
             ("element", ""),
             ("deflection printed", "µm"),
@@ -226,6 +217,4 @@ def _plot(c: Table1Check, data: Published) -> Figure:
             columnspacing=1,
             handletextpad=0.4,
         )
-        return d.drawn(
-            figure, "table1", "Left: deflection against force. Right: relations between Table 1's columns."
-        )
+        return drawn(figure, "table1")

@@ -9,8 +9,8 @@ import numpy as np
 from tactcad.paper.published import Published
 from tactcad.paper.reference_element import ReferenceElement
 from tactcad.paper.reference_stiffness import Fit, Table2Study
-from tactcad.paper.report import interval, listed, percent, sig, signed_percent
 from tactcad.paper.residuals import EDGE, Residuals
+from tactcad.report.report import interval, listed, percent, sig, signed_percent
 
 ALIKE = 0.15  # models whose rms differ by less than this part are said to fit equally well
 USABLE = 10.0  # an interval wider than this factor is not informative

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactcad.paper import plots as d
+from tactcad.paper.prose import drawn, section, table
 from tactcad.paper.published import Published
 from tactcad.paper.reference_element import ReferenceElement
 from tactcad.paper.reference_stiffness import UNITS, Table2Study
-from tactcad.paper.report import (
+from tactcad.paper.residuals import Residuals
+from tactcad.report import plots as d
+from tactcad.report.report import (
     Figure,
     Marked,
     ReportSection,
@@ -18,7 +20,6 @@ from tactcad.paper.report import (
     sig,
     signed_percent,
 )
-from tactcad.paper.residuals import Residuals
 
 from .table2_findings import USABLE, Witness, findings, other_witnesses, supported, witnesses
 
@@ -26,11 +27,8 @@ from .table2_findings import USABLE, Witness, findings, other_witnesses, support
 def page(s: Table2Study, data: Published, r: Residuals, e: ReferenceElement) -> ReportSection:
     who = witnesses(s, r, e)
     sentences = findings(s, data, who)
-    return ReportSection(
+    return section(
         "table2",
-        "Table 2: which reference stiffness do the measured ratios support?",
-        "Equation (2) predicts R from three stiffnesses. Measured R is far from it. Which stiffness, or "
-        "what else, would mend that?",
         sentences,
         (_objects(s), _models(s), _witnesses(s, who), _ratios(s), _readings(s)),
         (_ratio_plot(s), _forest(s, who)),
@@ -53,12 +51,7 @@ def _objects(s: Table2Study) -> ReportTable:
             ),
         ),
     )
-    return ReportTable(
-        "Object stiffness of Table 2's columns, N/mm",
-        (("", ""), *((f"sample {j + 1}", "") for j in range(len(off)))),
-        rows,
-        "Marked: beyond what rounding allows.",
-    )
+    return table("table2 objects", (("", ""), *((f"sample {j + 1}", "") for j in range(len(off)))), rows)
 
 
 def _models(s: Table2Study) -> ReportTable:
@@ -73,8 +66,8 @@ def _models(s: Table2Study) -> ReportTable:
         )
         again = ", ".join(f"{sig(v)} ({_range(a, b)})" for v, a, b in zip(g.value, g.low, g.high)) or "–"
         rows.append((f.model, value, percent(f.rms), percent(f.left_out_rms), again, percent(g.rms)))
-    return ReportTable(
-        "Equation (2) with one thing freed at a time",
+    return table(
+        "table2 models",
         (
             ("model", ""),
             ("parameters, 95 % intervals", "all pairs"),
@@ -84,8 +77,6 @@ def _models(s: Table2Study) -> ReportTable:
             ("scatter of ln R", ""),
         ),
         tuple(rows),
-        "Least squares of ln R. Intervals by a two-way jackknife over elements and samples, whose "
-        "readings are not independent.",
     )
 
 
@@ -97,12 +88,11 @@ def _witnesses(s: Table2Study, who: tuple[Witness, ...]) -> ReportTable:
     rows = tuple(
         (w.name, w.value, interval(w.low, w.high) if w.high > w.low else "one printed value") for w in who
     )
-    return ReportTable(
-        f"How stiff is the reference element? (printed: {s.reference_printed:g} N/mm)",
+    return table(
+        "table2 witnesses",
         (("source", ""), ("K_r", "N/mm"), ("95 % interval", "N/mm")),
         rows,
-        "K_v with the gain of the other elements; its interval carries their scatter. 0 or ∞: no value "
-        "within the model's range.",
+        reference_printed=s.reference_printed,
     )
 
 
@@ -112,8 +102,8 @@ def _ratios(s: Table2Study) -> ReportTable:
         (f"{k:g}", s.reference_printed / k, K.value[0] / k, interval(K.low[0] / k, K.high[0] / k))
         for k in s.measuring
     )
-    return ReportTable(
-        "K_r/K_m of the six pairs",
+    return table(
+        "table2 ratios",
         (("K_m, N/mm", ""), ("printed", ""), ("supported by Table 2", ""), ("95 % interval", "")),
         rows,
     )
@@ -121,10 +111,8 @@ def _ratios(s: Table2Study) -> ReportTable:
 
 def _readings(s: Table2Study) -> ReportTable:
     rows = tuple((f"{k:g}", *row) for k, row in zip(s.measuring, s.reference_by_reading))
-    return ReportTable(
-        "K_r that each single reading implies, R(K_m + K_obj) − K_obj, N/mm",
-        (("K_m", "N/mm"), *((f"K_obj = {x:g}", "") for x in s.object_printed)),
-        rows,
+    return table(
+        "table2 readings", (("K_m", "N/mm"), *((f"K_obj = {x:g}", "") for x in s.object_printed)), rows
     )
 
 
@@ -153,12 +141,7 @@ def _ratio_plot(s: Table2Study) -> Figure:
             ax.set(xlim=span, ylim=span, title=title, xlabel="R by equation (2)")
         axes[0].set_ylabel("R measured (Table 2)")
         axes[0].legend(loc="upper left", title="N/mm")
-        return d.drawn(
-            figure,
-            "table2-ratio",
-            "Measured R against equation (2): with the printed reference stiffness, and with the one "
-            "that Table 2 supports. On the line they agree.",
-        )
+        return drawn(figure, "table2-ratio")
 
 
 def _forest(s: Table2Study, who: tuple[Witness, ...]) -> Figure:
@@ -189,9 +172,4 @@ def _forest(s: Table2Study, who: tuple[Witness, ...]) -> Figure:
             xlim=(least * 0.97, most * 1.03),
             xlabel="stiffness of the reference element, N/mm (95 % intervals; arrows: further than shown)",
         )
-        return d.drawn(
-            figure,
-            "reference-stiffness",
-            "Every witness for the reference element's stiffness. Shaded: what Table 2 supports; "
-            "dashed: what Table 1 prints.",
-        )
+        return drawn(figure, "reference-stiffness")

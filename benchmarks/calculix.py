@@ -1,0 +1,248 @@
+"""The same problem for CalculiX (ccx): an independent code to check against, where it is installed.
+
+Plane problems use CPS8. CalculiX expands those to solids, so that at full width a bending strip comes
+out about as stiff as plane strain (+11.8 % at 3 mm); a width of 0.003 mm makes it plane stress.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tactcad.fem.mapped_mesh import PlaneMesh, merged
+from tactcad.fem.plane_elements import parabola
+from tactcad.fem.solid_elements import SolidSolution
+from tactcad.fem.space import AcrossSpace, PlaneSpace, line_load
+
+Array = NDArray[np.float64]
+
+THIN = 0.003  # mm: width of the expanded plane elements
+_QUAD = [(0, 0), (2, 0), (2, 2), (0, 2), (1, 0), (2, 1), (1, 2), (0, 1)]
+_BRICK = (
+    [(*uv, w) for w in (0, 2) for uv in _QUAD[:4]]
+    + [(*uv, w) for w in (0, 2) for uv in _QUAD[4:]]
+    + [(*uv, 1) for uv in _QUAD[:4]]
+)
+
+
+def executable() -> str | None:
+    """Path of ccx, None where it is not installed."""
+    return shutil.which("ccx")
+
+
+def write_plane(mesh: PlaneMesh, E: float, nu: float, path: Path) -> Array:
+    """Input file of the plane-stress problem, unit force per THIN width; returns nodal forces (nodes, 2)."""
+    points, cells = merged(np.stack([mesh.cells[:, u, v] for u, v in _QUAD], axis=1))
+    cells = _turned(points, cells, [0, 3, 2, 1, 7, 6, 5, 4])
+    force = np.zeros_like(points)
+    end = _on(points[:, 0], mesh.load_x)
+    end = end[np.argsort(points[end, 1])]
+    force[end, 1] = line_load(points[end, 1], lambda z: parabola(z, mesh), 2)
+    supports = _supports(points, mesh, 2)
+    _write(path, points, cells, "CPS8", f"{THIN}", E, nu, supports, force)
+    return force
+
+
+def run(path: Path, shape: tuple[int, int]) -> Array:
+    """Displacements (nodes, directions) of that shape of the solved input file, mm."""
+    job = path.with_suffix("")
+    subprocess.run([executable() or "ccx", "-i", job.name], cwd=path.parent, check=True, capture_output=True)
+    return _displacements(job.with_suffix(".dat"), shape)
+
+
+def plane_stiffness(mesh: PlaneMesh, E: float, nu: float, width: float, folder: Path) -> float:
+    """Tip stiffness by CalculiX's plane-stress elements CPS8, N/mm.
+
+    Parameters
+    ----------
+    mesh
+        Of order 2.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    folder
+        Existing folder for CalculiX's files.
+    """
+    force = write_plane(mesh, E, nu, folder / "plane.inp")
+    moved = np.sum(force * run(folder / "plane.inp", force.shape))
+    return width / THIN / ((2.0 if mesh.half else 1.0) * float(moved))
+
+
+def solve_solid(
+    mesh: PlaneMesh, E: float, nu: float, width: float, across: int, folder: Path, element: str = "C3D20"
+) -> SolidSolution:
+    """The solid problem by CalculiX's 20-node bricks on half the width.
+
+    The solution's places across are where bricks end. In the middle of a brick's face there is no node:
+    displacements are NaN there.
+
+    Parameters
+    ----------
+    mesh
+        Of the plane, of order 2.
+    E, nu
+        Young's modulus, MPa, and Poisson's ratio.
+    width
+        Of the sheet, mm.
+    across
+        Density of the mesh over half the width.
+    folder
+        Existing folder for CalculiX's files.
+    element
+        C3D20, or C3D20R, which integrates at fewer points.
+    """
+    sideways = AcrossSpace.of(mesh, width / 2.0, across, 2)
+    bricks = _swept(mesh, sideways)
+    points, cells = merged(np.stack([bricks[:, u, v, w] for u, v, w in _BRICK], axis=1))
+    flipped = [0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17]
+    turned = _turned(points, cells, flipped)
+    force = np.zeros_like(points)
+    for face, share in _end_faces(points, turned, mesh, width):
+        np.add.at(force[:, 1], face, share)
+    _write(folder / "solid.inp", points, turned, element, "", E, nu, _supports(points, mesh, 3), force)
+    u = run(folder / "solid.inp", force.shape)
+    space, ends = PlaneSpace.of(mesh), sideways.nodes[::2]
+    moved = np.full((3, space.nodes.shape[1], len(ends)), np.nan)
+    layers = cells.reshape(len(ends) - 1, len(mesh.cells), len(_BRICK))
+    for i, (a, b, w) in enumerate(_BRICK):
+        if w != 1:
+            for k, layer in enumerate(layers):
+                moved[:, space.elements[:, a, b], k + w // 2] = u[layer[:, i]].T
+    compliance = (4.0 if mesh.half else 2.0) * float(np.sum(force * u))
+    return SolidSolution(compliance, moved, space, AcrossSpace(ends, 2), mesh, u.size, E, nu)
+
+
+def _swept(mesh: PlaneMesh, across: AcrossSpace) -> Array:
+    """27-node hexahedra (n, 3, 3, 3, 3): coordinates x, z, y by local index."""
+    count = len(across.nodes) // 2
+    cells = np.empty((count, len(mesh.cells), 3, 3, 3, 3))  # layer, quad, u, v, w, coordinate
+    cells[..., :2] = mesh.cells[None, :, :, :, None]
+    for k in range(count):
+        cells[k, ..., 2] = across.nodes[2 * k : 2 * k + 3]
+    return cells.reshape(-1, 3, 3, 3, 3)
+
+
+def _turned(points: Array, cells: NDArray[np.int64], flipped: list[int]) -> NDArray[np.int64]:
+    """Cells with those that run clockwise in (x, z) reversed: CalculiX requires positive volumes."""
+    a, b, d = (points[cells[:, i], :2] for i in (0, 1, 3))
+    (bx, bz), (dx, dz) = (b - a).T, (d - a).T
+    clockwise = bx * dz - bz * dx < 0.0
+    turned = cells.copy()
+    turned[clockwise] = cells[clockwise][:, flipped]
+    return turned
+
+
+def _on(values: Array, at: float) -> NDArray[np.int64]:
+    return np.flatnonzero(np.abs(values - at) < 1e-7 * max(np.ptp(values), 1e-30))
+
+
+def _supports(points: Array, mesh: PlaneMesh, dim: int) -> list[tuple[int, int]]:
+    """Held unknowns (node, direction), as in `plane_elements.fixed_unknowns`."""
+    held = [(n, i) for n in _on(points[:, 0], mesh.clamp_x) for i in range(dim)]
+    if mesh.half:
+        held += [(n, i) for n in _on(points[:, 1], mesh.middle) for i in range(dim) if i != 1]
+    if dim == 3:
+        held += [(n, 2) for n in _on(points[:, 2], 0.0)]
+    return sorted(set(held))
+
+
+_FACES = [
+    (0, 1, 2, 3, 8, 9, 10, 11),
+    (4, 5, 6, 7, 12, 13, 14, 15),
+    (0, 1, 5, 4, 8, 17, 12, 16),
+    (1, 2, 6, 5, 9, 18, 13, 17),
+    (2, 3, 7, 6, 10, 19, 14, 18),
+    (3, 0, 4, 7, 11, 16, 15, 19),
+]
+
+
+def _end_faces(
+    points: Array, cells: NDArray[np.int64], mesh: PlaneMesh, width: float
+) -> Iterator[tuple[NDArray[np.int64], Array]]:
+    """Eight-node faces on the arm's end with the consistent forces of the parabolic shear."""
+    end = set(_on(points[:, 0], mesh.load_x).tolist())
+    xi, w = np.polynomial.legendre.leggauss(4)
+    for cell in cells:
+        for face in _FACES:
+            nodes = cell[list(face)]
+            if not all(int(n) in end for n in nodes):
+                continue
+            share = np.zeros(8)
+            p = points[nodes][:, 1:]
+            for i, r in enumerate(xi):
+                for j, s in enumerate(xi):
+                    N, dN = _serendipity(r, s)
+                    area = abs(np.linalg.det(dN.T @ p))
+                    share += w[i] * w[j] * area * N * parabola(N @ p[:, 0], mesh) / width
+            yield nodes, share
+
+
+def _serendipity(r: float, s: float) -> tuple[Array, Array]:
+    """Eight-node shape functions and their derivatives at (r, s) in [-1, 1]^2."""
+    corner = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)], dtype=float)
+    N, dN = np.empty(8), np.empty((8, 2))
+    for i, (a, b) in enumerate(corner):
+        N[i] = (1 + a * r) * (1 + b * s) * (a * r + b * s - 1) / 4
+        dN[i] = a * (1 + b * s) * (2 * a * r + b * s) / 4, b * (1 + a * r) * (a * r + 2 * b * s) / 4
+    for i, (a, b) in zip((4, 5, 6, 7), ((0, -1), (1, 0), (0, 1), (-1, 0))):
+        if a == 0:
+            N[i] = (1 - r * r) * (1 + b * s) / 2
+            dN[i] = -r * (1 + b * s), b * (1 - r * r) / 2
+        else:
+            N[i] = (1 - s * s) * (1 + a * r) / 2
+            dN[i] = a * (1 - s * s) / 2, -s * (1 + a * r)
+    return N, dN
+
+
+def _write(
+    path: Path,
+    points: Array,
+    cells: NDArray[np.int64],
+    kind: str,
+    section: str,
+    E: float,
+    nu: float,
+    supports: Sequence[tuple[int, int]],
+    force: Array,
+) -> None:
+    """ccx's input file; `section`: the line below *SOLID SECTION, "" for none."""
+    coordinates = np.zeros((len(points), 3))
+    coordinates[:, : points.shape[1]] = points
+    lines = ["*NODE, NSET=ALL"]  # ccx reads 20 characters a field and drops the rest, even of an exponent
+    lines += [f"{i}, {x:.12g}, {y:.12g}, {z:.12g}" for i, (x, y, z) in enumerate(coordinates, 1)]
+    lines.append(f"*ELEMENT, TYPE={kind}, ELSET=BODY")
+    for i, cell in enumerate(cells, 1):
+        numbers = [str(i), *(str(n + 1) for n in cell)]
+        lines += [
+            ", ".join(numbers[k : k + 10]) + ("," if k + 10 < len(numbers) else "")
+            for k in range(0, len(numbers), 10)
+        ]
+    lines += [
+        "*MATERIAL, NAME=SHEET",
+        "*ELASTIC",
+        f"{E:.12g}, {nu:.12g}",
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=SHEET",
+    ]
+    lines += [section] if section else []
+    lines.append("*BOUNDARY")
+    lines += [f"{n + 1}, {i + 1}, {i + 1}, 0." for n, i in supports]
+    lines += ["*STEP", "*STATIC", "*CLOAD"]
+    lines += [f"{n + 1}, 2, {v:.12g}" for n, v in enumerate(force[:, 1]) if v != 0.0]
+    lines += ["*NODE PRINT, NSET=ALL", "U", "*END STEP", ""]
+    path.write_text("\n".join(lines), "ascii")
+
+
+def _displacements(path: Path, shape: tuple[int, int]) -> Array:
+    """U as the .dat file prints it, for nodes 1 to shape[0]."""
+    u = np.zeros(shape)
+    for line in path.read_text("ascii").splitlines():
+        fields = line.split()
+        if len(fields) == 4 and fields[0].isdigit() and int(fields[0]) <= shape[0]:
+            u[int(fields[0]) - 1] = [float(v) for v in fields[1 : 1 + shape[1]]]
+    return u

@@ -1,0 +1,196 @@
+"""Stress at mid-width over the mean, and errors of the closed forms for strain and stress: strain.json.
+
+    python benchmarks/strain_fit.py src/tactcad/mechanics/data    from the committed samples, in seconds
+    python benchmarks/strain_fit.py DIR --anew                    samples drawn and solved too, some hours
+
+The designs cover the closed forms' whole range; elements give their strains and stresses at mid-width.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import samples
+from samples import Columns, Row, joined, section, taken
+
+from tactcad.fem.convergence import ACROSS, ORDER
+from tactcad.fem.face_strain import SurfaceReadings, readings
+from tactcad.fem.mapped_mesh import layers, plane_mesh
+from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.shape import reference_shape
+from tactcad.fem.solid_elements import solve_solid
+from tactcad.mechanics import strain, strain_errors, validity
+from tactcad.mechanics.section import HingeSection
+
+Array = np.ndarray
+
+SEED, COUNT = 20261122, 900
+SOLVED = 182  # of them, the first: solids take long
+NARROW_HELD_OUT = "narrow held out"  # of samples.DRAWS: errors are measured on them, and nothing is fitted
+FILES = {"fitted": "strain-samples.csv", NARROW_HELD_OUT: "strain-narrow-heldout.csv"}
+END_SHARE = 0.5  # of a corner design's groups lie at an end of their range
+# Grid lengths that are read, in lengths of the slot (one-sided), or of its flat part and a fillet.
+GRIDS = (0.1, 0.4, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0)
+PLANE_DENSITY = 2
+MOST_UNKNOWNS = 40_000
+SOLID_ORDER = 3  # an order less than fem-solid's: more designs in the same time
+NAMES = ("face_strain", "face_stress", "fillet_strain", "fillet_stress")
+READ = (*NAMES, *(f"gauge_{grid:g}" for grid in GRIDS))
+COLUMNS = tuple(f"{model}_{name}" for model in ("plane", "solid") for name in READ)
+
+# A hinge hardly wider than long curls over its whole width; one shorter than thick is two roots without a
+# leaf between them.
+NARROW, SHORT = 1.5, 1.0
+ZONES: tuple[dict[str, list[float | None]], ...] = (
+    {"b/l": [0.0, samples.NARROW]},
+    {"b/l": [samples.NARROW, NARROW]},
+    {"b/l": [NARROW, None], "l/t": [0.0, SHORT]},
+    {"b/l": [NARROW, None], "l/t": [SHORT, None]},
+)
+MARGIN = 2.0  # stated error over the largest measured one: zones have few designs
+RIDGE = 1e-3  # share of the mean square: keeps coefficients small that few samples do not determine
+
+
+def draw(count: int = COUNT, seed: int = SEED) -> Columns:
+    """`count` designs (mm), half of them two-sided.
+
+    A quarter is on the box's edges, a quarter inside the range, and half has groups at the ends of their
+    ranges; the kinds alternate, so that every first part of the sample is like the whole.
+    """
+    quarter = count // 4
+    parts = [
+        samples.draw_edges(quarter, seed),
+        samples.draw_range(quarter, seed + 1, 0.0),
+        samples.draw_range(count - 2 * quarter, seed + 2, END_SHARE),
+    ]
+    places = np.concatenate([(np.arange(n) // 2 + 0.5) / n for n in (quarter, quarter, count - 2 * quarter)])
+    return taken(joined(parts), np.argsort(places, kind="stable"))
+
+
+def grid_lengths(s: HingeSection) -> Array:
+    """mm, those of GRIDS that lie on the faces of one design (scalars)."""
+    unit = float(s.straight_length + s.fillet_radius) if s.two_sided else float(s.hinge_length)
+    room = 2.0 * min(float(s.body_length) + float(s.hinge_length) / 2.0, float(s.load_arm))
+    lengths = unit * np.array(GRIDS)
+    return lengths[lengths <= (unit * (1.0 + 1e-9) if s.two_sided else 0.9 * room)]
+
+
+def results(s: HingeSection) -> Row:
+    """One design (scalars) per newton and unit modulus, by plane elements and by solid ones, if they are few
+    enough."""
+    shape, nu, b = reference_shape(s), float(s.poisson), float(s.width)
+    lengths, found = grid_lengths(s), dict.fromkeys(COLUMNS, math.nan)
+    plane = solve_plane(shape, 1.0, nu, b, density=PLANE_DENSITY, order=ORDER)
+    found |= _named("plane", readings(plane, lengths))
+    mesh = plane_mesh(shape, 1, order=SOLID_ORDER)
+    ends = layers(b / 2.0, float(s.hinge_thickness), 1)
+    if 3 * len(mesh.cells) * SOLID_ORDER**2 * (ACROSS * (len(ends) - 1) + 1) <= MOST_UNKNOWNS:
+        fine = solve_solid(shape, 1.0, nu, b, density=1, order=SOLID_ORDER, order_across=ACROSS)
+        against = readings(fine, lengths) / readings(fine.flat(), lengths)
+        found |= _named("solid", readings(plane, lengths) * against)
+    return found
+
+
+def _named(model: str, strains: SurfaceReadings) -> Row:
+    gauges = {f"{model}_gauge_{grid:g}": float(value) for grid, value in zip(GRIDS, strains.gauge)}
+    return {f"{model}_{name}": float(getattr(strains, name)) for name in NAMES} | gauges
+
+
+def shipped_samples() -> dict[str, Columns]:
+    """The committed samples."""
+    return {kind: samples.load(samples.DATA / name) for kind, name in FILES.items()}
+
+
+def fit(tables: dict[str, Columns]) -> dict:
+    """The contents of data/strain.json from samples by the names of FILES: fitted on the first kind, errors
+    measured on all."""
+    known = {kind: _known(columns) for kind, columns in tables.items()}
+    s, share = section(known["fitted"]), {}
+    for side, flag in strain_errors.SIDES.items():
+        own = np.flatnonzero(s.two_sided == flag)
+        measured = (known["fitted"]["solid_fillet_stress"] / strain.mean_stress(s, 1.0))[own]
+        share[side] = _fitted(s.rows(own), measured)
+    rows = joined(list(known.values()))
+    s = section(rows)
+    errors = _errors(rows, s, share)
+    zones = []
+    for side, flag in strain_errors.SIDES.items():
+        for bounds in ZONES:
+            own = strain_errors.in_zone(bounds, s) & (s.two_sided == flag)
+            zones.append({"sides": side, "bounds": bounds} | _measured(errors, own))
+    return {"seed": SEED, "designs": len(s.two_sided), "mid-width share": share, "zones": zones}
+
+
+def _known(columns: Columns) -> Columns:
+    """Those that solids were solved for, inside the range of rung solid, which may end elsewhere since they
+    were drawn."""
+    reached = validity.reasons(section(columns), "solid") == ""
+    return taken(columns, np.isfinite(columns["solid_fillet_stress"]) & reached)
+
+
+def _fitted(s: HingeSection, measured: Array) -> dict[str, list[float]]:
+    """Range of the features and coefficients of `strain.mid_width_share`, by least squares of the relative
+    error."""
+    features = strain.share_features(s)
+    k = {"low": features.min(axis=0).tolist(), "high": features.max(axis=0).tolist()}
+    terms = strain.share_terms(s, k) * (s.poisson**2 / measured)[:, None]
+    wanted = (measured - 1.0) / measured
+    normal = terms.T @ terms + RIDGE * np.mean(terms**2) * len(terms) * np.eye(terms.shape[1])
+    constants = k | {"coefficients": np.linalg.solve(normal, terms.T @ wanted).tolist()}
+    return {name: [float(f"{value:.6g}") for value in values] for name, values in constants.items()}
+
+
+def _errors(rows: Columns, s: HingeSection, share: dict) -> dict[str, list[Array]]:
+    """Relative errors of rung solid's closed forms against solid elements, one array a grid length."""
+    slot = np.where(s.two_sided, s.straight_length + s.fillet_radius, s.hinge_length)
+    gauges: dict[str, list[Array]] = {"gauge": [], "long gauge": []}
+    for grid in GRIDS:
+        known = np.flatnonzero(np.isfinite(rows[f"solid_gauge_{grid:g}"]))
+        error = np.full(s.shape, math.nan)
+        lengths = grid * slot[known] * (1.0 - 1e-9)
+        mean = strain.gauge(s.rows(known), 1.0, lengths, "solid")
+        error[known] = mean / rows[f"solid_gauge_{grid:g}"][known] - 1.0
+        gauges["gauge" if grid <= strain_errors.LONG_GRID else "long gauge"].append(error)
+    stress = strain.mean_stress(s, 1.0) * np.maximum(strain.mid_width_share(s, share), 1.0)
+    return gauges | {
+        "fillet strain": [strain.peak(s, 1.0, "solid") / rows["solid_fillet_strain"] - 1.0],
+        "fillet stress": [stress / rows["solid_fillet_stress"] - 1.0],
+    }
+
+
+def _measured(errors: dict[str, list[Array]], own: Array) -> dict:
+    """Worst error of each quantity in a zone and what is stated for it, None where none was read."""
+    worst: dict[str, float | None] = {}
+    for name, arrays in errors.items():
+        e = np.abs(np.concatenate([a[own] for a in arrays]))
+        worst[name] = float(f"{np.nanmax(e):.3g}") if np.isfinite(e).any() else None
+    stated = {n: None if e is None else math.ceil(1000.0 * MARGIN * e) / 1000.0 for n, e in worst.items()}
+    return {"designs": int(own.sum()), "worst": worst, "stated": stated}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", type=Path, help="where strain.json is written")
+    parser.add_argument("--anew", action="store_true", help="draw the samples and solve them")
+    asked = parser.parse_args()
+    tables = shipped_samples()
+    if asked.anew:
+        drawn = {
+            "fitted": taken(draw(), np.arange(SOLVED)),
+            NARROW_HELD_OUT: samples.draw_all(NARROW_HELD_OUT),
+        }
+        for kind, designs in drawn.items():
+            tables[kind] = samples.solved(designs, lambda i, s: results(s), kind)
+            samples.write(tables[kind], asked.folder / FILES[kind])
+    (asked.folder / "strain.json").write_text(json.dumps(fit(tables), indent=1) + "\n", "utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

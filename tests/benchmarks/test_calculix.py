@@ -1,0 +1,39 @@
+"""An independent code on the same mesh. Skipped, saying so, where CalculiX is not installed."""
+
+from __future__ import annotations
+
+import calculix
+import pytest
+
+from tactcad.fem.convergence import converged_plane, converged_solid
+from tactcad.fem.mapped_mesh import plane_mesh
+from tactcad.fem.plane_elements import solve_plane
+from tactcad.fem.shape import reference_shape
+from tactcad.mechanics.section import REFERENCE
+
+pytestmark = pytest.mark.skipif(
+    calculix.executable() is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx"
+)
+
+E, NU, B = 69000.0, 0.33, 3.0
+SHAPES = {two: reference_shape(REFERENCE.with_(two_sided=two)) for two in (True, False)}
+
+
+@pytest.mark.parametrize("two", [True, False], ids=["two", "one"])
+def test_plane_stress_agrees_with_cps8_at_vanishing_width(two, tmp_path):
+    K = calculix.plane_stiffness(plane_mesh(SHAPES[two], 4), E, NU, B, tmp_path)
+    assert K == pytest.approx(converged_plane(SHAPES[two], E, NU, B).stiffness, rel=5e-4)
+
+
+def test_cps8_at_full_width_is_not_plane_stress(tmp_path, monkeypatch):
+    """The trap: expanded to solids of the real width the strip is held like plane strain."""
+    monkeypatch.setattr(calculix, "THIN", B)
+    K = calculix.plane_stiffness(plane_mesh(SHAPES[True], 2), E, NU, B, tmp_path)
+    assert 1.06 < K / solve_plane(SHAPES[True], E, NU, B, density=2).stiffness < 1.0 / (1.0 - NU**2)
+
+
+@pytest.mark.parametrize("two", [True, False], ids=["two", "one"])
+def test_solid_agrees_with_twenty_node_bricks(two, tmp_path):
+    K = calculix.solve_solid(plane_mesh(SHAPES[two], 2), E, NU, B, 1, tmp_path).stiffness
+    limit = converged_solid(SHAPES[two], E, NU, B).stiffness
+    assert K == pytest.approx(limit, rel=4e-3)  # the mesh's own error, see the plane's at density 2
