@@ -17,7 +17,7 @@ import pytest
 
 from tactcad.design.files import whole_file
 from tactcad.design.messages import CheckFailure, InputError
-from tactcad.release.archive import MANIFEST, archive_bytes, refuse_what_is_no_zip, replaced_content
+from tactcad.release.archive import MANIFEST, archive_bytes, replaced_content
 
 CHILD = Path(__file__).with_name("archive_child.py")
 FILES = {"README.txt": b"read me", "dxf/a_A.dxf": b"0\nEOF\n" * 500, "step/ä_A.step": b"\x00\xff"}
@@ -189,25 +189,3 @@ def test_what_an_earlier_zip_has_otherwise_is_named(tmp_path):
     assert replaced_content(target, new) == []
     target.write_bytes(archive_bytes({**FILES, "README.txt": b"other", "bom.csv": b""}, "2026-11-21"))
     assert replaced_content(target, new) == ["README.txt", "bom.csv"]
-    target.write_bytes(archive_bytes(FILES, "2026-11-20"))
-    assert replaced_content(target, new) == ["the zip's own form"]
-    target.write_bytes(b"no zip")
-    assert len(replaced_content(target, new)) == 1
-
-
-@pytest.mark.parametrize("kind", ["link to a text", "link to a zip", "text", "folder"])
-def test_what_is_no_zip_is_never_replaced(tmp_path, kind):
-    target, mine = tmp_path / "a-A.zip", tmp_path / "mine"
-    mine.write_bytes(archive_bytes(FILES, "2026-11-21") if kind.endswith("zip") else b"ten years")
-    if kind.startswith("link"):
-        target.symlink_to("mine")
-    elif kind == "text":
-        target.write_bytes(b"ten years")
-    else:
-        target.mkdir()
-    with pytest.raises(InputError, match="is a link" if kind.startswith("link") else "is no zip"):
-        refuse_what_is_no_zip(target)
-    refuse_what_is_no_zip(tmp_path / "new.zip")
-    target = tmp_path / "a-B.zip"
-    target.write_bytes(archive_bytes(FILES, "2026-11-21"))
-    refuse_what_is_no_zip(target)

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import re
+import shutil
 import zipfile
 from collections import Counter
 from math import hypot, pi
@@ -351,13 +352,26 @@ def test_a_package_that_does_not_read_back_leaves_all_zips_as_they_were(
     assert {p.name: p.read_bytes() for p in out.iterdir()} == older
 
 
-def test_what_is_no_zip_in_a_package_s_place_is_kept(folder, tmp_path, capsys):
-    out = tmp_path / "out"
+def test_what_was_put_into_a_package_is_refused_before_any_design_s_work_and_kept(folder, tmp_path, capsys):
+    """The package is of the second design."""
+    out, name = tmp_path / "out", f"{STEM}-sheet.zip"
     out.mkdir()
-    (out / f"{STEM}-sheet.zip").write_text("notes of mine")
-    assert main(["release", str(folder / "tiny.toml"), "--out", str(out)]) == 2
-    assert "is no zip" in capsys.readouterr().err
-    assert [p.name for p in out.iterdir()] == [f"{STEM}-sheet.zip"]
+    with zipfile.ZipFile(shutil.copy(folder / "out" / name, out), "a") as package:
+        package.writestr("quotation.txt", "signed")
+    quoted = (out / name).read_bytes()
+    (tmp_path / "other.toml").write_text(TEXT.replace('name = "tiny"', 'name = "other"'))
+    designs = [str(tmp_path / "other.toml"), str(folder / "tiny.toml")]
+    assert main(["release", *designs, "--out", str(out)]) == 2
+    err = capsys.readouterr().err
+    assert f"{name} (changed: 'quotation.txt')" in err and err.count("\n") == 1
+    assert {p.name: p.read_bytes() for p in out.iterdir()} == {name: quoted}
+    assert main(["release", designs[1], "--out", str(out), "--keep"]) == 0
+    kept = f"{STEM}-sheet-kept-1.zip"
+    assert kept in capsys.readouterr().err and (out / kept).read_bytes() == quoted
+    (out / kept).unlink()
+    assert {p.name: p.read_bytes() for p in out.iterdir()} == {
+        p.name: p.read_bytes() for p in (folder / "out").iterdir()
+    }
 
 
 def test_a_package_of_which_nothing_is_left_goes_with_the_release_that_replaces_it(

@@ -14,6 +14,8 @@ from tactcad.cli.main import main
 from tactcad.design.design_text import design_text
 from tactcad.design.load import read
 from tactcad.design.messages import CheckFailure, InputError
+from tactcad.parts.finding import Finding
+from tactcad.scenes import LeftOut
 from tactcad.synthesis import relax
 from tactcad.synthesis.alternatives import LeastChange
 from tactcad.synthesis.made_arrays import MadeSensor
@@ -150,10 +152,13 @@ def test_an_interval_that_tells_nothing_is_said_to_be_no_sensor():
 
 
 def test_rigs_that_do_not_take_the_array_are_told(monkeypatch):
-    told = ["scene calibration left out: rule x: y", "scene grasping left out: rule z: w"]
+    told = [
+        LeftOut(scene, Finding("a_rule", "fail", "array.pitch", (), 1.0, "at least 2 mm", "too near"))
+        for scene in ("calibration", "grasping")
+    ]
     monkeypatch.setattr("tactcad.synthesis.synthesise.left_out", lambda _design: told)
     notes = record(replace(small()))["notes"]
-    assert "not on the rig of this design; scene calibration left out" in notes[0] and notes[1] == told[1]
+    assert "not on the rig of this design; scene calibration left out" in notes[0] and notes[1] == str(told[1])
     assert b"scene grasping left out" in report_page(replace(small()))
 
 

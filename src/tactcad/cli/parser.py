@@ -82,8 +82,12 @@ def add_strict(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_others(parser: argparse.ArgumentParser) -> None:
-    """--keep and --discard, for commands that write a folder (tactcad.export.publication)."""
+def add_others(
+    parser: argparse.ArgumentParser,
+    where: str = "the folder holds what tactcad did not write there",
+    kept: str = "DIR-kept-1",
+) -> None:
+    """--keep and --discard, for commands that write a folder (tactcad.export.publication), or zips."""
     others = parser.add_mutually_exclusive_group()
     others.add_argument(
         "--keep",
@@ -91,15 +95,10 @@ def add_others(parser: argparse.ArgumentParser) -> None:
         action="store_const",
         const="keep",
         default="refuse",
-        help="where the folder holds what tactcad did not write there: move it beside, as DIR-kept-1 "
-        "(default: refuse)",
+        help=f"where {where}: move it beside, as {kept} (default: refuse)",
     )
     others.add_argument(
-        "--discard",
-        dest="others",
-        action="store_const",
-        const="discard",
-        help="remove it, unread, with the folder",
+        "--discard", dest="others", action="store_const", const="discard", help="remove it, unread"
     )
 
 

@@ -1,5 +1,5 @@
 """tactcad release [DESIGN]... [--owner TEXT] [--contact TEXT] [--sample] [--sets one|all] [--out DIR]
-[--shop FILE] [--draft] [--json]
+[--keep|--discard] [--shop FILE] [--draft] [--json]
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from .parser import add_design, add_json, add_shop
+from .parser import add_design, add_json, add_others, add_shop
 
 EXAMPLES = """\
   tactcad release my-sensor.toml --owner "Our lab" --contact "workshop@our-lab.example"
@@ -28,7 +28,8 @@ One zip that a shop can quote from: README, cut files, solids, drawing sheets, b
 sheet, strength summary, guides, checksums. Beside it one zip each for wire cutting, milling and turning,
 sheet, and purchase (mechanical, electronic), with what that supplier needs and nothing else. Owner and
 contact are the design's ([design] organisation and contact) or given here. Every check runs first, and the
-golden file is compared; where one fails nothing is written and earlier zips stay as they are."""
+golden file is compared; where one fails, or an earlier zip is not exactly as tactcad wrote it (--keep,
+--discard), nothing is written and earlier zips stay as they are."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -50,6 +51,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         default="one",
         help="order what several set-ups share once, or for each (default one)",
     )
+    add_others(parser, "a zip there is not as tactcad wrote it", "NAME-kept-1.zip")
     add_shop(parser)
     parser.add_argument("--draft", action="store_true", help="write PRELIMINARY zips whatever the checks say")
     add_json(parser)
@@ -60,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from tactcad.design.load import find
     from tactcad.design.messages import CheckFailure
     from tactcad.parts.designs import load
-    from tactcad.release.make import Terms, release
+    from tactcad.release.make import Terms, looked_up, release
     from tactcad.release.owner import owned
 
     from .progress import progress
@@ -70,7 +72,9 @@ def run(args: argparse.Namespace) -> int:
     designs = [
         (owned(load(source), args.owner, args.contact, args.sample), find(source)) for source in args.design
     ]
-    terms = Terms(args.draft, args.sample, args.sets)
+    terms = Terms(args.draft, args.sample, args.sets, args.others)
+    for design, path in designs:
+        looked_up(design, path, args.out, shop, terms)
     say, records = progress(sys.stderr), []
     for design, path in designs:
         try:

@@ -19,7 +19,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NoReturn
 
-from tactcad.ending import SAID
+from tactcad.ending import SAID, unfinished
 
 from .held import held_file, held_folder, sweep_folders
 from .messages import CheckFailure, InputError, hidden, shortened
@@ -185,40 +185,22 @@ def write_whole(path: str | Path, data: bytes) -> None:
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """`whole_files` of one."""
-    with whole_files([path]) as (part,):
-        yield part
+    """A file to write beside the path: flushed and renamed over it when the block ends well, otherwise
+    removed.
 
-
-@contextmanager
-def whole_files(paths: Sequence[str | Path], gone: Sequence[Path] = ()) -> Iterator[list[Path]]:
-    """A file to write beside each path: all flushed and renamed over them when the block ends well, otherwise
-    removed; with them go the files `gone`.
-
-    Links are followed; the folders must exist. What killed runs left there is removed first. A file that is
-    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where a place
-    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged. Only
-    what kills the process between two renames, microseconds apart, can leave some old and some new.
+    Links are followed; the folder must exist. What killed runs left there is removed first. A file that is
+    replaced keeps its permissions; one that is write-protected is kept. Raises InputError where the place
+    cannot be written to, CheckFailure where there is no room; what was there before is then unchanged.
     """
-    shown = ", ".join(map(str, paths))
-    try:
-        with ExitStack() as held:
-            places = [Path(os.path.realpath(path)) for path in paths]
-            modes = [_mode(path, place) for path, place in zip(paths, places)]
-            parts = [held.enter_context(held_file(place)) for place in places]
-            yield parts
-            for part, mode in zip(parts, modes):
-                flush_entry(part)
-                part.chmod(mode)
-            with _no_signals():
-                for part, place in zip(parts, places):
-                    part.replace(place)
-                for old in gone:
-                    old.unlink(missing_ok=True)
-            for folder in {place.parent for place in places}:
-                flush_entry(folder)
-    except OSError as error:
-        raise refusal(shown, error) from error
+    with in_one_line(path):
+        place = Path(os.path.realpath(path))
+        mode = _mode(path, place)
+        with held_file(place) as part:
+            yield part
+            flush_entry(part)
+            part.chmod(mode)
+            part.replace(place)
+            flush_entry(place.parent)
 
 
 def _mode(path: str | Path, place: Path) -> int:
@@ -238,7 +220,7 @@ def _mode(path: str | Path, place: Path) -> int:
 
 
 @contextmanager
-def _no_signals() -> Iterator[None]:
+def no_signals() -> Iterator[None]:
     """Signals that end the program wait until the block has ended."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SAID)
     try:
@@ -263,15 +245,13 @@ def scratch_folder(purpose: str) -> Iterator[Path]:
     Raises as `whole_file` does.
     """
     stem = f"tactcad-{purpose}"
-    parent = Path("temporary folder")
-    try:
+    with in_one_line("temporary folder"):
         parent = absolute(tempfile.gettempdir())
+    with in_one_line(parent):
         with suppress(OSError):  # a killed run's helper may still write there: the next run sweeps
             sweep_folders(parent, stem)
         with held_folder(parent, stem) as folder:
             yield folder
-    except OSError as error:
-        raise refusal(str(parent), error) from error
 
 
 def refuse_overwriting(out: str | Path, *inputs: str | Path | None, option: str = "--out") -> None:
@@ -320,18 +300,38 @@ def _folders(path: str | Path) -> set[tuple[int, int] | None]:
 
 def absolute(path: str | Path) -> Path:
     """The path from the root. Raises InputError where the working folder was removed."""
-    try:
+    with in_one_line(path):
         return Path(os.path.abspath(path))
-    except OSError as error:
-        raise refusal(str(path), error) from error
 
 
 def make_folder(path: str | Path) -> None:
     """Make the folder where it does not exist. Raises as `write_whole` does."""
-    try:
+    with in_one_line(path):
         Path(path).mkdir(parents=True, exist_ok=True)
+
+
+@contextmanager
+def folder_for(path: Path) -> Iterator[None]:
+    """The folder, made if there is none, and then removed if the block leaves it empty. Raises OSError."""
+    if path.exists():
+        yield
+        return
+    with folder_for(path.parent), unfinished(path.rmdir):
+        path.mkdir(exist_ok=True)
+        try:
+            yield
+        finally:
+            with suppress(OSError):  # the block wrote into it
+                path.rmdir()
+
+
+@contextmanager
+def in_one_line(target: str | Path) -> Iterator[None]:
+    """Turn an operating system's refusal to write `target` into a one-line message (`refusal`)."""
+    try:
+        yield
     except OSError as error:
-        raise refusal(str(path), error) from error
+        raise refusal(str(target), error) from error
 
 
 def refusal(where: str, error: OSError) -> InputError | CheckFailure:

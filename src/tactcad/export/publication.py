@@ -28,7 +28,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
 
-from tactcad.design.files import absolute, flush_entry, refusal
+from tactcad.design.files import absolute, flush_entry, in_one_line
 from tactcad.design.held import MAKING, OWN, Settle, held_folder, sweep_folders
 from tactcad.design.messages import CheckFailure, InputError
 
@@ -56,13 +56,13 @@ def looked_at(directory: str | Path, schema: str, others: str = REFUSE) -> Conte
     `others` is REFUSE.
     """
     out = absolute(directory)
-    with _in_one_line(out):
+    with in_one_line(out):
         _refuse_place(out)
         seen = contents(out, schema)
     if seen.foreign and others == REFUSE:
         raise InputError(
             str(directory),
-            f"holds what is not as tactcad wrote it: {_named(seen.foreign)}; nothing was changed",
+            f"holds what is not as tactcad wrote it: {named(seen.foreign)}; nothing was changed",
             legal="--keep, which moves the folder beside, --discard, which removes it, or another folder",
         )
     return seen
@@ -95,7 +95,7 @@ def _says_tactcad(manifest: Path) -> bool:
         return b'"schema": "tactcad-' in file.read(40)
 
 
-def _named(foreign: Mapping[str, str]) -> str:
+def named(foreign: Mapping[str, str]) -> str:
     names = [f"{path if path != '.' else 'the folder'} ({why})" for path, why in foreign.items()]
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(names[:SHOWN]) + more
@@ -136,7 +136,7 @@ class Work:
         """Make `folder`, with its manifest, the new DIR; the earlier one is removed, or kept beside."""
         if self.out.is_dir():
             self.folder.chmod(stat.S_IMODE(self.out.stat().st_mode) | 0o700)
-        _flush(self.folder)
+        flush(self.folder)
         finished = self.folder.rename(self.own / FINISHED)
         earlier = _put_in_place(finished, self.out, self.own / "earlier")
         flush_entry(self.out.parent)
@@ -153,11 +153,11 @@ class Work:
         new = {path: seen.foreign[path] for path in seen.changed_since(self.earlier)}
         kept = _kept_beside(folder, self.out)
         if new:
-            self.kept.append(f"kept as {kept} for {_named(new)}")
+            self.kept.append(f"kept as {kept} for {named(new)}")
         else:
             self.say(
                 f"{self.out}: the earlier folder is kept as {kept} for "
-                f"{_named(seen.foreign) or 'what could not be removed'}"
+                f"{named(seen.foreign) or 'what could not be removed'}"
             )
 
 
@@ -206,7 +206,7 @@ def turn(
         if seen.states and not seen.foreign:
             remove(own / FINISHED, seen)
 
-    with _in_one_line(out):
+    with in_one_line(out):
         looked_at(out, schema, others)
         out.parent.mkdir(parents=True, exist_ok=True)
         try:
@@ -214,7 +214,7 @@ def turn(
                 own = _own_folder(out, settle, clear, stack, say, time.monotonic() + wait)
                 work = Work(out, schema, others, say, own, looked_at(out, schema, others), kept)
                 if work.earlier.foreign and others == DISCARD:
-                    say(f"{out}: to be discarded: {_named(work.earlier.foreign)}")
+                    say(f"{out}: to be discarded: {named(work.earlier.foreign)}")
                 work.folder.mkdir()
                 yield work
         except BaseException:
@@ -272,7 +272,7 @@ def _put_in_place(finished: Path, out: Path, aside: Path) -> Path | None:
     while True:  # DIR may appear or disappear meanwhile
         try:
             if not os.path.lexists(out):
-                _move(finished, out)
+                move(finished, out)
                 return None
             return finished if _rename(finished, out, EXCHANGE) else _moved_aside(finished, out, aside)
         except (FileExistsError, FileNotFoundError):
@@ -295,12 +295,12 @@ def _kept_beside(folder: Path, out: Path) -> Path:
     for n in count(1):
         kept = out.with_name(f"{out.name}-kept-{n}")
         with suppress(FileExistsError):
-            _move(folder, kept)
+            move(folder, kept)
             break
     return kept
 
 
-def _move(old: Path, new: Path) -> None:
+def move(old: Path, new: Path) -> None:
     """Rename to a name that must be free. Raises FileExistsError."""
     if _rename(old, new, NOREPLACE):
         return
@@ -325,18 +325,9 @@ def _rename(old: Path, new: Path, flag: int) -> bool:
     raise OSError(number, os.strerror(number), str(old), None, str(new))
 
 
-def _flush(folder: Path) -> None:
+def flush(folder: Path) -> None:
     """Write everything in the folder to the disk, before its name."""
     for base, _, names in os.walk(folder):
         for name in names:
             flush_entry(Path(base, name))
         flush_entry(Path(base))
-
-
-@contextmanager
-def _in_one_line(target: Path) -> Iterator[None]:
-    """Turn an operating system's refusal to write `target` into a one-line message."""
-    try:
-        yield
-    except OSError as error:
-        raise refusal(str(target), error) from error

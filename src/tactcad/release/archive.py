@@ -1,61 +1,94 @@
-"""A zip with the same bytes in every process."""
+"""A zip with the same bytes in every process, sealed: its comment holds the SHA-256 of all before it.
+
+So an edit is seen without unpacking; a forgery is not (as in export/contents.py).
+"""
 
 from __future__ import annotations
 
+import hashlib
 import io
 import os
+import struct
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import BinaryIO
 
-from tactcad.design.messages import InputError
-from tactcad.export.contents import sha256_of
+from tactcad.design.files import PIECE
+from tactcad.design.messages import shortened
+from tactcad.export.contents import CHANGED, MOST_BYTES, sha256_of
+from tactcad.export.publication import SHOWN
 
 MANIFEST = "MANIFEST.sha256"
 MODE = 0o100644  # a plain file that everyone may read
 UNIX = 3
 OLDEST, NEWEST = 1980, 2107  # years that a zip can hold
+SEAL = b"as tactcad wrote it, SHA-256 "  # followed by the digest, in hexadecimal
+SEALED = 2 + len(SEAL) + 64  # bytes of the comment with its length before it
+MOST_DIRECTORY = 1 << 20  # bytes at the end of a zip that are read for its directory; a file takes some 80
 
 
 def archive_bytes(files: Mapping[str, bytes], date: str) -> bytes:
-    """The files as a zip, in the mapping's order and with MANIFEST.sha256 at the end.
+    """The files as a zip, in the mapping's order, with MANIFEST.sha256 at the end and sealed.
 
     Every entry is dated midnight of `date` (YYYY-MM-DD) and may be read by everyone.
     """
     year, month, day = map(int, date.split("-"))
     stamp = (min(max(year, OLDEST), NEWEST), month, day, 0, 0, 0)
-    listed = "".join(f"{sha256_of(data)}  {path}\n" for path, data in files.items())
+    sums = "".join(f"{sha256_of(data)}  {path}\n" for path, data in files.items())
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
-        for path, data in {**files, MANIFEST: listed.encode()}.items():
+        for path, data in {**files, MANIFEST: sums.encode()}.items():
             entry = zipfile.ZipInfo(path, stamp)
             entry.create_system, entry.external_attr = UNIX, MODE << 16
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED, 9)
-    return out.getvalue()
+    body = out.getvalue()[:-2]  # ends with the length of its comment, which is empty
+    return body + _seal(sha256_of(body))
 
 
-def refuse_what_is_no_zip(target: Path) -> None:
-    """Raise InputError where the place of a new zip holds a link, or anything else that is no zip."""
-    if target.is_symlink():
-        raise InputError(
-            str(target), "is a link; nothing was changed", legal="a zip to replace, or a new place"
-        )
-    if os.path.lexists(target) and not zipfile.is_zipfile(target):
-        raise InputError(
-            str(target), "is no zip; nothing was changed", legal="a zip to replace, or a new place"
-        )
+def _seal(digest: str) -> bytes:
+    return struct.pack("<H", SEALED - 2) + SEAL + digest.encode()
+
+
+def fault(path: Path) -> str:
+    """Why the file is not, byte for byte, what `archive_bytes` made, with names of entries of another date or
+    other permissions; empty where it is. Nothing is unpacked. Raises OSError.
+    """
+    with path.open("rb") as file:
+        size, digest = os.fstat(file.fileno()).st_size, hashlib.sha256()
+        for at in range(0, size - SEALED if size <= MOST_BYTES else 0, PIECE):
+            digest.update(file.read(min(PIECE, size - SEALED - at)))
+        end = file.read(SEALED)
+        if end == _seal(digest.hexdigest()):
+            return ""
+        ours = (UNIX, MODE << 16, (0, 0, 0))
+        names = [
+            shortened(entry.filename)
+            for entry in _directory(file)
+            if (entry.create_system, entry.external_attr, entry.date_time[3:]) != ours
+        ]
+    why = CHANGED if SEAL in end else "without tactcad's seal"
+    shown = ", ".join(names[:SHOWN] + ["..."] * (len(names) > SHOWN))
+    return f"{why}: {shown}" if names else why
+
+
+def _directory(file: BinaryIO) -> list[zipfile.ZipInfo]:
+    """Entries of the zip's directory; none where it cannot be read, or is larger than ours could be."""
+    file.seek(max(file.seek(0, os.SEEK_END) - MOST_DIRECTORY, 0))
+    try:
+        with zipfile.ZipFile(io.BytesIO(file.read(MOST_DIRECTORY))) as archive:
+            return archive.infolist()
+    except (zipfile.BadZipFile, NotImplementedError, ValueError, struct.error):
+        return []
 
 
 def replaced_content(target: Path, new: bytes) -> list[str]:
-    """Differences between the zip at `target` and the new one, by file; empty where there is no zip or no
-    difference.
-    """
-    if not target.is_file() or target.read_bytes() == new:
+    """Files that the zip at `target`, if there is one, and the new one do not have alike."""
+    if not target.is_file():
         return []
-    try:
-        with zipfile.ZipFile(target) as old, zipfile.ZipFile(io.BytesIO(new)) as now:
-            contents = [{n: a.read(n) for n in a.namelist() if n != MANIFEST} for a in (old, now)]
-    except (zipfile.BadZipFile, OSError, NotImplementedError, RuntimeError):
-        return ["an earlier file that is no zip"]
-    names = sorted({*contents[0], *contents[1]})
-    return [n for n in names if contents[0].get(n) != contents[1].get(n)] or ["the zip's own form"]
+    with target.open("rb") as old:
+        earlier, now = (
+            {(entry.filename, entry.CRC, entry.file_size) for entry in _directory(file)}
+            for file in (old, io.BytesIO(new))
+        )
+    return sorted({name for name, *_ in earlier ^ now} - {MANIFEST})

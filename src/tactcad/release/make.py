@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from tactcad.checks.check_report import Report
 from tactcad.checks.goes_together import check_assembly
 from tactcad.checks.shop import load_shop
-from tactcad.design.files import make_folder, refuse_overwriting, scratch_folder, whole_files
+from tactcad.design.files import refuse_overwriting, scratch_folder
 from tactcad.design.messages import CheckFailure
 from tactcad.design.tree import Design
 from tactcad.export.contents import sha256_of
 from tactcad.export.golden_file import check_golden, golden_path
 from tactcad.export.manifest import FileRecord, read_manifest
 from tactcad.export.pipeline import ExportOptions, Progress, export
+from tactcad.export.publication import REFUSE
 from tactcad.scenes import make_scene, scene_names
 
-from .archive import archive_bytes, refuse_what_is_no_zip, replaced_content
+from .archive import archive_bytes, replaced_content
 from .ordered import Sets
 from .package_readme import package_readme
 from .packages import PACKAGES, packed
+from .places import Foreign, looked_at, replacing
 from .readme import readme_bytes
 from .release_contents import ReleaseContents
 from .verify import README, check_archive
@@ -50,11 +51,24 @@ class Released:
 
 @dataclass(frozen=True)
 class Terms:
-    """As a draft although checks fail or not, as a sample without owner or not, for how many sets."""
+    """As a draft although checks fail or not, as a sample without owner or not, for how many sets, and what
+    becomes of zips in the way that are not as tactcad wrote them (places.py)."""
 
     draft: bool = False
     sample: bool = False
     sets: Sets = "one"
+    others: str = REFUSE
+
+
+def looked_up(
+    design: Design, design_file: Path, out: str | Path, shop_file: Path, terms: Terms
+) -> tuple[list[Path], Mapping[str, Foreign]]:
+    """Places of a release's zips, the whole one's first, and what `places.looked_at` finds there."""
+    stem = ReleaseContents(design, (), (), (), terms.draft, terms.sample).stem
+    places = [Path(out) / f"{stem}{way}.zip" for way in ("", *(f"-{one.name}" for one in PACKAGES))]
+    for place in places:
+        refuse_overwriting(place, design_file, shop_file)
+    return places, looked_at(places, terms.others)
 
 
 def release(
@@ -75,7 +89,7 @@ def release(
     progress
         Receives what is done, and why nothing is.
     terms
-        Draft or not, sample or not, how many sets. A draft's README lists the checks that fail.
+        Draft or not, sample or not, and so on. A draft's README lists the checks that fail.
 
     Returns
     -------
@@ -86,45 +100,43 @@ def release(
     ------
     CheckFailure
         With nothing written and older zips as they were, where a check fails, the golden file does not hold
-        just this revision, or what was written does not read back.
+        just this revision, or what was written does not read back; otherwise as `places.replacing`.
     InputError
-        Where `out` cannot be written, or a zip's place is taken by what is none.
+        Where `out` cannot be written, or as `places.looked_at`.
     """
+    from tactcad.checks.run import run_checks  # loads the kernel
+
+    places, foreign = looked_up(design, design_file, out, shop_file, terms)
     scenes = [make_scene(design, name) for name in scene_names(design)]
-    contents = ReleaseContents(design, scenes, (), (), terms.draft, terms.sample, terms.sets)
-    target = Path(out) / f"{contents.stem}.zip"
-    places = {package.name: Path(out) / f"{contents.stem}-{package.name}.zip" for package in PACKAGES}
-    for place in (target, *places.values()):
-        refuse_overwriting(place, design_file, shop_file)
-        refuse_what_is_no_zip(place)
     # the golden file first: it needs no kernel
     failures = golden_faults(design, design_file)
     _refuse(design, failures, terms.draft, progress)
     # beside the published seed, which the checks take, one that nobody could design for
     failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
     _refuse(design, failures, terms.draft, progress)
-    report = _checked(design, shop_file, progress)
+    report = run_checks(design, scene_names(design), shop_file, progress.step)
     failures += [str(f) for f in report.failures]
     _refuse(design, failures, terms.draft, progress)
 
     flags = [
         f for case in report.cases if case.check in QUOTED for f in case.findings if f.severity == "flag"
     ]
-    contents = replace(contents, flags=flags, failures=failures)
+    contents = ReleaseContents(design, scenes, flags, failures, terms.draft, terms.sample, terms.sets)
     with scratch_folder("release") as folder:
         files = _exported(design, tuple(scene.name for scene in scenes), folder / "export", progress, terms)
     files = {README: readme_bytes(contents, list(files)), **files}
     data, date, shop = archive_bytes(files, design.design.date), design.design.date, load_shop(shop_file)
+    target = places[0]
     whole = f"{target.name} (SHA-256 {sha256_of(data)})"
     packages = packed(contents, files, shop)
     zips = [
         archive_bytes({README: package_readme(contents, one, whole, shop), **one.files}, date)
         for one in packages
     ]
-    targets = [target, *(places[one.package.name] for one in packages)]
-    make_folder(target.parent)
-    with whole_files(targets, gone=[p for p in places.values() if p not in targets]) as parts:
-        replaced = replaced_content(target, data)
+    targets = [target, *(target.with_stem(f"{target.stem}-{one.package.name}") for one in packages)]
+    with replacing(places, foreign, terms.others, progress.line) as folder:
+        replaced = [] if target.name in foreign else replaced_content(target, data)
+        parts = [folder / place.name for place in targets]
         for part, content in zip(parts, (data, *zips)):
             part.write_bytes(content)
         wrong = check_archive(parts[0], contents) or check_packages(parts[1:], packages, parts[0], contents)
@@ -165,12 +177,6 @@ def _refuse(design: Design, failures: Sequence[str], draft: bool, progress: Prog
         for failure in failures:
             progress.line(failure)
         raise NotReleased(design.name, failures)
-
-
-def _checked(design: Design, shop_file: Path, progress: Progress) -> Report:
-    from tactcad.checks.run import run_checks  # loads the kernel
-
-    return run_checks(design, scene_names(design), shop_file, progress.step)
 
 
 def _exported(

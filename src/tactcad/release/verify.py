@@ -35,19 +35,8 @@ AP242 = "-ap242"  # ends the name of a model with limits
 
 def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
     """What is wrong with the written zip; empty where nothing is."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            broken = archive.testzip()
-            if broken:
-                return [f"{broken}: damaged"]
-            wrong = form_faults(archive.infolist())
-            files = {name: archive.read(name) for name in archive.namelist()}
-    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
-        return [f"not readable as a zip: {error}"]
-    wrong += manifest_faults(files)
-    if wrong:
-        return wrong
-    return [
+    files, wrong = read_back(path)
+    return wrong or [
         *_part_faults(files, contents),
         *(fault for scene in contents.scenes for fault in _scene_faults(files, contents, scene)),
         *_sheet_faults(files, contents),
@@ -57,7 +46,19 @@ def check_archive(path: Path, contents: ReleaseContents) -> list[str]:
     ]
 
 
-def form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
+def read_back(path: Path) -> tuple[dict[str, bytes], list[str]]:
+    """The zip's files, and what is wrong with its form and checksums."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            if broken := archive.testzip():
+                return {}, [f"{broken}: damaged"]
+            files = {name: archive.read(name) for name in archive.namelist()}
+            return files, [*_form_faults(archive.infolist()), *_manifest_faults(files)]
+    except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError, RuntimeError) as error:
+        return {}, [f"not readable as a zip: {error}"]
+
+
+def _form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     names = [e.filename for e in entries]
     wrong = [f"{name}: stands twice" for name, count in Counter(names).items() if count > 1]
     for e in entries:
@@ -68,7 +69,7 @@ def form_faults(entries: Sequence[zipfile.ZipInfo]) -> list[str]:
     return wrong
 
 
-def manifest_faults(files: Mapping[str, bytes]) -> list[str]:
+def _manifest_faults(files: Mapping[str, bytes]) -> list[str]:
     if MANIFEST not in files:
         return [f"no {MANIFEST}"]
     lines = files[MANIFEST].decode().splitlines()

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -16,7 +14,7 @@ from tactcad.scenes import bom
 from .archive import MANIFEST
 from .packages import ORDER, PART_INSPECTION, SHEET, Packed, table_rows
 from .release_contents import ReleaseContents
-from .verify import README, bill_of, form_faults, manifest_faults, mark_faults
+from .verify import README, bill_of, mark_faults, read_back
 
 OWN = (README, MANIFEST, ORDER, PART_INSPECTION, inspection.NAME)
 
@@ -35,26 +33,11 @@ def check_packages(
     contents
         What the release is about.
     """
-    with zipfile.ZipFile(whole) as archive:
-        every = {name: archive.read(name) for name in archive.namelist()}
+    every, _ = read_back(whole)
     wrong, orders = [], []
     for path, one in zip(paths, packages, strict=True):
-        try:
-            with zipfile.ZipFile(path) as archive:
-                broken = archive.testzip()
-                files = {name: archive.read(name) for name in archive.namelist()}
-                faults = [f"{broken}: damaged"] if broken else form_faults(archive.infolist())
-        except (
-            zipfile.BadZipFile,
-            zlib.error,
-            EOFError,
-            OSError,
-            NotImplementedError,
-            RuntimeError,
-        ) as error:
-            wrong.append(f"{one.package.name}: not readable as a zip: {error}")
-            continue
-        faults += manifest_faults(files) or [*_package_faults(files, every, one, contents)]
+        files, faults = read_back(path)
+        faults = faults or [*_package_faults(files, every, one, contents)]
         wrong += [f"{one.package.name}: {fault}" for fault in faults]
         if one.package is not SHEET and ORDER in files:  # its lines are made by others
             orders += table_rows(files[ORDER])
