@@ -222,7 +222,7 @@ def every_scene(path: Path) -> None:
 NAMES = (
     "design.toml shop.toml table1.csv table2.csv batch.csv readings.csv grasp.csv calibration.csv "
     "calibration.json sheet.csv "
-    "golden.json manifest.json part.dxf bom.json samples.csv entry"
+    "golden.json manifest.json part.dxf bom.json entry"
 ).split()
 
 
