@@ -104,8 +104,6 @@ def release(
     InputError
         Where `out` cannot be written, or as `places.looked_at`.
     """
-    from tactcad.checks.run import run_checks  # loads the kernel
-
     places, foreign = looked_up(design, design_file, out, shop_file, terms)
     scenes = [make_scene(design, name) for name in scene_names(design)]
     # the golden file first: it needs no kernel
@@ -114,6 +112,9 @@ def release(
     # beside the published seed, which the checks take, one that nobody could design for
     failures += [str(f) for f in check_assembly(design, seed=secrets.randbelow(2**32))]
     _refuse(design, failures, terms.draft, progress)
+
+    from tactcad.checks.run import run_checks  # loads the kernel
+
     report = run_checks(design, scene_names(design), shop_file, progress.step)
     failures += [str(f) for f in report.failures]
     _refuse(design, failures, terms.draft, progress)

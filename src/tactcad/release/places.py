@@ -38,7 +38,7 @@ def looked_at(places: Sequence[Path], others: str) -> dict[str, Foreign]:
         differing = named({name: why for name, (why, *_) in foreign.items()})
         what = f"holds what is not as tactcad wrote it: {differing}; nothing was changed"
         ways = "" if odd else "--keep, which moves it beside, --discard, which removes it, or "
-        raise InputError(str(out), what, legal=f"{ways}another folder")
+        raise InputError(str(out), what, legal=ways + "another folder")
     return foreign
 
 
@@ -57,14 +57,11 @@ def _foreign(path: Path) -> Foreign | None:
 
 @contextmanager
 def replacing(places: Sequence[Path], seen: Mapping[str, Foreign], others: str, say: Say) -> Iterator[Path]:
-    """A folder for new zips, named as their places, which they take when the block ends well.
+    """A folder for new zips, named as their places, which they take when the block ends well; what lies in
+    other places goes. Only a kill between two renames, microseconds apart, can leave some old and some new.
 
-    What lies in a place without a new zip goes. Only what kills the process between two renames,
-    microseconds apart, can leave some old and some new. `seen` is what `looked_at` found; `say` receives a
-    line for whatever is kept or discarded.
-
-    Raises InputError where the places cannot be written to, CheckFailure where there is no room or, after the
-    new zips stand, where what appeared meanwhile was kept.
+    `seen` is what `looked_at` found; `say` receives a line for all that is kept or discarded. Raises
+    InputError where it cannot write there, CheckFailure where there is no room or what appeared was kept.
     """
     out, stem, appeared = places[0].parent, f".{places[0].stem}", []
     with in_one_line(out), folder_for(out):
@@ -83,12 +80,12 @@ def replacing(places: Sequence[Path], seen: Mapping[str, Foreign], others: str, 
                         appeared += [] if now == before else [str(kept)]
                 for place in places:
                     new = own / place.name
-                    if not new.exists():
-                        place.unlink(missing_ok=True)
-                        continue
-                    if place.is_file():
+                    if place.is_file() and new.exists():
                         new.chmod(stat.S_IMODE(place.stat().st_mode) | stat.S_IWUSR)
-                    new.replace(place)
+                    if new.exists():
+                        new.replace(place)
+                    else:
+                        place.unlink(missing_ok=True)
                 flush_entry(out)
     if appeared:
         raise CheckFailure(f"{out}: the new zips stand; what appeared is kept as {', '.join(appeared)}")
